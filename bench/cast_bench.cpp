@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How much of raw Embree's speed a cast and a whole simulation keep. The yardstick is the best
-// packet layout: 16 rays over 4x4 pixels, coherent, robust, range, normal and ids stored.
+// Speed of casts and complete simulations relative to raw Embree. The reference is the best packet
+// layout: 16 rays over 4x4 pixels, coherent, robust; range, normal and ids are stored.
 #include "embree_api.hpp"
 #include "ratio_reporter.hpp"
 
@@ -41,7 +41,7 @@ struct Stage {
   }
 };
 
-/// The baseline: Embree and nothing else.
+/// The baseline: Embree alone.
 class RawEmbree {
  public:
   RawEmbree(const Stage& stage, int threads)
@@ -165,7 +165,7 @@ void register_renderer(const Stage& stage, const std::string& kind, unsigned thr
     for (auto _ : state) simulate(setup, {}, frame);
     count_rays(state);
   })->UseRealTime();
-  const bool casts_rays = kind == "rays";  // the goals are its own
+  const bool casts_rays = kind == "rays";  // only it has goals
   ratios.push_back(
       {name + "cast / raw Embree", at + "raw", name + "cast", casts_rays ? 0.85 : 0.0});
   ratios.push_back(
@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
     stages.push_back(std::make_unique<Stage>("bunny", stanford + "bun_zipper.ply"));
     stages.push_back(std::make_unique<Stage>("dragon", stanford + "dragon/dragon_vrip_binary.ply"));
   } else {
-    std::puts("GLIDAR_DATA is not set: the built-in asteroid stands in for the Stanford models");
+    std::puts("GLIDAR_DATA is not set: the built-in asteroid replaces the Stanford models");
     stages.push_back(std::make_unique<Stage>("asteroid", "builtin:asteroid"));
   }
   std::vector<Ratio> ratios;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Point clouds (x, y, z, intensity of what is seen) a second, beside the way of the 2015 program.
+// Point clouds (x, y, z, intensity) per second, compared with the original GLIDAR's method.
 #include "many_views.hpp"
 #include "pipeline_2015.hpp"
 #include "ratio_reporter.hpp"

@@ -13,8 +13,7 @@ namespace {
 
 using Four = std::array<double, 4>;
 
-/// What a range is computed from; the fourth number of `sensor` is the scale, that of `plane` the
-/// offset.
+/// Inputs of a range; the fourth component of `sensor` is the scale, that of `plane` the offset.
 struct Case {
   Four row_x;
   Four row_y;

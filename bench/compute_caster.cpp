@@ -13,7 +13,7 @@
 namespace glidar::bench {
 namespace {
 
-/// A pose as the shader takes it.
+/// A pose in the layout of the shader.
 struct DeviceView {
   std::array<double, 4> row_x;
   std::array<double, 4> row_y;
@@ -56,7 +56,7 @@ ComputeCaster::ComputeCaster(const Scene& scene, const Beams& beams, std::size_t
 }
 
 GLsizeiptr ComputeCaster::doubts_bytes() const {
-  constexpr std::size_t kListedPart = 16;  // of all beams; if more are in doubt, all are looked at
+  constexpr std::size_t kListedPart = 16;  // of all beams; if more are uncertain, all are tested
   return static_cast<GLsizeiptr>((1 + views_ * beams_.size() / kListedPart) *
                                  sizeof(std::uint32_t));
 }

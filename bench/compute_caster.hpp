@@ -17,25 +17,26 @@
 
 namespace glidar::bench {
 
-/// What the beams of some views hit, view by view.
+/// Hits of the beams of some views, view by view.
 struct BatchHits {
   std::span<std::uint32_t> primitive;  ///< kMissed: nothing
   std::span<double> range_m;           ///< of hits; unset elsewhere
-  std::size_t undecided;               ///< beams that the host had to decide
+  std::size_t undecided;               ///< beams that the host had to re-test
 };
 
-/// Casts many views of one sensor in compute shaders (OpenGL 4.3 and 64-bit numbers), with the
-/// results of `--renderer rays`, bit by bit. A thread per beam walks the tree that rays search;
-/// single precision rejects triangles, double accepts one where its bounds leave no doubt that the
-/// hit rule does so too, and measures its range in the order of Resolver. Beams for which bounds
-/// leave a doubt (on borders, between surfaces that coincide, almost edge-on, at the sensor) are
-/// listed, and the host decides them by BeamSearch and Resolver.
+/// Casts many views of one sensor in compute shaders (OpenGL 4.3 and 64-bit numbers), bit-identical
+/// to
+/// `--renderer rays`. A thread per beam traverses the tree of the ray caster; single precision
+/// rejects triangles, double accepts a triangle where its bounds prove that the hit rule does so
+/// too, and computes its range in the order of Resolver. Uncertain beams (on edges, between
+/// coincident surfaces, almost edge-on, at the sensor) are listed, and the host re-tests them by
+/// BeamSearch and Resolver.
 ///
-/// Limits: one instance, no alpha masks, no culled faces, beams from the sensor's origin; meshes in
-/// which all triangles coincide with others are decided by the host throughout.
+/// Limits: one instance, no alpha masks, no culled faces, beams from the sensor's origin. Meshes
+/// whose triangles all coincide with others are cast by the host.
 class ComputeCaster {
  public:
-  /// Why the device cannot do so, or empty. Compares its arithmetic with the processor's.
+  /// Why the device is not supported, or empty. Compares its arithmetic with the processor's.
   static std::string missing();
 
   /// The scene must outlive the caster.
@@ -47,7 +48,7 @@ class ComputeCaster {
   /// Starts a batch; up to as many poses of the sensor as the constructor was given.
   void start(std::span<const Pose> world_from_sensor);
 
-  /// Waits for the batch that was started first and decides what is in doubt. The hits are valid
+  /// Waits for the batch that was started first and re-tests uncertain beams. The hits are valid
   /// until the next start().
   const BatchHits& finish();
 
@@ -61,13 +62,13 @@ class ComputeCaster {
     opengl::Buffer views;
     Mapped numbers;
     Mapped ranges;
-    opengl::Buffer doubts;  ///< how many, and which
+    opengl::Buffer doubts;  ///< number and indices
     Mapped doubts_copy;
     GLsync done = nullptr;
     std::vector<Pose> poses;
     BatchHits hits;
   };
-  /// What lives on the device.
+  /// Objects on the device.
   struct GpuResources {
     opengl::Program program;
     std::optional<ComputeScene> scene;
@@ -75,7 +76,7 @@ class ComputeCaster {
   };
 
   void make_room(Batch& batch) const;
-  /// Of the list of doubts.
+  /// Size of the list of uncertain beams.
   [[nodiscard]] GLsizeiptr doubts_bytes() const;
   void upload_views(const Batch& batch) const;
   void decide(Batch& batch);

@@ -21,7 +21,7 @@ using rays::TreeNode;
 
 constexpr std::uint32_t kMaxTriangles = (1U << kLeafCountShift) - 64;
 
-/// Three corners; the first one's fourth number holds the triangle's index in the mesh.
+/// Three corners; the first one's fourth component is the triangle's index in the mesh.
 using DeviceTriangle = std::array<std::array<float, 4>, 3>;
 
 void check_scene(const Resolver& resolver, const Beams& beams) {
@@ -37,7 +37,7 @@ void check_scene(const Resolver& resolver, const Beams& beams) {
                .remedy = "use a renderer"});
 }
 
-/// The triangles leaf by leaf; `first` receives where each leaf begins.
+/// The triangles leaf by leaf; `first` receives the start of each leaf.
 std::vector<DeviceTriangle> triangles_of(const MeshTree& tree, std::vector<std::uint32_t>& first) {
   std::vector<DeviceTriangle> triangles;
   for (const TriangleCluster& cluster : tree.clusters) {
@@ -54,7 +54,7 @@ std::vector<DeviceTriangle> triangles_of(const MeshTree& tree, std::vector<std::
   return triangles;
 }
 
-/// The tree's nodes with leaves as the shader takes them.
+/// The tree's nodes in the layout of the shader.
 std::vector<TreeNode> nodes_of(const MeshTree& tree, const std::vector<std::uint32_t>& first) {
   std::vector<TreeNode> nodes = tree.nodes;
   for (TreeNode& node : nodes) {

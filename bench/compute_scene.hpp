@@ -11,11 +11,11 @@
 
 namespace glidar::bench {
 
-/// What the casting shader reads of a scene with one instance, in the memory of the graphics
-/// device: a tree over its triangles as rays search it, their planes and the beams.
+/// Inputs of the casting shader for a scene with one instance, in the memory of the graphics
+/// device: the ray caster's tree over its triangles, their planes and the beams.
 class ComputeScene {
  public:
-  /// Needs a current context. Throws Error for a scene that the shader cannot cast into.
+  /// Requires a current context. Throws Error for an unsupported scene.
   ComputeScene(const Resolver& resolver, const Beams& beams, ThreadPool& thread_pool);
 
   /// Binds the buffers, and sets the uniforms of the current program.

@@ -45,7 +45,7 @@ layout(location = 1) uniform dvec4 sphere;   // around the mesh: centre and radi
 layout(location = 2) uniform vec2 reach;     // of its vertices: largest coordinate, distance
 )";
 
-// Boxes hold the triangles; the ray in single precision lies beside the true one by less than
+// Boxes contain the triangles; the ray in single precision differs from the true one by less than
 // `padding`, so its origin is an interval of that width.
 constexpr const char* kRay = R"(
 dvec3 origin;
@@ -97,7 +97,7 @@ const uint kNone = 0xffffffffu;
 const float kFar = 1e38;
 
 // Distances from the ray's shift. By the hit rule, that of the nearest triangle that is surely hit
-// lies between low and high; high has room for surfaces that tie.
+// is between low and high; high includes surfaces that tie.
 uint nearest_slot = kNone;
 float nearest_low = kFar;
 float nearest_high = kFar;

@@ -9,17 +9,17 @@ namespace glidar::bench {
 /// Beams of a tile, along each side. A group of threads casts one tile.
 inline constexpr unsigned kTileSide = 8;
 
-/// Nodes and leaves that a beam may have left to visit; a beam that needs more is in doubt. Even.
+/// Size of a beam's stack of nodes and leaves; a beam that needs more is re-tested. Even.
 inline constexpr unsigned kDeviceStack = 16;
 
-/// The most triangles of a leaf: neighbouring threads are mostly at different ones.
+/// Maximum number of triangles of a leaf: neighbouring threads are mostly at different ones.
 inline constexpr unsigned kDeviceLeaf = 2;
 
 /// A leaf in a child's index: bit 31, then the number of triangles less one in 6 bits, then the
 /// first triangle.
 inline constexpr unsigned kLeafCountShift = 25;
 
-/// Numbers in the place of a triangle: the beam hits nothing; the host has to decide.
+/// Special ids: the beam hits nothing; the host must re-test it.
 inline constexpr unsigned kMissed = 0xffffffffU;
 inline constexpr unsigned kUndecided = 0xfffffffeU;
 

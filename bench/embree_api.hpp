@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What differs between Embree 3.13 (Debian 12) and 4 (Debian 13). CMake defines GLIDAR_EMBREE_4.
+// Differences between Embree 3.13 (Debian 12) and 4 (Debian 13). CMake defines GLIDAR_EMBREE_4.
 
 #ifdef GLIDAR_EMBREE_4
 #include <embree4/rtcore.h>
@@ -12,7 +12,7 @@
 
 namespace glidar::bench {
 
-/// Intersects a packet of 16 rays that run alike, those whose `valid` is -1.
+/// Intersects a packet of 16 similar rays, those whose `valid` is -1.
 inline void intersect_packet(RTCScene scene, const int* valid, RTCRayHit16& rays) {
 #ifdef GLIDAR_EMBREE_4
   RTCIntersectArguments arguments;

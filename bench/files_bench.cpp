@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Writing clouds against plain writing, and loading models against Assimp alone.
+// Writing clouds compared with plain writing, and loading models compared with Assimp alone.
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/formats/file_sink.hpp>
@@ -52,7 +52,7 @@ std::filesystem::path scratch(const char* name) {
   return std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name);
 }
 
-/// Where written bytes must have arrived before the clock stops.
+/// The destination of written bytes when the time is taken.
 enum class Reach { page_cache, disk };
 
 /// Waits until a file's bytes are on the disk.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the time of the OpenGL renderer goes on a graphics device (GLIDAR_GRAPHICS_DEVICE chooses
-// it), and what casting in compute shaders takes. Medians. The clock of a driver in software counts
-// rasterising alone.
+// Times of the steps of the OpenGL renderer on a graphics device (selected by
+// GLIDAR_GRAPHICS_DEVICE), and of casting in compute shaders. Medians. The clock of a software
+// driver counts rasterisation only.
 #include "compute_caster.hpp"
 #include "compute_shaders.hpp"
 #include "many_views.hpp"
@@ -43,7 +43,7 @@ double median_seconds(const auto& action, int repetitions = kRepetitions) {
   return median(seconds);
 }
 
-/// By the device's own clock.
+/// Times by the device's clock.
 double median_device_seconds(const auto& action) {
   GLuint query = 0;
   glGenQueries(1, &query);
@@ -92,8 +92,8 @@ void print_transfer() {
               1e-9 * kBytes / (readback_s - clear_s), transfer_s / (readback_s - clear_s));
 }
 
-/// Vertex work is what is left when nothing is rasterised; host work is what a cast takes beyond
-/// drawing and reading.
+/// Vertex work is the time without rasterisation; host work is the time of a cast beyond drawing
+/// and reading.
 void print_breakdown(const Model& model, std::uint32_t side) {
   const Beams beams = make_beams(pinhole_from_fov(side, side, kFov_rad));
   const CastRequest request{
@@ -159,7 +159,7 @@ bool is_software() {
   return name.find("llvmpipe") != std::string_view::npos;
 }
 
-/// What a batch has in common with rays.
+/// Agreement of a batch with rays.
 struct Comparison {
   std::size_t beams = 0;
   std::size_t hits = 0;
@@ -187,7 +187,7 @@ void compare_with_rays(const Model& model, const Beams& beams, const std::vector
   }
 }
 
-/// Batches of random views, cast by compute shaders while those before are read and decided.
+/// Batches of random views, cast by compute shaders while those before are read back and re-tested.
 void print_compute(const Model& model, std::uint32_t side) {
   const bool is_slow = is_software();
   const std::size_t views = is_slow ? 1 : 256;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene of 100,000 instances: how long until it can be cast, and what it costs that one of them
-// moves.
+// A scene of 100,000 instances: time until it can be cast, and cost of moving one of them.
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/model/builtin_models.hpp>

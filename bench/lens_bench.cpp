@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture of cameras whose lenses distort: raster, rays and auto, on one thread, in processor
+// Images of cameras with distorting lenses: raster, rays and auto, on one thread, in processor
 // time, with range, normal and triangle of every hit.
 #include "ratio_reporter.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What a LiDAR's measurement and noise cost beside the bare cast of the same beams: one turn of a
-// VLP-16 in a furnished room. And what it costs that surfaces of a thousand objects may coincide
-// with the ground on which they stand.
+// Cost of a LiDAR's measurement and noise relative to casting the same beams: one rotation of a
+// VLP-16 in a furnished room. And the cost of possible coincidences of a thousand objects with the
+// ground under them.
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/config/sensor_file.hpp>
@@ -14,7 +14,7 @@
 namespace glidar::bench {
 namespace {
 
-/// A room of 8 m x 8 m x 4 m, the sensor 1.5 m above its floor, and things on it: 118,784
+/// A room of 8 m x 8 m x 4 m, the sensor 1.5 m above its floor, and objects on it: 118,784
 /// triangles.
 Scene make_room() {
   Scene scene;
@@ -105,7 +105,7 @@ void register_cast(const Stage& stage, unsigned threads, int casts, const std::s
   })->UseRealTime();
 }
 
-/// The bare cast of a footprint's own rays, with the columns that the light needs.
+/// Casts a footprint's beam samples with the columns that the lidar equation needs.
 void register_sub_cast(const Stage& stage, unsigned threads, const std::string& name) {
   benchmark::RegisterBenchmark(name.c_str(), [&stage, threads](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.threads = threads});

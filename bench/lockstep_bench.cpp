@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lock-step link adds to a measurement: a request's way to the server and the cloud's way
-// back, over TCP on this machine. The server is a process of its own, as in use.
+// Time that the lock-step link adds to a measurement: the request to the server and the reply with
+// the cloud, over TCP on this machine. The server is a separate process, as in use.
 #include "ratio_reporter.hpp"
 #include "raw_opengl.hpp"
 
@@ -28,7 +28,7 @@ namespace {
 constexpr unsigned kThreads = 2;
 constexpr std::size_t kPointBytes = 3 * sizeof(double) + sizeof(float);  // xyz, intensity
 
-/// A free port, which nobody takes in the moment until it is used.
+/// A free port, which no other process is expected to take before it is used.
 std::string free_endpoint() {
   zmq::context_t context;
   zmq::socket_t socket(context, zmq::socket_type::rep);
@@ -36,7 +36,7 @@ std::string free_endpoint() {
   return socket.get(zmq::sockopt::last_endpoint);
 }
 
-/// A process until it is let go.
+/// A process that is terminated at the end of its scope.
 class Process {
  public:
   explicit Process(const std::function<void()>& work) : id_(fork()) {
@@ -67,8 +67,8 @@ void serve_lockstep(const std::string& model, std::uint32_t side, const std::str
   app::LockstepRun(flags, console).run();
 }
 
-/// Answers every request with a cloud of the same frame, made anew: what the link takes, without
-/// the measurement.
+/// Answers every request with a cloud of the same frame: the cost of the link without the
+/// measurement.
 void serve_frame(const std::string& path, std::uint32_t side, const std::string& endpoint) {
   const Model model("model", path);
   Sensor sensor;
@@ -100,7 +100,7 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
   }
 }
 
-/// Answers whatever comes with so many bytes, which are not copied.
+/// Answers every message with a fixed number of bytes, which are not copied.
 void serve_echo(std::size_t bytes, const std::string& endpoint) {
   zmq::context_t context;
   zmq::socket_t socket(context, zmq::socket_type::rep);
@@ -134,7 +134,8 @@ class Client {
   zmq::socket_t socket_;
 };
 
-/// The servers of one size; they start before this process has threads, which a fork would lose.
+/// The servers of one size; they start before this process has threads, because fork() does not
+/// copy these.
 struct Servers {
   Servers(const std::string& model, std::uint32_t side)
       : lockstep_at(free_endpoint()),
@@ -174,14 +175,14 @@ class Ways {
     state.counters["MB"] = static_cast<double>(bytes) / 1e6;
   }
 
-  /// A frame that is there already.
+  /// A frame that is already measured.
   void by_link_alone(benchmark::State& state) {
     Client client(servers_.frame_at);
     client.ask(request_);
     for (auto _ : state) client.ask(request_);
   }
 
-  /// What cannot be saved: the measurement, and the same bytes there and back.
+  /// The unavoidable part: the measurement, and the same bytes sent and received.
   void by_hand(benchmark::State& state) {
     Client client(servers_.echo_at);
     const auto renderer = make_renderer(model_.scene, {.threads = kThreads});

@@ -19,7 +19,7 @@ inline RendererOptions options(const char* kind) {
   return {.kind = kind, .threads = kThreads, .graphics_device = chosen_device()};
 }
 
-/// Random sides of a model, seen from as far as its own place.
+/// Random sides of a model, from the distance of its own position.
 inline std::vector<Pose> poses_around(const Model& model, std::uint64_t seed, std::size_t count) {
   const Eigen::Vector3d middle = bounds(model.scene).center();
   const double distance_m = (model.world_from_sensor.translation() - middle).norm();

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How much memory a scene and its renderer take, against what they need: the mesh as it is in the
-// scene and Embree's own structures over the same triangles. Each is measured in a process of its
-// own, so that nothing left over from one counts for another.
+// Memory of a scene and its renderer, relative to the mesh as stored in the scene and to Embree's
+// structures over the same triangles. Each is measured in a separate process, so that results are
+// independent.
 #include "embree_api.hpp"
 #include "ratio_reporter.hpp"
 
@@ -28,11 +28,12 @@ constexpr double kMaxRatio = 1.5;
 
 /// All in bytes.
 struct Memory {
-  double mesh = 0;      ///< arrays of the mesh
-  double embree = 0;    ///< Embree's own over the same triangles, vertices and indices not copied
-  double scene = 0;     ///< what the process has more once the model is loaded
-  double renderer = 0;  ///< and what its renderer adds
-  double peak = 0;      ///< the most the process had more, while loading or building
+  double mesh = 0;  ///< arrays of the mesh
+  double embree =
+      0;  ///< Embree's structures over the same triangles, vertices and indices not copied
+  double scene = 0;     ///< growth of the process by loading the model
+  double renderer = 0;  ///< growth by the renderer
+  double peak = 0;      ///< maximum growth while loading or building
 };
 
 template <class T>
@@ -57,7 +58,7 @@ double status_bytes(const std::string& name) {
   return 0.0;
 }
 
-/// Anonymous pages: the heap and what libraries map beside it, not the libraries' own code.
+/// Anonymous pages: the heap and other private mappings, without the code of libraries.
 double held_bytes() {
   malloc_trim(0);  // what was freed must not count
   return status_bytes("RssAnon");
@@ -91,7 +92,7 @@ double embree_bytes(const Mesh& mesh) {
   return bytes;
 }
 
-/// Writes what `measure` finds, in a process of its own, into `found`.
+/// Runs `measure` in a separate process and writes its result into `found`.
 template <class Measure>
 bool apart(const Measure& measure, Memory& found) {
   std::array<int, 2> ends{};
@@ -149,7 +150,7 @@ void report(const std::string& name, const std::string& model) {
 int main() {
   const char* data = std::getenv("GLIDAR_DATA");
   if (data == nullptr) {
-    std::puts("GLIDAR_DATA is not set: the built-in asteroid stands in for the Stanford models");
+    std::puts("GLIDAR_DATA is not set: the built-in asteroid replaces the Stanford models");
     glidar::bench::report("asteroid", "builtin:asteroid");
     return 0;
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps of noise in beams per second on one core. The yardstick of those that draw normals is the
-// standard library: a Mersenne twister and std::normal_distribution, added to every range.
+// Noise steps in beams per second on one core. Those with normal random numbers are compared with
+// the standard library: a Mersenne twister and std::normal_distribution, added to every range.
 #include "ratio_reporter.hpp"
 
 #include <glidar/math/gaussian.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kSide = 512;
 
-/// A camera's frame on one thread; every column that steps read is there.
+/// A camera's frame on one thread; with every column that steps read.
 struct Stage {
   Beams beams;
   Frame frame;
@@ -71,7 +71,8 @@ void bench_standard_library() {
   });
 }
 
-/// What continuous_wave draws for a frame, and nothing else: three normals a beam, two pairs.
+/// Samples the random numbers of continuous_wave for a frame only: three normals per beam, two
+/// pairs.
 void draw_frame() {
   WordBatch words;
   PairBatch normals;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How much of bare OpenGL's speed a cast keeps, and what many small frames gain when they are cast
-// together. The yardstick (raw_opengl.hpp) draws the same triangles into the same targets (a 32-bit
-// number and a float depth per pixel) and reads the numbers back, no more.
+// Speed of a cast relative to plain OpenGL, and the gain of batches for many small frames. The
+// reference (raw_opengl.hpp) draws the same triangles into the same targets (a 32-bit number and a
+// float depth per pixel) and reads the numbers back.
 #include "many_views.hpp"
 #include "ratio_reporter.hpp"
 
@@ -41,7 +41,7 @@ void register_cast(const std::string& name, const Model& model, const char* kind
   });
 }
 
-/// Draws the picture and decodes it.
+/// Draws the framebuffer and decodes it.
 void register_paper(const std::string& name, const Model& model, std::uint32_t side) {
   add(name, [&model, side](benchmark::State& state) {
     const auto camera = make_paper_camera(model.scene, options("opengl"));

@@ -27,13 +27,13 @@ class KdTree {
   void search(std::size_t begin, std::size_t end, const Eigen::Vector3f& to, int axis,
               Best& best) const;
 
-  std::vector<Eigen::Vector3f> points_;  ///< each in the middle of its part, splits it
+  std::vector<Eigen::Vector3f> points_;  ///< each splits its section in the middle
 };
 
-/// The way of the 2015 program, for its speed: planes from the nearest and the farthest vertex,
-/// looked up in a tree every frame; light and two bytes of depth drawn into an RGBA picture, read
-/// back at once; every pixel unprojected, the background dropped. Its faults that cost or save no
-/// time are left out.
+/// The original GLIDAR's method (Woods and Christian, 2016), for its speed: planes from the nearest
+/// and the farthest vertex, found in a tree every frame; intensity and two bytes of depth drawn
+/// into RGBA, read back at once; every pixel unprojected, the background removed. Its errors that
+/// do not affect speed are not reproduced.
 class Pipeline2015 {
  public:
   Pipeline2015(const Model* model, std::uint32_t side);

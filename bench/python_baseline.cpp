@@ -23,7 +23,7 @@ constexpr std::uint32_t kSide = 256;
 constexpr std::size_t kFrames = 100;
 constexpr double kFieldOfView_rad = 20.0 * std::numbers::pi / 180.0;
 
-/// On a circle about the scene, so far away that it fills the view; as python_bench.py has it.
+/// On a circle about the scene, so far away that it fills the view, as in python_bench.py.
 std::vector<glidar::Motion> motions(const glidar::Scene& scene) {
   const Eigen::AlignedBox3d box = glidar::bounds(scene);
   const Eigen::Vector3d middle = box.center();

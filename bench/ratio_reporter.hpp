@@ -10,12 +10,12 @@
 
 namespace glidar::bench {
 
-/// A promise about two benchmarks of one run: median time of `baseline` over that of `ours`.
+/// A goal for two benchmarks of one run: median time of `baseline` over that of `ours`.
 struct Ratio {
   std::string what;
   std::string baseline;
   std::string ours;
-  double goal;  ///< at least
+  double goal;  ///< minimum
 };
 
 /// Google Benchmark's console output, and after it the ratios with their goals.
@@ -33,7 +33,7 @@ class RatioReporter : public benchmark::ConsoleReporter {
 /// The line of a ratio that must not be above its goal.
 void print_at_most(const std::string& what, double found, double goal);
 
-/// Runs all registered benchmarks, repetitions of all taken in turn, and prints the ratios.
+/// Runs all registered benchmarks, with interleaved repetitions, and prints the ratios.
 int run(int argc, char** argv, std::vector<Ratio> ratios);
 
 }  // namespace glidar::bench

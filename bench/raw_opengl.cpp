@@ -24,7 +24,7 @@ std::vector<std::unique_ptr<Model>> models() {
     all.push_back(std::make_unique<Model>("bunny", stanford + "bun_zipper.ply"));
     all.push_back(std::make_unique<Model>("dragon", stanford + "dragon/dragon_vrip_binary.ply"));
   } else {
-    std::puts("GLIDAR_DATA is not set: the built-in asteroid stands in for the Stanford models");
+    std::puts("GLIDAR_DATA is not set: the built-in asteroid replaces the Stanford models");
     all.push_back(std::make_unique<Model>("asteroid", "builtin:asteroid"));
   }
   return all;

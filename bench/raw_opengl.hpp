@@ -16,8 +16,8 @@ namespace glidar::bench {
 
 constexpr double kFov_rad = 0.35;
 
-/// A model and a place from which it fills the picture. Meshes must stand at their zero in single
-/// precision, as the Stanford models do.
+/// A model and a position from which it fills the image. Meshes must be near their origin in single
+/// precision, as the Stanford models are.
 struct Model {
   std::string name;
   Scene scene;
@@ -26,19 +26,19 @@ struct Model {
   Model(std::string model_name, const std::string& path);
 };
 
-/// The Stanford models in the folder that GLIDAR_DATA names, or else one of our own.
+/// The Stanford models in the folder that GLIDAR_DATA names, otherwise a generated model.
 std::vector<std::unique_ptr<Model>> models();
 
-/// The device that GLIDAR_GRAPHICS_DEVICE names by its index; empty: the first that can.
+/// The device that GLIDAR_GRAPHICS_DEVICE names by its index; empty: the first with a context.
 std::optional<std::uint32_t> chosen_device();
 
-/// Depths around a model.
+/// Range of depths around a model.
 std::pair<double, double> planes_around(const Model& model);
 
-/// The usual perspective of OpenGL, rows downwards.
+/// The standard perspective of OpenGL, rows downwards.
 Eigen::Matrix4f clip_matrix(const Model& model, double near_m, double far_m);
 
-/// What a baseline draws, and how a pixel of it is stored.
+/// Content of a baseline's pixels, and their format.
 struct Raw {
   const char* vertex;
   const char* fragment;
@@ -47,17 +47,17 @@ struct Raw {
   GLenum type;
 };
 
-/// The number of each triangle.
+/// The id of each triangle.
 extern const Raw kRawNumbers;
-/// The paper's shaders with nothing but what an untextured model needs.
+/// The shaders of the quantized framebuffer, reduced to untextured models.
 extern const Raw kRawPaper;
 
 /// Compiles one stage after the other and links.
 void compile(const opengl::Program& program,
              std::initializer_list<std::pair<GLenum, const char*>> stages);
 
-/// The baseline: OpenGL and nothing else. It draws the triangles in the order of their file into a
-/// square picture with a float depth, and reads the picture.
+/// The baseline: OpenGL alone. It draws the triangles in the order of their file into a square
+/// image with a float depth, and reads the image.
 class RawOpengl {
  public:
   RawOpengl(const Model& model, const Raw& raw, std::uint32_t side);

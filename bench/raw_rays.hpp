@@ -30,7 +30,7 @@ struct HitList {
   void resize(std::size_t count);
 };
 
-/// Embree and nothing else: robust, one mesh, packets of 16 or 8 or single rays, on this thread.
+/// Embree alone: robust, one mesh, packets of 16 or 8 or single rays, on this thread.
 class RawRays {
  public:
   /// `isa`: Embree's name of an instruction set; empty: the best.

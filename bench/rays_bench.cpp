@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The ray caster beside raw Embree, on one thread, in that thread's processor time: rays of a
-// camera and rays in unrelated directions, with range, normal and triangle of every hit. And what
-// building its trees takes.
+// The ray caster compared with raw Embree, on one thread, in that thread's processor time: rays of
+// a camera and rays in unrelated directions, with range, normal and triangle of every hit. Also the
+// time of building its trees.
 #include "ratio_reporter.hpp"
 #include "raw_rays.hpp"
 
@@ -45,7 +45,7 @@ RayList camera_rays(const Eigen::AlignedBox3d& box) {
   return list;
 }
 
-/// Rays from everywhere around to everywhere within.
+/// Rays from random points around to random points inside.
 RayList random_rays(const Eigen::AlignedBox3d& box) {
   RayList list{false, {}};
   std::mt19937 engine(1);
@@ -78,7 +78,7 @@ void gather(const TriangleBlock* blocks, const rays::RayPacket& packet, Gathered
   }
 }
 
-/// Range and normal of what was hit, from its plane in double.
+/// Range and normal of hits, from the plane in double.
 GLIDAR_SIMD void measure(const rays::RayPacket& p, const Gathered& g, float* range_m,
                          float (*normal)[rays::kPacketSize]) {
   for (unsigned i = 0; i < rays::kPacketSize; ++i) {
@@ -160,8 +160,7 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// A benchmark of caster->cast() in processor time, so that other work on the machine hardly
-/// matters.
+/// A benchmark of caster->cast() in processor time, which other work on the machine hardly affects.
 template <class Cast>
 void add(const std::string& name, std::shared_ptr<Cast> caster, std::size_t count) {
   benchmark::RegisterBenchmark(name.c_str(), [caster, count](benchmark::State& state) {
@@ -205,7 +204,7 @@ std::unique_ptr<Stage> make_stage(const std::string& name, const std::string& mo
   return stage;
 }
 
-/// Every kernel beside the better of two ways to use Embree with the same instruction set.
+/// Compares every kernel with the faster of two ways to use Embree with the same instruction set.
 void add_rays(const Stage& stage, const RayList& list, const std::string& kind,
               std::vector<Ratio>& ratios) {
   const std::vector<unsigned> sizes = list.is_coherent ? std::vector{16U, 8U} : std::vector{1U, 8U};

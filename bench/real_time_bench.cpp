@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How many times faster than the real sensor a frame is simulated, with everything that the named
-// sensor has by default: footprint, returns and noise. The scene is a textured model, by default
-// the apartment of the folder GLIDAR_DATA; the sensor stands 1.5 m above its zero.
+// How many times faster than real time a frame is simulated, with all default features of a preset:
+// footprint, returns and noise. The scene is a textured model, by default the apartment in the
+// folder GLIDAR_DATA; the sensor is 1.5 m above its origin.
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/model/model.hpp>
@@ -30,7 +30,7 @@ struct Goal {
 constexpr Goal kGoals[] = {{"VLP-16", 12.0}, {"OS1-128", 4.0},   {"Livox-Avia", 12.0},
                            {"D435", 4.0},    {"Kinect-v1", 3.0}, {"Azure-Kinect-NFOV", 3.0}};
 
-/// 1.5 m above the scene's zero, looking along +x.
+/// 1.5 m above the scene's origin, looking along +x.
 Pose standing_pose(const Beams& beams) {
   Pose pose = Pose::Identity();
   pose.translation() = Eigen::Vector3d(0.0, 0.0, 1.5);
@@ -78,7 +78,7 @@ class Case {
   std::vector<double> seconds_;
 };
 
-/// All named sensors, or the one whose name is given.
+/// All presets, or the one with this name.
 void run(const std::string& model, const std::string& only) {
   Scene scene;
   add_model(scene, load_model(model, {}, {}));

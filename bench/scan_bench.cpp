@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A turn of spinning scanners indoors and outdoors: raster, rays and raw Embree, on one thread, in
-// processor time, with range, normal and triangle of every hit.
+// A rotation of spinning scanners indoors and outdoors: raster, rays and raw Embree, on one thread,
+// in processor time, with range, normal and triangle of every hit.
 #include "ratio_reporter.hpp"
 #include "raw_rays.hpp"
 
@@ -30,12 +30,12 @@ struct Pattern {
   double many_goal;
 };
 
-/// Rays that stand for one beam.
+/// Beam samples of one beam.
 std::uint32_t rays_per_beam(const Pattern& pattern) {
   return pattern.spread_deg > 0.0 ? 7 : 1;
 }
 
-/// Each ray of a beam has a row of its own.
+/// Each beam sample has a separate row.
 Beams make_beams(const Pattern& pattern) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   const std::uint32_t rays = rays_per_beam(pattern);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds published over a socket against the bare measurement: how much of the rate is left.
+// Rate of clouds published over a socket, relative to measurements without publishing.
 #include "ratio_reporter.hpp"
 
 #include <apps/glidar/run/delivery.hpp>
@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint32_t kPixels = 256;
 constexpr std::uint16_t kPort = 47155;
 
-/// A view of a model that fills the picture.
+/// A view of a model that fills the image.
 struct View {
   Scene scene;
   Sensor sensor;
@@ -51,7 +51,7 @@ void measure_alone(benchmark::State& state, const View& view) {
   state.SetItemsProcessed(state.iterations());
 }
 
-/// A subscriber in a thread of its own, which takes what comes.
+/// A subscriber in a separate thread, which receives all messages.
 class Reader {
  public:
   Reader()

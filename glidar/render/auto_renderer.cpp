@@ -18,14 +18,14 @@
 namespace glidar {
 namespace {
 
-/// The raster works through all triangles in view, a ray through few of them: where there are more
-/// of them per beam, rays are quicker (by bench/renderers_bench.py from 30 to 60 on).
+/// The raster processes every triangle in view, a ray only a few: above this many triangles per
+/// beam, rays are faster (bench/renderers_bench.py: from 30 to 60).
 constexpr std::uint64_t kMaxPerBeam = 40;
-/// The same for scanners: by bench/scan_bench the raster takes half the time at 2 triangles per
-/// beam, the same time at 25.
+/// The same for scanners (bench/scan_bench: the raster takes half the time at 2 triangles per beam,
+/// and the same time at 25).
 constexpr double kMaxPerScannerBeam = 12.0;
-/// The same for cameras with lenses, by bench/lens_bench and pictures of other sizes: for each beam
-/// that may hit something, and for any beam, since rays are slower to find nothing.
+/// The same for cameras with lenses (bench/lens_bench and other image sizes): per beam that may hit
+/// something, and per beam, because rays that miss take longer than an empty pixel.
 constexpr double kMaxPerLensBeam = 4.0;
 constexpr double kMaxPerAnyLensBeam = 0.6;
 
@@ -60,7 +60,7 @@ class AutoRenderer final : public Renderer {
     return *rays_;
   }
 
-  /// Prepares the cast where it returns true.
+  /// If true, the cast is prepared.
   bool is_for_scan_raster(const CastRequest& request) {
     if (!any_instance_enabled(request, base_->resolver.scene()) ||
         rasterizer_limitation(request.beams) == nullptr ||
@@ -97,7 +97,7 @@ class AutoRenderer final : public Renderer {
     return all;
   }
 
-  /// Those around which something may be hit.
+  /// Number of beams that may hit something.
   std::uint64_t beams_in_view(const CastRequest& request) {
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     find_plane_points(request.beams, points_);
@@ -110,7 +110,7 @@ class AutoRenderer final : public Renderer {
 
   std::shared_ptr<CpuBase> base_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< per mesh
-  bool can_draw_;                           ///< the raster has numbers for all triangles
+  bool can_draw_;                           ///< the triangle ids suffice for all triangles
   PlanePoints points_;
   std::unique_ptr<Renderer> raster_;
   std::unique_ptr<scan_raster::ScanRenderer> scan_raster_;

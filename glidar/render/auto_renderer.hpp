@@ -8,9 +8,9 @@
 
 namespace glidar {
 
-/// The quicker one for each cast: a raster for pinholes and scanners that see few triangles per
-/// beam, rays for all others. Which one follows from the request alone, so that results do so too.
-/// Each is built when it is first needed.
+/// Selects the faster renderer for each cast: a raster for pinhole cameras and scanners that see
+/// few triangles per beam, rays for all others. The choice follows from the request alone, and so
+/// do the results. Each renderer is built when it is first needed.
 std::unique_ptr<Renderer> make_auto_renderer(const Scene& scene, const RendererOptions& options);
 
 }  // namespace glidar

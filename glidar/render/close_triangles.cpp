@@ -17,8 +17,8 @@ using rays::MeshTree;
 using rays::TreeNode;
 
 constexpr double kMaxGapPart = 0x1p-10;     // of the mesh's reach: gaps up to it are found
-constexpr double kTouchFraction = 0x1p-20;  // of it: triangles that overlap less only touch
-constexpr double kMinParallelCosine = 0.9;  // of sheets: others meet in a line
+constexpr double kTouchFraction = 0x1p-20;  // of it: smaller overlaps count as touching
+constexpr double kMinParallelCosine = 0.9;  // of normals: other planes meet in a line
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
@@ -30,13 +30,13 @@ Corners corners_at(const MeshTree& tree, std::uint32_t slot) {
   return {corner(t.a), corner(t.b), corner(t.c)};
 }
 
-/// Of unit length; not a number for a triangle without area.
+/// Unit normal; NaN for a triangle without area.
 Eigen::Vector3d normal_of(const Corners& corners) {
   const Eigen::Vector3d cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   return cross / cross.norm();
 }
 
-/// A triangle with what it is compared by.
+/// A triangle with its normal and the outward normals of its edges.
 struct ComparedTriangle {
   Corners corners;
   Eigen::Vector3d normal;
@@ -50,8 +50,8 @@ struct ComparedTriangle {
     }
   }
 
-  /// True when a line along an edge has this triangle on one side and the other one on the other,
-  /// but for an overlap by `touch`.
+  /// True when a line along an edge separates both triangles, except for an overlap of up to
+  /// `touch`.
   [[nodiscard]] bool is_separated_from(const Corners& other, double touch) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const double edge = outward[k].dot(corners[k]) - touch;
@@ -71,13 +71,13 @@ struct ClosePair {
   float gap;
 };
 
-/// The search in one mesh.
+/// Searches the tree of one mesh.
 class GapSearch {
  public:
   GapSearch(const MeshTree& tree, double reach)
       : tree_(tree), touch_(kTouchFraction * reach), max_gap_(kMaxGapPart * reach) {}
 
-  /// Adds the pairs of a triangle with those behind it in the tree's order.
+  /// Adds the pairs of a triangle with triangles of higher slots.
   void add_pairs(std::uint32_t slot, std::vector<ClosePair>& pairs) const {
     const Corners corners = corners_at(tree_, slot);
     const ComparedTriangle triangle(corners, normal_of(corners));
@@ -89,7 +89,7 @@ class GapSearch {
     visit(0, {triangle, slot, box, pairs});
   }
 
-  /// The same for all triangles of a cluster.
+  /// As add_pairs(), for all triangles of a cluster.
   void add_pairs_of(const TriangleCluster& cluster, std::vector<ClosePair>& pairs) const {
     const std::uint32_t first = cluster.first_block * kBlockSize;
     for (std::uint32_t k = 0; k < cluster.count; ++k) add_pairs(first + k, pairs);
@@ -129,14 +129,14 @@ class GapSearch {
     for (std::uint32_t slot = std::max(first, query.slot + 1); slot < first + cluster.count;
          ++slot) {
       const double gap = gap_between(query.triangle, corners_at(tree_, slot));
-      // Copies count as one triangle, whatever their sense of rotation.
+      // Copies count as one triangle, whatever their winding.
       if (gap > max_gap_ || rays::have_same_corners(tree_.blocks.data(), query.slot, slot))
         continue;
       query.pairs.push_back({primitive(query.slot), primitive(slot), static_cast<float>(gap)});
     }
   }
 
-  /// How far `other` is from the plane of the sheet where one covers the other, or infinite.
+  /// Distance of `other` from the triangle's plane where one covers the other; otherwise infinite.
   [[nodiscard]] double gap_between(const ComparedTriangle& triangle, const Corners& other) const {
     const double plane = triangle.normal.dot(triangle.corners[0]);
     const double a = triangle.normal.dot(other[0]) - plane;

@@ -12,21 +12,21 @@
 
 namespace glidar {
 
-/// Finds triangles of one mesh that lie on each other or nearly so: a drawn picture does not show
-/// which of two sheets is nearer when they are closer together than it resolves.
+/// Finds coincident or nearly coincident triangles of one mesh. A rasterizer cannot decide which of
+/// two triangles is nearer when the gap between them is below its resolution.
 class CloseTriangles {
  public:
-  /// Compares each triangle with those around it; both must outlive this. Boxes: one per mesh,
-  /// relative to its origin.
+  /// Compares each triangle with its neighbours; resolver and trees must outlive this. Boxes: one
+  /// per mesh, relative to its origin.
   CloseTriangles(const Resolver& resolver, const rays::SceneTrees& trees,
                  std::span<const Eigen::AlignedBox3d> boxes, ThreadPool& thread_pool);
 
-  /// Takes the poses of the next cast, which the resolver has. The driver moves what it draws by
-  /// up to band_px.
+  /// Prepares the next cast; the resolver has its poses. The driver moves what it draws by up to
+  /// band_px.
   void prepare(const CastRequest& request, double band_px);
 
-  /// For a triangle as Resolver::canonical_primitive() names it: true where another sheet of the
-  /// mesh may be so close to the triangle that the picture may show either.
+  /// True where another triangle of the mesh may be so close to this one that a rasterizer may show
+  /// either. `primitive`: see Resolver::canonical_primitive().
   [[nodiscard]] bool is_close(std::uint32_t instance, std::uint32_t primitive) const {
     const Closeness& closeness = closeness_[instance];
     if (closeness.bits == nullptr) return closeness.has_all;
@@ -34,12 +34,12 @@ class CloseTriangles {
   }
 
  private:
-  /// A triangle and how far the nearest other sheet is, object units.
+  /// A triangle and the gap to the nearest other one, object units.
   struct Gap {
     std::uint32_t primitive;
     float size;
   };
-  /// Of one instance.
+  /// State of one instance.
   struct Closeness {
     const std::uint64_t* bits;  ///< one per triangle; nullptr: all or none are close
     bool has_all;
@@ -52,7 +52,7 @@ class CloseTriangles {
   std::span<const Eigen::AlignedBox3d> boxes_;
   std::vector<std::vector<Gap>> gaps_;            ///< per mesh
   std::vector<std::vector<std::uint64_t>> bits_;  ///< per mesh; empty: no triangle is close
-  std::vector<double> limits_;                    ///< per mesh: sheets closer than it are close
+  std::vector<double> limits_;                    ///< per mesh: gaps up to it are close
   std::vector<Closeness> closeness_;              ///< per instance
 };
 

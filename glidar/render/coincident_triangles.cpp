@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/resolver.hpp>
+#include <glidar/render/coincident_triangles.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <numeric>
 
 namespace glidar {
 namespace {
 
-/// A well-mixed number of a position's bits (finaliser of SplitMix64); -0 counts as 0.
+/// Hash of a position's bits (finaliser of SplitMix64); -0 counts as 0.
 std::uint64_t mixed(const Eigen::Vector3f& p) {
   std::uint64_t hash = 0;
   for (int k = 0; k < 3; ++k) {
@@ -21,7 +22,7 @@ std::uint64_t mixed(const Eigen::Vector3f& p) {
   return hash;
 }
 
-/// The corners' positions in an order of their own.
+/// The corners' positions, sorted.
 std::array<std::array<float, 3>, 3> sorted_corners(const Mesh& mesh, std::uint32_t triangle) {
   std::array<std::array<float, 3>, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -56,14 +57,14 @@ std::vector<CornerKey> sorted_keys(const Mesh& mesh) {
 std::size_t earlier_coincident(const Mesh& mesh, const std::vector<CornerKey>& keys,
                                std::size_t i) {
   const auto corners = sorted_corners(mesh, keys[i].triangle);
-  // Back through those of the same hash, which are few unless they are true twins.
+  // Keys of the same hash are mostly coincident triangles.
   for (std::size_t j = i; j-- > 0 && keys[j].hash == keys[i].hash;) {
     if (sorted_corners(mesh, keys[j].triangle) == corners) return j;
   }
   return i;
 }
 
-/// True where two triangles of the same corners list them in the same sense of rotation.
+/// True where two triangles of the same corners list them with the same winding.
 bool have_same_winding(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
   const auto position = [&](std::uint32_t triangle, std::size_t k) -> const Eigen::Vector3f& {
     return mesh.positions_m[mesh.triangles[triangle][k % 3]];
@@ -84,7 +85,8 @@ std::vector<std::uint32_t> distinct_triangles(const Mesh& mesh,
   std::vector<std::uint32_t> distinct;
   if (firsts.empty()) return distinct;
   distinct.reserve(firsts.size());
-  std::vector<std::uint8_t> has_opposite(firsts.size(), 0);  // per first one: one is kept
+  std::vector<std::uint8_t> has_opposite(
+      firsts.size(), 0);  // per first triangle: one of the other winding is kept
   for (std::uint32_t i = 0; i < firsts.size(); ++i) {
     const std::uint32_t first = firsts[i];
     const bool is_copy = first != i && have_same_winding(mesh, first, i);

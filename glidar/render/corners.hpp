@@ -6,8 +6,8 @@
 
 namespace glidar {
 
-/// Twice the areas of the parts of a triangle around a point of its plane, signed along the normal:
-/// each is opposite to its corner. All are positive inside.
+/// Twice the areas of the three triangles between a point of a triangle's plane and its edges,
+/// signed along the normal. Each is opposite to its corner; inside, all are positive.
 struct CornerAreas {
   float at_0;
   float at_1;
@@ -15,8 +15,9 @@ struct CornerAreas {
   float reach_squared;  ///< to the farthest corner; an area is wrong by some roundings of it
 };
 
-/// The areas around the hit point of a lane. The corners are first taken relative to the point, in
-/// double, so that single precision suits the rest. Inlined, to be compiled for what its loop is.
+/// The areas around the hit point of a lane. Corners are first made relative to the point in
+/// double, so that single precision suffices afterwards. Inlined, so that it is vectorised with its
+/// loop.
 [[gnu::always_inline]] inline CornerAreas areas_around(const ExactHits& e, const CornerBlock& c,
                                                        unsigned i) {
   const double x = e.origin.x[i] + e.distance[i] * e.direction.x[i];

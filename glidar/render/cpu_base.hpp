@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// What renderers on the CPU have of their own, and those over the same scene may share.
+/// Thread pool, resolver and search, which CPU renderers over the same scene share.
 struct CpuBase {
   /// Throws Error unless the scene is valid.
   CpuBase(const Scene& scene, unsigned threads)

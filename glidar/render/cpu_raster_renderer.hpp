@@ -9,7 +9,7 @@
 namespace glidar {
 
 /// Rasterization on the CPU: pinhole cameras by raster/, scanners and cameras with lenses by
-/// scan_raster/. Others are refused. Each is built when it is first needed.
+/// scan_raster/. Throws Error for other beams. Each is built when it is first needed.
 std::unique_ptr<Renderer> make_cpu_raster_renderer(const Scene& scene,
                                                    const RendererOptions& options);
 

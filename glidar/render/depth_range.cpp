@@ -24,13 +24,13 @@ void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, dou
 }
 
 DepthRange tight_depth_range(double nearest_m, double farthest_m) {
-  // Single precision rounds a depth by 6e-8 of it, and places by as much of the farthest.
+  // Single precision rounds a depth by 6e-8 of it, and positions by 6e-8 of the farthest depth.
   constexpr double kRounding = 0x1p-22;
   constexpr double kNearestPart = 1e-7;  // of the farthest depth; what is nearer is rounding
-  const double hair = kRounding * (farthest_m - std::max(nearest_m, 0.0)) +
-                      0x1p-50 * (std::abs(farthest_m) + std::abs(nearest_m));
-  const double far_m = farthest_m + hair;
-  return {std::max(nearest_m - hair, kNearestPart * far_m), far_m};
+  const double margin = kRounding * (farthest_m - std::max(nearest_m, 0.0)) +
+                        0x1p-50 * (std::abs(farthest_m) + std::abs(nearest_m));
+  const double far_m = farthest_m + margin;
+  return {std::max(nearest_m - margin, kNearestPart * far_m), far_m};
 }
 
 }  // namespace glidar

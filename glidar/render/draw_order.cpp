@@ -56,7 +56,7 @@ std::vector<Key> sorted_keys(const Mesh& mesh, const std::vector<std::uint32_t>&
   keys.reserve(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
-    // Divided first: the sum of large ones would overflow.
+    // Divided first, because the sum of large coordinates would overflow.
     constexpr float kThird = 1.0F / 3.0F;
     const Eigen::Vector3f middle = kThird * mesh.positions_m[t[0]] +
                                    kThird * mesh.positions_m[t[1]] +
@@ -67,8 +67,8 @@ std::vector<Key> sorted_keys(const Mesh& mesh, const std::vector<std::uint32_t>&
   return keys;
 }
 
-/// Adds a triangle and those of its corners that are not there yet; `place_of` tells where each
-/// vertex of the mesh stands.
+/// Adds a triangle and those of its corners that are missing; `new_index` has the new index of each
+/// vertex of the mesh.
 void add(const Mesh& mesh, const Key& key, std::vector<std::uint32_t>& new_index,
          DrawOrder& order) {
   const auto next = static_cast<std::uint32_t>(order.drawn.size());

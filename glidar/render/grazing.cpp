@@ -10,8 +10,8 @@
 namespace glidar {
 namespace {
 
-/// The plane of a triangle without area, which a beam meets where rounding gives it some: through
-/// its longest edge, across the beam as far as that allows.
+/// Sets the plane of a triangle without area, which a beam hits only by rounding: it contains the
+/// longest edge and faces the beam as far as possible.
 void set_facing_plane(unsigned lane, const HitTriangle& triangle, ExactHits& exact) {
   const auto vector = [](const std::array<float, 3>& p) {
     return Eigen::Vector3d(double{p[0]}, double{p[1]}, double{p[2]});
@@ -30,14 +30,14 @@ void set_facing_plane(unsigned lane, const HitTriangle& triangle, ExactHits& exa
 
 constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
 
-/// 0 where the plane is good enough for a lane, else 1. A number, so that loops become vectors.
+/// 0 where the plane is accurate enough for a lane, else 1. An integer, so that loops vectorise.
 [[gnu::always_inline]] inline unsigned is_uncertain(const ExactHits& exact, unsigned lane) {
   const auto is_steep = static_cast<unsigned>(std::abs(exact.cosine[lane]) > kGrazing);
   const auto is_ahead = static_cast<unsigned>(exact.distance[lane] > 0.0);
   return (is_steep & is_ahead) ^ 1U;
 }
 
-/// True when the planes are good enough for all lanes.
+/// True when the planes are accurate enough for all lanes.
 GLIDAR_SIMD bool are_all_certain(const ExactHits& exact) {
   unsigned unsure = 0;
   for (unsigned i = 0; i < kLanes; ++i) unsure |= is_uncertain(exact, i);

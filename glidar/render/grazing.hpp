@@ -6,10 +6,10 @@
 
 namespace glidar {
 
-/// Sets the distances of a block's hits to those of the hit rule where the plane does not do: where
-/// it is met almost edge-on, or right before the beam's start, rounding decides where it is met.
-/// The rule's distance is always between those of the triangle's corners. A triangle without area,
-/// which a beam meets where rounding gives it some, gets a plane across the beam.
+/// Replaces the distances of a block's hits by those of the hit rule where the plane is not
+/// accurate enough: at grazing incidence, and close to the beam's start. The rule's distance is
+/// always between those of the triangle's corners. A triangle without area, which a beam hits only
+/// by rounding, gets a plane that faces the beam.
 void intersect_grazing(const Resolver& resolver, const HitBlock& block, ExactHits& exact);
 
 }  // namespace glidar

@@ -9,8 +9,8 @@
 namespace glidar {
 namespace {
 
-/// Takes in what a box, relative to the mesh's origin, covers of the plane at depth 1; false when
-/// not all of it is clearly in front.
+/// Extends the covered part of the plane at depth 1 by a box (relative to the mesh's origin); false
+/// when not all of the box is clearly in front of the sensor.
 bool extend(Eigen::AlignedBox2d& covered, const InstanceView& view,
             const Eigen::AlignedBox3d& box) {
   constexpr double kMinDepth = 1e-3;  // of the distance: up to 89.9 degrees from the boresight
@@ -25,7 +25,7 @@ bool extend(Eigen::AlignedBox2d& covered, const InstanceView& view,
   return true;
 }
 
-/// The places in a rising row that lie from `low` to `high`, and one more on each side.
+/// Indices of a sorted row whose values are in [low, high], and one more on each side.
 std::pair<std::uint32_t, std::uint32_t> places(const std::vector<double>& row, double low,
                                                double high) {
   const auto first = std::lower_bound(row.begin(), row.end(), low) - row.begin();

@@ -25,9 +25,9 @@ struct GridWindow {
   }
 };
 
-/// The part of a pinhole's grid outside of which nothing is hit: around the corners of each
-/// present instance's box (one per mesh, see bounds()), as the sensor sees them, and a beam more on
-/// each side. All of it when a corner does not lie in front of the sensor, and for other beams.
+/// The part of a pinhole's grid that may hit something: the projection of all enabled instances'
+/// boxes (one per mesh, see bounds()) and one beam more on each side. The whole grid when a corner
+/// is not in front of the sensor, and for other beams.
 GridWindow visible_window(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
                           std::span<const std::uint8_t> present, const PlanePoints& points);
 

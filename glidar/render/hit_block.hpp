@@ -10,7 +10,7 @@
 
 namespace glidar {
 
-/// Up to kLanes hits: who was hit by which beam. Only lanes of the mask count.
+/// Up to kLanes hits: beam, instance and triangle. Only lanes of the mask count.
 struct HitBlock {
   std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
   std::array<std::size_t, kLanes> beam;

@@ -13,32 +13,32 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kColumnsPerStep = 128;  // columns that are looked through at once
+constexpr std::uint32_t kColumnsPerStep = 128;  // columns that are scanned at once
 
-/// Up to kLanes hits on their way.
+/// Up to kLanes hits in progress.
 struct PixelBatch {
   HitBlock block;
   BeamBlock beams;
   ExactHits exact;
   Lanes<double> x;  ///< where the beams cross the plane at depth 1
   Lanes<double> y;
-  std::array<std::uint32_t, kLanes> triangle_id;  ///< drawn there
-  std::uint32_t certain = 0;                      ///< bit i: lane i meets its triangle
-  std::uint32_t contested = 0;                    ///< bit i: lane i may meet another one before
+  std::array<std::uint32_t, kLanes> triangle_id;  ///< of the pixel
+  std::uint32_t certain = 0;                      ///< bit i: lane i certainly hits its triangle
+  std::uint32_t contested = 0;                    ///< bit i: lane i may hit another triangle first
   unsigned used = 0;
 };
 
-/// Three are under way at a time, so that what the later steps of one read from memory (planes and
-/// corners of its triangles) comes while the next are collected.
+/// Three batches are in progress at a time: data that later steps of one need (planes and corners
+/// of its triangles) are prefetched while the next is collected.
 struct PixelBatchRing {
   std::array<PixelBatch, 3> batches;
-  std::size_t started = 0;  ///< the last one is being filled
+  std::size_t started = 0;  ///< the last of them is being filled
 
   PixelBatch& filling() { return batches[started % batches.size()]; }
   PixelBatch& before() { return batches[(started + batches.size() - 1) % batches.size()]; }
 };
 
-/// The triangle to tell for one found, see Resolver::canonical_primitive.
+/// The primitive to report, see Resolver::canonical_primitive.
 std::uint32_t reported_primitive(const HitWriter& w, const PrimitiveRef& ref) {
   return w.request.cull_back_faces ? ref.primitive
                                    : w.resolver.canonical_primitive(ref.instance, ref.primitive);
@@ -50,7 +50,7 @@ bool is_close(const HitWriter& w, const PrimitiveRef& ref) {
                                      w.resolver.canonical_primitive(ref.instance, ref.primitive));
 }
 
-/// Puts these lanes right by the hit rule; true when that changed the block.
+/// Re-tests these lanes by the hit rule; true when that changed the block.
 bool recast_lanes(const HitWriter& w, std::uint32_t lanes, const BeamBlock& beams,
                   HitBlock& block) {
   HitBlock exact = block;
@@ -73,7 +73,7 @@ bool recast_lanes(const HitWriter& w, std::uint32_t lanes, const BeamBlock& beam
   return changed;
 }
 
-/// A bit for every lane whose hit lies in front of the beam's start.
+/// A bit for every lane whose hit is in front of the beam's start.
 std::uint32_t ahead(const ExactHits& exact) {
   std::uint32_t mask = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -82,7 +82,7 @@ std::uint32_t ahead(const ExactHits& exact) {
   return mask;
 }
 
-/// Decides between surfaces of several instances that lie closer together than the picture shows.
+/// Re-tests hits where surfaces of several instances are too close for the rasterizer.
 void resolve_overlaps(const HitWriter& w, PixelBatch& batch) {
   const std::uint32_t lanes = w.overlaps.lanes_near(batch.block, batch.beams, batch.exact);
   if (lanes != 0 && recast_lanes(w, lanes, batch.beams, batch.block) && batch.block.mask != 0) {
@@ -115,7 +115,7 @@ void finish(const HitWriter& w, PixelBatch& batch) {
   w.resolver.write(w.request.beams, w.request.fields, block, batch.exact, w.hits);
 }
 
-/// What the numbers of a block tell.
+/// Sets instance and primitive of the hits from the triangle ids.
 void decode_triangles(const HitWriter& w, PixelBatch& batch) {
   batch.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << batch.used) - 1);
   batch.certain = 0;
@@ -133,24 +133,25 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
   }
 }
 
-/// Looks the collected hits up, asks for the corners of those before, and finishes those before
-/// them.
+/// Decodes the collected batch, prefetches the corners of the batch before, and finishes the
+/// oldest.
 void advance(const HitWriter& w, PixelBatchRing& ring) {
   decode_triangles(w, ring.filling());
   PixelBatch& before = ring.before();
   HitFieldMask fields = w.request.fields;
-  // For their doubts.
+  // To find its uncertain lanes.
   fields.barycentrics = fields.barycentrics || (before.block.mask & ~before.certain) != 0;
   w.resolver.prefetch_corners(before.block, fields);
   ++ring.started;
   finish(w, ring.filling());
 }
 
-/// Lists the columns of a piece of a row where something was drawn; returns how many.
+/// Lists the non-empty columns in a section of a row; returns their number.
 std::uint32_t list_filled(const std::uint32_t* triangle_ids, std::uint32_t begin, std::uint32_t end,
                           std::array<std::uint32_t, kColumnsPerStep>& cols) {
   std::uint32_t count = 0;
-  for (std::uint32_t col = begin; col < end; ++col) {  // a branch would often be mistaken
+  for (std::uint32_t col = begin; col < end;
+       ++col) {  // without a branch, which would often be mispredicted
     cols[count] = col;
     count += triangle_ids[col] != kNoTriangleId ? 1U : 0U;
   }
@@ -168,7 +169,7 @@ void collect(const HitWriter& w, std::uint32_t row, std::uint32_t col, std::uint
   batch.block.beam[lane] = std::size_t{image_row} * w.request.beams.cols + image_col;
 }
 
-/// The beams of a row of the part.
+/// The beams of a row of `written`.
 BeamRange beams_of(const HitWriter& w, std::uint32_t row) {
   const std::size_t first =
       std::size_t{w.written.first_row + row} * w.request.beams.cols + w.written.first_col;
@@ -185,7 +186,7 @@ void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchRing& ring) {
   for (std::uint32_t begin = 0; begin < w.written.cols; begin += kColumnsPerStep) {
     const std::uint32_t end = std::min(begin + kColumnsPerStep, w.written.cols);
     const std::uint32_t count = list_filled(triangle_ids, begin, end, cols);
-    // In long strokes, hits being written over them; only where all are hits there is no need.
+    // Misses are written in long runs, and hits over them.
     if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);
     PixelBatch* batch = &ring.filling();
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -197,8 +198,8 @@ void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchRing& ring) {
   }
 }
 
-/// Writes the hits that are known without the picture over what it shows. The beams in the range
-/// that belong to columns beside the part are not known.
+/// Overwrites pixels by the hits of cast beams. Beams of the range in columns outside of `written`
+/// are not among them.
 void write_cast_hits(const HitWriter& w, const BeamRange& beams) {
   const auto first =
       std::lower_bound(w.cast_hits.begin(), w.cast_hits.end(), beams.begin,

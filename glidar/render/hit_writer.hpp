@@ -17,40 +17,40 @@
 
 namespace glidar {
 
-/// What a beam meets.
+/// The result of casting one beam; instance kInvalidId: a miss.
 struct CastHit {
   std::size_t beam;
   PrimitiveRef primitive;
 };
 
-/// What turns a picture of triangle numbers, or a part of one, into hits.
+/// Inputs for converting a visibility buffer (triangle ids per pixel), or a tile of one, into hits.
 struct HitWriter {
   const CastRequest& request;
   const Resolver& resolver;
   const TriangleIds& triangles;
   const PlanePoints& points;
-  PixelRect drawn;                              ///< the pixels whose numbers are known
-  std::span<const std::uint32_t> triangle_ids;  ///< of these, row by row
-  PixelRect written;                            ///< those of them whose hits are written
+  PixelRect drawn;                              ///< the pixels that triangle_ids contains
+  std::span<const std::uint32_t> triangle_ids;  ///< of `drawn`, row by row
+  PixelRect written;                            ///< those of `drawn` whose hits are written
   Hits& hits;
-  const rays::BeamSearch& search;  ///< for beams in doubt
+  const rays::BeamSearch& search;  ///< casts uncertain beams
   const Overlaps& overlaps;
-  /// Beams that hit its triangles are cast, because the picture may show either sheet; nullptr:
-  /// none.
+  /// Beams that hit these triangles are cast, because the rasterizer may show the wrong one;
+  /// nullptr: none.
   const CloseTriangles* close_triangles = nullptr;
-  /// Beams whose hits are known already, whatever was drawn, in rising order.
+  /// Beams that were cast, in rising order: their hits replace the drawn ones.
   std::span<const CastHit> cast_hits = {};
 };
 
-/// The planes that hug all instances that are there for a cast; the resolver has its poses. One
+/// Tight near and far planes around all enabled instances; the resolver has the cast's poses. One
 /// box per mesh, relative to its origin.
 DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
                      std::span<const Eigen::AlignedBox3d> mesh_boxes);
 
-/// Writes the hits of rows [begin, end) of the part and tells the request of them.
+/// Writes the hits of rows [begin, end) of `written` and reports them to the request.
 void write_rows(const HitWriter& writer, std::uint32_t begin, std::uint32_t end);
 
-/// Writes the hits of the whole part, sharing rows out among threads.
+/// Writes all hits of `written`, distributing rows among threads.
 void write_image(const HitWriter& writer, ThreadPool& thread_pool, ProgressCounter& count);
 
 }  // namespace glidar

@@ -19,15 +19,15 @@ namespace glidar {
 /// A tree of bounding boxes over the instances of one cast, eight boxes to a node. It finds the
 /// instances near a point without a test of each.
 ///
-/// The tree has its own frame, in metres: its origin is the sensor's, and its axes are those of the
-/// largest instance. So boxes on a ground stay small, however sensor and ground are turned.
+/// The tree has its own frame, in metres: the sensor's origin and the axes of the largest instance.
+/// Boxes of objects that are aligned with it therefore stay small.
 class InstanceTree {
  public:
   using Box = Eigen::AlignedBox3d;
 
-  /// Builds the tree over the instances that are present. The resolver has the cast's poses;
-  /// `mesh_boxes` are relative to the origins of the meshes. Every box is grown by what single
-  /// precision may be wrong by there.
+  /// Builds the tree over the enabled instances. The resolver has the cast's poses; `mesh_boxes`
+  /// are relative to the origins of the meshes. Boxes are grown by the rounding of single
+  /// precision.
   void build(const CastRequest& request, const Resolver& resolver, std::span<const Box> mesh_boxes);
 
   [[nodiscard]] const Eigen::Matrix3d& tree_from_sensor() const { return tree_from_sensor_; }
@@ -47,7 +47,7 @@ class InstanceTree {
 
  private:
   static constexpr std::size_t kFan = 8;
-  static constexpr std::size_t kMaxLevels = 12;  // for all numbers of 32 bits
+  static constexpr std::size_t kMaxLevels = 12;  // for 2^32 instances
 
   void sort_instances();
   void build_nodes();
@@ -68,9 +68,9 @@ class InstanceTree {
 
   Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();
   bool has_overlaps_ = false;
-  std::vector<Box> boxes_;   ///< per instance; empty: not present
+  std::vector<Box> boxes_;   ///< per instance; empty: not enabled
   std::vector<Box> shared_;  ///< per instance
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;  ///< place on a curve, instance
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;  ///< Morton code, instance
   std::vector<Box> nodes_;                                      ///< level by level from the leaves
   std::array<std::size_t, kMaxLevels> level_begin_ = {};
   std::size_t level_count_ = 0;

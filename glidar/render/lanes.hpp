@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// How many beams are worked on together.
+/// How many beams are processed together.
 inline constexpr unsigned kLanes = 16;
 
 /// One number per lane.

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kTileShift = 2;  // tiles of 4x4 texels
 constexpr std::uint32_t kTileMask = (1U << kTileShift) - 1U;
 
-/// Index of a texel among tiles that stand row by row.
+/// Index of a texel; tiles are stored row by row.
 inline std::uint32_t tiled_index(std::uint32_t row, std::uint32_t column,
                                  std::uint32_t tile_columns) {
   const std::uint32_t tile = (row >> kTileShift) * tile_columns + (column >> kTileShift);
@@ -37,21 +37,21 @@ struct Axis {
         period(wrap == Wrap::mirror ? 2.0 * size : size),
         clamps(wrap == Wrap::clamp) {}
 
-  /// The texel index that a whole number stands for. All numbers are below 2^53, so that all but
-  /// the division is exact; the quotient is wrong by one at most.
+  /// The texel of an integer coordinate. All numbers are below 2^53, so all operations except the
+  /// division are exact; the quotient is wrong by at most one.
   [[nodiscard]] inline std::int32_t wrapped(double index) const {
     double rest = index - std::floor(index / period) * period;
     rest = rest < 0.0 ? rest + period : rest;
     rest = rest >= period ? rest - period : rest;
     rest = rest >= size ? period - 1.0 - rest : rest;
     const double not_below = index > 0.0 ? index : 0.0;
-    const double held = not_below < size - 1.0 ? not_below : size - 1.0;
-    return static_cast<std::int32_t>(clamps ? held : rest);
+    const double clamped = not_below < size - 1.0 ? not_below : size - 1.0;
+    return static_cast<std::int32_t>(clamps ? clamped : rest);
   }
 };
 
 /// Texel coordinates, see sample(): whole and fractional parts.
-struct Place {
+struct TexelPosition {
   Lanes<double> first;
   Lanes<float> rest;
 };
@@ -65,20 +65,21 @@ struct Transform {
   [[nodiscard]] inline float of(float u, float v) const { return at_u * u + at_v * v + offset; }
 };
 
-inline double held(double x) {
+inline double clamped(double x) {
   constexpr double kFar = 1e15;  // as sample()
   const double above = x > -kFar ? x : -kFar;
   return above < kFar ? above : kFar;
 }
 
-/// Places along an axis; `at`: finite coordinates, 1 at the end of the texture.
-GLIDAR_SIMD void find_places(const Lanes<double>& at, double size, bool is_nearest, Place& place) {
+/// Splits coordinates along an axis; `at`: finite, 1 at the end of the texture.
+GLIDAR_SIMD void find_texels(const Lanes<double>& at, double size, bool is_nearest,
+                             TexelPosition& position) {
   const double half = is_nearest ? 0.0 : 0.5;
   for (unsigned i = 0; i < kLanes; ++i) {
-    const double x = held(at[i] * size) - half;
+    const double x = clamped(at[i] * size) - half;
     const double first = std::floor(x);
-    place.first[i] = first;
-    place.rest[i] = is_nearest ? 0.0F : static_cast<float>(x - first);
+    position.first[i] = first;
+    position.rest[i] = is_nearest ? 0.0F : static_cast<float>(x - first);
   }
 }
 
@@ -87,8 +88,8 @@ GLIDAR_SIMD void wrap(const Axis& axis, const Lanes<double>& first, double next,
   for (unsigned i = 0; i < kLanes; ++i) index[i] = axis.wrapped(first[i] + next);
 }
 
-/// Texture coordinates in the texture's own axes, v downwards. Those that are not finite become 0
-/// and are marked.
+/// Texture coordinates after TextureUse's transform, v downwards. Non-finite ones become 0 and are
+/// marked.
 GLIDAR_SIMD void transform(const TextureUse& use, const Lanes<float>& u, const Lanes<float>& v,
                            Lanes<double>& x, Lanes<double>& y, Lanes<std::int32_t>& is_finite) {
   const Transform to_x{use.uv_scale_rotate(0, 0), use.uv_scale_rotate(0, 1), use.uv_offset.x()};
@@ -162,10 +163,10 @@ void LookupTexture::sample(const TextureUse& use, const Lanes<float>& u, const L
   Lanes<double> y;
   Lanes<std::int32_t> is_finite;
   transform(use, u, v, x, y, is_finite);
-  Place across;
-  Place down;
-  find_places(x, columns.size, is_nearest, across);
-  find_places(y, rows.size, is_nearest, down);
+  TexelPosition across;
+  TexelPosition down;
+  find_texels(x, columns.size, is_nearest, across);
+  find_texels(y, rows.size, is_nearest, down);
   Lanes<std::int32_t> left;
   Lanes<std::int32_t> right;
   Lanes<std::int32_t> row;

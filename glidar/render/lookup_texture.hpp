@@ -10,9 +10,9 @@
 
 namespace glidar {
 
-/// The colours of a texture in a layout for look-ups: four bytes per texel, in tiles of 4x4 texels,
-/// which are as large as a cache line. So the four texels around a place, and those of neighbouring
-/// hits, are mostly close together in memory.
+/// The colours of a texture, stored for fast access: four bytes per texel, in tiles of 4x4
+/// texels, one per cache line. The four texels around a point, and those of neighbouring hits, are
+/// then mostly close together in memory.
 class LookupTexture {
  public:
   LookupTexture() = default;
@@ -20,7 +20,7 @@ class LookupTexture {
 
   [[nodiscard]] bool is_empty() const { return texels_.empty(); }
 
-  /// The rgb at sixteen texture coordinates, to the bit as sample() returns it.
+  /// The rgb at sixteen texture coordinates, bit-identical to sample().
   void sample(const TextureUse& use, const Lanes<float>& u, const Lanes<float>& v,
               Lanes3<float>& rgb) const;
 

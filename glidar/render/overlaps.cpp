@@ -10,11 +10,11 @@
 namespace glidar {
 namespace {
 
-/// Single precision separates two surfaces only when they are farther apart than this part of
-/// their distance and size: 16 roundings.
+/// Single precision separates two surfaces only when their distance exceeds this fraction of their
+/// range and size: 16 roundings.
 constexpr double kSingleRounding = 0x1p-20;
 
-/// Where a block's beams hit, in the frame of a tree over the instances.
+/// The hit points of a block, in the frame of a tree over the instances.
 GLIDAR_SIMD void find_points(const BeamBlock& beams, const Lanes<double>& range_m,
                              const Eigen::Matrix3d& tree_from_sensor, Lanes3<double>& points) {
   Lanes3<double> p;
@@ -45,7 +45,7 @@ GLIDAR_SIMD std::uint32_t lanes_in(const Eigen::AlignedBox3d& box, const Lanes3<
   return mask;
 }
 
-/// The lesser and the greater of two halves, lane by lane.
+/// Minimum and maximum of two halves, lane by lane.
 template <unsigned kHalf>
 inline void fold(Lanes<double>& lows, Lanes<double>& highs) {
   for (unsigned i = 0; i < kHalf; ++i) {
@@ -104,25 +104,25 @@ void Overlaps::prepare(const CastRequest& request) {
   instances_.build(request, resolver_, boxes_);
 }
 
-/// Which of these lanes' points are in the box of one of an instance's triangles. `around` holds
-/// them all, in the tree's frame: most blocks are far from all triangles.
+/// The lanes whose points are in the box of one of the instance's triangles. `around` contains all
+/// points, in the tree's frame; it rejects most blocks at once.
 std::uint32_t Overlaps::lanes_at(std::uint32_t instance, std::uint32_t lanes,
                                  const Eigen::AlignedBox3d& around,
                                  const Lanes3<double>& in_tree) const {
   const InstanceView& view = resolver_.view(instance);
   const rays::MeshTree& tree = trees_.of_instance(instance);
-  const Eigen::Matrix3d turn =
+  const Eigen::Matrix3d rotation =
       view.object_from_sensor * instances_.tree_from_sensor().transpose() / view.scale;
-  const Eigen::Vector3d middle = turn * around.center();
-  const Eigen::Vector3d half = turn.cwiseAbs() * (0.5 * around.sizes());
-  const double room = kSingleRounding * (middle.norm() + half.norm() + trees_.reach(instance));
-  const Eigen::Vector3d place = view.sensor_in_object + middle;
-  if (!has_triangle_near(tree, {place - half, place + half}, room)) return 0;
+  const Eigen::Vector3d middle = rotation * around.center();
+  const Eigen::Vector3d half = rotation.cwiseAbs() * (0.5 * around.sizes());
+  const double margin = kSingleRounding * (middle.norm() + half.norm() + trees_.reach(instance));
+  const Eigen::Vector3d position = view.sensor_in_object + middle;
+  if (!has_triangle_near(tree, {position - half, position + half}, margin)) return 0;
   std::uint32_t found = 0;
   for (; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
-    const Eigen::Vector3d point = view.sensor_in_object + turn * in_tree.get(lane);
-    found |= static_cast<std::uint32_t>(has_triangle_near(tree, {point, point}, room)) << lane;
+    const Eigen::Vector3d point = view.sensor_in_object + rotation * in_tree.get(lane);
+    found |= static_cast<std::uint32_t>(has_triangle_near(tree, {point, point}, margin)) << lane;
   }
   return found;
 }

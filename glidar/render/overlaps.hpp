@@ -10,20 +10,20 @@
 
 namespace glidar {
 
-/// Finds hits in whose place another instance has a triangle too: a picture does not show which of
-/// two surfaces is nearer when they lie closer together than it resolves.
+/// Finds hits where another instance has a triangle too: a rasterizer cannot decide which of two
+/// surfaces is nearer when the gap between them is below its resolution.
 class Overlaps {
  public:
   /// Both must outlive this.
   Overlaps(const Resolver& resolver, const rays::SceneTrees& trees);
 
-  /// Takes the instances of the next cast; the resolver and the trees have its poses.
+  /// Prepares the next cast; the resolver and the trees have its poses.
   void prepare(const CastRequest& request);
 
   /// True when boxes of instances overlap.
   [[nodiscard]] bool has_any() const { return instances_.has_overlaps(); }
 
-  /// A bit for every hit lane in whose place another instance has a triangle's box.
+  /// A bit for every hit lane whose point is in the box of another instance's triangle.
   [[nodiscard]] std::uint32_t lanes_near(const HitBlock& block, const BeamBlock& beams,
                                          const ExactHits& exact) const;
 

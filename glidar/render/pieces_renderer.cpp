@@ -27,7 +27,7 @@ class PiecesScene {
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Scene& whole() const { return whole_; }
 
-  /// What a cast needs of its request's arrays, one entry per piece.
+  /// Per-instance arrays of a request, one entry per piece.
   struct Arrays {
     std::vector<Pose> poses;
     std::vector<std::uint8_t> instance_enabled;
@@ -51,7 +51,7 @@ class PiecesScene {
     return pieces;
   }
 
-  /// From pieces to the instances and triangles of the whole scene.
+  /// Replaces pieces and their triangles by those of the whole scene.
   void rename(BeamRange range, Hits& hits) const {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const std::uint32_t piece = hits.instance[i];
@@ -147,8 +147,8 @@ class PiecesCamera final : public Woods2016Camera {
 
   void draw(const CastRequest& request, const PhongHeadlight& light,
             const std::optional<Woods2016DepthPlanes>& planes,
-            Woods2016Framebuffer& picture) override {
-    camera_->draw(pieces_.for_pieces(request, arrays_), light, planes, picture);
+            Woods2016Framebuffer& framebuffer) override {
+    camera_->draw(pieces_.for_pieces(request, arrays_), light, planes, framebuffer);
   }
 
  private:

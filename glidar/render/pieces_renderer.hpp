@@ -16,12 +16,12 @@ bool has_pieces(const Scene& scene);
 using MakeRenderer = std::function<std::unique_ptr<Renderer>(const Scene&)>;
 using MakeWoods2016Camera = std::function<std::unique_ptr<Woods2016Camera>(const Scene&)>;
 
-/// Renderers know meshes of one origin only. This one gives `make` a copy of the scene in which
-/// every piece of a mesh is an instance, and turns what is found there back into the instances and
+/// Renderers support meshes with one origin only. This one calls `make` with a copy of the scene in
+/// which every piece of a mesh is an instance, and converts hits back to the instances and
 /// triangles of the scene. Throws Error unless the scene is valid.
 std::unique_ptr<Renderer> make_pieces_renderer(const Scene& scene, const MakeRenderer& make);
 
-/// The same for a paper camera, whose pictures name no instances.
+/// The same for the camera of the quantized framebuffer, which stores no instances.
 std::unique_ptr<Woods2016Camera> make_pieces_camera(const Scene& scene,
                                                     const MakeWoods2016Camera& make);
 

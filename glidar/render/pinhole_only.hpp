@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// Why a rasterizer cannot draw these beams; nullptr: it can.
+/// Why a rasterizer does not support these beams; nullptr: it does.
 inline const char* rasterizer_limitation(const Beams& beams) {
   if (!beams.pinhole) return "beams that are not a pinhole's straight grid";
   if (!beams.origins_m.empty()) return "beams with origins of their own";
@@ -19,7 +19,7 @@ inline const char* rasterizer_limitation(const Beams& beams) {
   return nullptr;
 }
 
-/// Throws Error, naming the renderer that takes them, for beams that a rasterizer cannot draw.
+/// Throws Error, naming the renderer, for beams that a rasterizer does not support.
 inline void check_pinhole(const Beams& beams, const char* renderer) {
   const char* found = rasterizer_limitation(beams);
   if (found == nullptr) return;

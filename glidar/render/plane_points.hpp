@@ -9,8 +9,8 @@
 
 namespace glidar {
 
-/// Where the columns and rows of a pinhole cross the plane at depth 1; empty for other beams. To
-/// work directions out from these is quicker than to read them.
+/// Normalised image coordinates of a pinhole's columns and rows (on the plane at depth 1); empty
+/// for other beams. Computing directions from them is faster than reading the directions.
 struct PlanePoints {
   std::vector<double> x;  ///< per column
   std::vector<double> y;  ///< per row

@@ -7,7 +7,7 @@
 namespace glidar {
 namespace {
 
-/// The weights of corners 1 and 2 where a beam meets a triangle's plane.
+/// Barycentric weights of corners 1 and 2 at a point of the triangle's plane.
 Eigen::Vector2f weights(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& point) {
   const Triangle& t = mesh.triangles[triangle];
   const Eigen::Vector3d v0 = mesh.positions_m[t[0]].cast<double>();

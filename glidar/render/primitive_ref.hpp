@@ -18,13 +18,13 @@ struct PrimitiveRef {
   bool operator==(const PrimitiveRef&) const = default;
 };
 
-/// The order of triangles in a scene: by instance, then by their index in its mesh.
+/// Lower instances come first, then lower triangles.
 inline bool is_lower(const PrimitiveRef& a, const PrimitiveRef& b) {
   return std::tie(a.instance, a.primitive) < std::tie(b.instance, b.primitive);
 }
 
-/// False where a triangle lets a beam through: by its side when back faces are culled, or by a hole
-/// of its alpha mask.
+/// False where a triangle lets a beam pass: it is a culled back face, or its alpha mask is
+/// transparent there.
 bool blocks_beam(const Resolver& resolver, const Beams& beams, std::size_t beam,
                  bool cull_back_faces, const PrimitiveRef& candidate);
 

@@ -45,7 +45,7 @@ bool is_in_reach(const Pose& world_from_source) {
   return position.cwiseAbs().maxCoeff() <= kMaxCoordinate_m && position.allFinite();
 }
 
-/// Of instances that are where the cast says.
+/// Enabled instances must be within range.
 void check_poses(const CastRequest& request, const Scene& scene) {
   for (std::size_t i = 0; i < request.world_from_instance.size(); ++i) {
     if (!is_enabled(request, i) || is_in_reach(request.world_from_instance[i])) continue;
@@ -66,15 +66,15 @@ void check(const CastRequest& request, const Scene& scene) {
   };
   const Beams& beams = request.beams;
   require(beams.directions.size() == std::size_t{beams.rows} * beams.cols,
-          "the beams are not as many as their rows and columns say", "rows x cols directions");
+          "the number of beams differs from rows x cols", "rows x cols directions");
   require(beams.origins_m.empty() || beams.origins_m.size() == beams.size(),
-          "origins of other beams", "one origin per beam, or none");
+          "a number of origins that differs from the beams", "one origin per beam, or none");
   require(request.world_from_instance.empty() ||
               request.world_from_instance.size() == scene.instances.size(),
-          "poses of other instances", "one pose per instance, or none");
+          "a number of poses that differs from the instances", "one pose per instance, or none");
   require(
       request.instance_enabled.empty() || request.instance_enabled.size() == scene.instances.size(),
-      "presence of other instances", "one entry per instance, or none");
+      "enabled flags for another number of instances", "one entry per instance, or none");
   require(is_in_reach(request.world_from_sensor), "the sensor is out of reach",
           "up to 1e15 m from the world's origin", "move the world's origin nearer to it");
   check_poses(request, scene);

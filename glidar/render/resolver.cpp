@@ -4,6 +4,7 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/math/simd.hpp>
+#include <glidar/render/coincident_triangles.hpp>
 #include <glidar/render/grazing.hpp>
 #include <glidar/render/shading.hpp>
 
@@ -14,7 +15,7 @@
 namespace glidar {
 namespace {
 
-/// The lanes that hit another instance than this.
+/// The lanes that did not hit this instance.
 std::uint32_t lanes_not_on(const HitBlock& block, std::uint32_t instance) {
   std::uint32_t others = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -27,7 +28,7 @@ bool is_one_instance(const HitBlock& block) {
   return lanes_not_on(block, block.instance[0]) == 0;
 }
 
-/// Takes the rays of the lanes that hit the instance.
+/// Copies the rays of the lanes that hit the instance.
 GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const ExactHits& seen,
                            ExactHits& exact) {
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -41,7 +42,7 @@ GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const 
   }
 }
 
-/// The same plane for all lanes.
+/// Sets the same plane for all lanes.
 void repeat_plane(const TrianglePlane& plane, ExactHits& exact) {
   exact.normal.x.at.fill(plane.normal.x());
   exact.normal.y.at.fill(plane.normal.y());
@@ -62,7 +63,7 @@ GLIDAR_SIMD void intersect_planes(ExactHits& e) {
   }
 }
 
-/// Front normals of one instance into the sensor's frame, turned towards the sensor.
+/// Rotates front normals of one instance into the sensor's frame and turns them towards the sensor.
 GLIDAR_SIMD void orient_to_sensor(const Eigen::Matrix3d& sensor_from_object,
                                   const Lanes3<double>& in, const Lanes<double>& cosine,
                                   Lanes3<float>& out) {
@@ -96,8 +97,8 @@ InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& wor
                      const Pose& world_from_sensor) {
   using Wide = Eigen::Matrix<long double, 3, 1>;
   const Eigen::Matrix3d object_from_world = world_from_object.linear().transpose();
-  // The differences of far-away positions first, and in extended precision: a mesh whose vertices
-  // lie 1000 km from its zero would lose 1e-10 m when that offset is rotated in double.
+  // Positions are subtracted first, in extended precision: a mesh whose vertices are 1000 km from
+  // its origin would lose 1e-10 m if that offset were rotated in double.
   const Wide offset = world_from_sensor.translation().cast<long double>() -
                       world_from_object.translation().cast<long double>();
   const Wide origin =
@@ -133,7 +134,7 @@ GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes
   if (!beams.has_origins) return;
   Lanes3<double> offset_m;
   rotate(view.object_from_sensor, beams.origin_m, offset_m);
-  if (view.scale != 1.0) {  // divisions take as long as all the rest
+  if (view.scale != 1.0) {  // divisions take half of the time
     for (unsigned i = 0; i < kLanes; ++i) offset_m.x[i] /= view.scale;
     for (unsigned i = 0; i < kLanes; ++i) offset_m.y[i] /= view.scale;
     for (unsigned i = 0; i < kLanes; ++i) offset_m.z[i] /= view.scale;
@@ -151,14 +152,14 @@ Resolver::Resolver(const Scene& scene) : scene_(scene), colours_(scene) {
     distinct_.push_back(distinct_triangles(mesh, first_coincident_.back()));
   }
   for (const Instance& instance : scene.instances) {
-    if (has_mask(scene, instance)) distinct_[instance.mesh].clear();  // holes of copies may differ
+    if (has_mask(scene, instance)) distinct_[instance.mesh].clear();  // masks of copies may differ
   }
   instances_.reserve(scene.instances.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
     const std::vector<std::uint32_t>& first_coincident = first_coincident_[instance.mesh];
-    // With a mask, twins may differ in their holes.
+    // With alpha masks, coincident triangles may differ in transparency.
     const bool has_duplicates = !first_coincident.empty() && !has_mask(scene, instance);
     instances_.push_back(
         {.mesh = &mesh,
@@ -285,7 +286,7 @@ void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners
     const Triangle& triangle = of.triangles[block.primitive[i]];
     corners.position_m.set(i, of.positions_m, triangle);
     if (!with_normals) continue;
-    // Without normals there is no length either: then the flat normal is taken.
+    // Zero normals have no length, so the flat normal is used.
     static const Eigen::Vector3f kNone = Eigen::Vector3f::Zero();
     corners.normal.set(i, of.normals == nullptr ? &kNone : of.normals,
                        of.normals == nullptr ? Triangle{} : triangle);

@@ -16,24 +16,13 @@
 
 namespace glidar {
 
-/// For meshes with triangles that lie on each other, corner on corner (a sheet modelled twice): per
-/// triangle the first of its kind, so that every renderer tells the same one. Empty when all
-/// differ.
-std::vector<std::uint32_t> find_first_coincident(const Mesh& mesh);
-
-/// The triangles of a mesh without copies: those that an earlier triangle equals corner on corner
-/// and in its sense of rotation are left out. Rising indices; empty when there are no copies.
-/// `firsts`: find_first_coincident(mesh).
-std::vector<std::uint32_t> distinct_triangles(const Mesh& mesh,
-                                              const std::vector<std::uint32_t>& firsts);
-
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
 
-/// True when some of the fields follow from where in its triangle a beam hits.
+/// True when some of the fields depend on the position of a hit within its triangle.
 bool needs_corners(const HitFieldMask& fields);
 
-/// The sensor as one instance sees it: object units, relative to the mesh's origin.
+/// The sensor in the frame of an instance: object units, relative to the mesh's origin.
 struct InstanceView {
   Eigen::Matrix3d object_from_sensor;  ///< rotation
   Eigen::Vector3d sensor_in_object;    ///< the sensor's origin
@@ -59,14 +48,14 @@ inline double distance_to(const TrianglePlane& plane, const ObjectRay& ray) {
   return (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
 }
 
-/// The beams of a block, in the sensor's frame.
+/// The beams of a block, in the sensor frame.
 struct BeamBlock {
   Lanes3<double> direction;
   Lanes3<double> origin_m;
-  bool has_origins = false;  ///< else they start at the sensor's zero, and origin_m is not set
+  bool has_origins = false;  ///< else they start at the sensor's origin, and origin_m is unset
 };
 
-/// The beams in the view of an instance, lane by lane as ray_in().
+/// The beams in an instance's frame, lane by lane as ray_in().
 void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
              Lanes3<double>& direction);
 
@@ -93,14 +82,14 @@ struct CornerBlock {
   }
 };
 
-/// Turns (beam, instance, primitive) into exact hit columns. Shared by all renderers, so that the
-/// numbers do not depend on who found the triangle.
+/// Computes hit columns from (beam, instance, primitive) in double. All renderers share it, so the
+/// results do not depend on how a triangle was found.
 class Resolver {
  public:
   /// The scene must outlive the resolver.
   explicit Resolver(const Scene& scene);
 
-  /// Takes the poses of the next cast; empty `world_from_instance` means the scene's own.
+  /// Sets the poses of the next cast; empty `world_from_instance`: the scene's own.
   void set_poses(const Pose& world_from_sensor, std::span<const Pose> world_from_instance);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -112,8 +101,8 @@ class Resolver {
     return *instances_[instance].mesh;
   }
 
-  /// The triangle to tell for one found: itself, or the first of those that lie on it. Sides count
-  /// when back faces are culled, so then it is itself.
+  /// The triangle to report: itself, or the first of those coincident with it. With culling of back
+  /// faces, windings matter, so renderers report the triangle itself.
   [[nodiscard]] std::uint32_t canonical_primitive(std::uint32_t instance,
                                                   std::uint32_t primitive) const {
     const std::uint32_t* first_coincident = instances_[instance].first_coincident;
@@ -130,7 +119,7 @@ class Resolver {
     return instances_[instance].is_masked;
   }
 
-  /// Asks the memory for a lane's triangle.
+  /// Prefetches a lane's triangle.
   void prefetch(const HitBlock& block, unsigned lane, bool with_corners) const {
     const std::uint32_t primitive = block.primitive[lane];
     __builtin_prefetch(&plane(block.instance[lane], primitive));
@@ -138,14 +127,14 @@ class Resolver {
     __builtin_prefetch(instances_[block.instance[lane]].triangles + primitive);
   }
 
-  /// Asks the memory for the corners of a block's triangles, as far as the fields need them.
+  /// Prefetches the corners of a block's triangles if the fields need them.
   void prefetch_corners(const HitBlock& block, const HitFieldMask& fields) const;
 
-  /// Exact range and incidence of a block with at least one hit. Lanes without a hit take the ids
-  /// of one that has.
+  /// Computes distance and incidence of a block with at least one hit. Lanes without a hit get the
+  /// ids of one that has.
   void intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exact) const;
 
-  /// Writes the columns of a measured block.
+  /// Writes the columns of an intersected block.
   void write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
              const ExactHits& exact, Hits& hits) const;
 
@@ -158,7 +147,7 @@ class Resolver {
     CornerBlock normal;
   };
   void gather(const HitBlock& block, bool with_normals, Corners& corners) const;
-  /// Weights of corners 1 and 2 of each lane's triangle, and what they weigh.
+  /// Barycentric weights of corners 1 and 2 per lane, and the normals that they interpolate.
   struct Weights {
     const Lanes<float>& w1;
     const Lanes<float>& w2;
@@ -173,7 +162,7 @@ class Resolver {
   void apply_normal_maps(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
                          Lanes3<double>& normals) const;
 
-  /// Where an instance's data lie, for few hops from a hit to its triangle.
+  /// Pointers to an instance's data, for few indirections.
   struct InstanceData {
     const Mesh* mesh;
     const Triangle* triangles;

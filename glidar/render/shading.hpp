@@ -4,10 +4,10 @@
 
 #include <glidar/render/resolver.hpp>
 
-// Weights of corners and what follows from them, lane by lane.
+// Barycentric weights and what is interpolated with them, lane by lane.
 namespace glidar {
 
-/// Weights of corners 1 and 2 of the hit point.
+/// Barycentric weights of corners 1 and 2 at the hit point.
 void interpolate_weights(const ExactHits& e, const CornerBlock& c, Lanes<float>& w1,
                          Lanes<float>& w2);
 
@@ -15,7 +15,8 @@ void interpolate_weights(const ExactHits& e, const CornerBlock& c, Lanes<float>&
 void blend_normals(const CornerBlock& n, const Lanes<float>& w1, const Lanes<float>& w2,
                    const Lanes3<double>& flat, Lanes3<double>& out);
 
-/// Cosines between -beams and normals that lie on the side of the plane's, turned to the sensor.
+/// Cosines between -beams and normals; normals are on the side of the plane's and are turned to the
+/// sensor.
 void cosines(const ExactHits& e, const Lanes3<double>& normal, Lanes<float>& out);
 
 }  // namespace glidar

@@ -10,11 +10,11 @@
 namespace glidar {
 namespace {
 
-/// One side of a triangle. Those along one edge have equal places.
+/// One side of a triangle. Half-edges of one edge have equal ends.
 struct HalfEdge {
-  std::uint32_t low;    ///< place of an end, see number_positions()
-  std::uint32_t high;   ///< place of the other; not lower
-  std::uint32_t index;  ///< 3 * triangle + its corner at the beginning
+  std::uint32_t low;    ///< position number of an end, see number_positions()
+  std::uint32_t high;   ///< that of the other end; not lower
+  std::uint32_t index;  ///< 3 * triangle + its first corner
 
   [[nodiscard]] std::uint32_t triangle() const { return index / 3; }
   [[nodiscard]] bool is_along(const HalfEdge& other) const {
@@ -29,45 +29,45 @@ bool is_before(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// The number of each vertex's position; equal numbers, same position.
+/// Numbers the positions of vertices; equal positions have equal numbers.
 std::vector<std::uint32_t> number_positions(const std::vector<Eigen::Vector3f>& positions) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return is_before(positions[a], positions[b]);
   });
-  std::vector<std::uint32_t> place(positions.size());
-  std::uint32_t places = 0;
+  std::vector<std::uint32_t> number(positions.size());
+  std::uint32_t numbers = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || positions[order[i]] != positions[order[i - 1]]) ++places;
-    place[order[i]] = places - 1;
+    if (i == 0 || positions[order[i]] != positions[order[i - 1]]) ++numbers;
+    number[order[i]] = numbers - 1;
   }
-  return place;
+  return number;
 }
 
-/// Edge by edge, and along an edge by the triangles' order.
+/// Sorted by edge, then by triangle.
 std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
-  const std::vector<std::uint32_t> place = number_positions(mesh.positions_m);
-  std::vector<HalfEdge> halves;
-  halves.reserve(3 * mesh.triangles.size());
+  const std::vector<std::uint32_t> number = number_positions(mesh.positions_m);
+  std::vector<HalfEdge> half_edges;
+  half_edges.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = place[mesh.triangles[t][k]];
-      const std::uint32_t to = place[mesh.triangles[t][(k + 1) % 3]];
-      if (from != to) halves.push_back({std::min(from, to), std::max(from, to), 3 * t + k});
+      const std::uint32_t from = number[mesh.triangles[t][k]];
+      const std::uint32_t to = number[mesh.triangles[t][(k + 1) % 3]];
+      if (from != to) half_edges.push_back({std::min(from, to), std::max(from, to), 3 * t + k});
     }
   }
-  std::sort(halves.begin(), halves.end());
-  return halves;
+  std::sort(half_edges.begin(), half_edges.end());
+  return half_edges;
 }
 
-/// -1: the sensor is behind the triangle, 1: in front of it, 0: in its plane as far as double
-/// resolves. `distance`: from the mesh's origin to the sensor.
+/// -1: the sensor is behind the triangle, 1: in front of it, 0: in its plane within the rounding of
+/// double. `distance`: from the mesh's origin to the sensor.
 std::int8_t side_of(const TrianglePlane& plane, const Eigen::Vector3d& sensor, double distance) {
-  constexpr double kRounding = 0x1p-44;  // see slack()
+  constexpr double kRounding = 0x1p-44;  // 256 roundings
   const double above = plane.normal.dot(sensor) - plane.offset;
-  const double room = kRounding * (distance + std::abs(plane.offset));
-  const int side = static_cast<int>(above > room) - static_cast<int>(above < -room);
+  const double margin = kRounding * (distance + std::abs(plane.offset));
+  const int side = static_cast<int>(above > margin) - static_cast<int>(above < -margin);
   return static_cast<std::int8_t>(side);
 }
 
@@ -77,12 +77,12 @@ bool is_silhouette(const MeshEdge& edge, const std::vector<std::int8_t>& sides) 
   return side == 0 || side != sides[edge.second];
 }
 
-/// The part of a line in front of the sensor, as columns and rows of the picture; pixel centres are
-/// at whole numbers.
+/// The part of a line in front of the sensor, as columns and rows of the image; pixel centres have
+/// integer coordinates.
 struct PixelLine {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
-  bool is_seen = false;
+  bool is_visible = false;
 };
 
 PixelLine project(Eigen::Vector3d from, Eigen::Vector3d to, const PinholeIntrinsics& k) {
@@ -101,15 +101,15 @@ PixelLine project(Eigen::Vector3d from, Eigen::Vector3d to, const PinholeIntrins
     return {k.fx * p.x() / p.z() + k.cx - k.pixel_centre,
             k.fy * p.y() / p.z() + k.cy - k.pixel_centre};
   };
-  return {.from = pixel(from), .to = pixel(to), .is_seen = true};
+  return {.from = pixel(from), .to = pixel(to), .is_visible = true};
 }
 
-/// Calls visit(row, column) for the pixel centres of a part within the band around a line.
+/// Calls visit(row, column) for the pixel centres of a rectangle within the band around a line.
 template <class Visit>
 void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
                    const Visit& visit) {
-  const Eigen::Vector2d way = line.to - line.from;
-  const int along = std::abs(way.x()) >= std::abs(way.y()) ? 0 : 1;
+  const Eigen::Vector2d step = line.to - line.from;
+  const int along = std::abs(step.x()) >= std::abs(step.y()) ? 0 : 1;
   const int across = 1 - along;
   const Eigen::Vector2d first(part.first_col, part.first_row);
   const Eigen::Vector2d last(part.first_col + part.cols - 1.0, part.first_row + part.rows - 1.0);
@@ -118,10 +118,11 @@ void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
   const double end = std::min(std::floor(high), last[along]);
   for (double at = std::max(std::ceil(low), first[along]); at <= end; at += 1.0) {
     const double ratio =
-        way[along] == 0.0 ? 0.0 : std::clamp((at - line.from[along]) / way[along], 0.0, 1.0);
-    const double height = line.from[across] + ratio * way[across];
+        step[along] == 0.0 ? 0.0 : std::clamp((at - line.from[along]) / step[along], 0.0, 1.0);
+    const double height = line.from[across] + ratio * step[across];
     const double nearest = std::round(height);
-    // At up to 45 degrees the distance is at least 1 / sqrt(2) of that in height.
+    // At up to 45 degrees the distance is at least 1 / sqrt(2) of the distance along the other
+    // axis.
     if (!(std::abs(height - nearest) <= 1.5 * band_px)) continue;
     if (nearest < first[across] || nearest > last[across]) continue;
     const auto a = static_cast<std::size_t>(at);
@@ -130,7 +131,7 @@ void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
   }
 }
 
-/// The edges of an instance and where a pinhole sees them.
+/// The edges of an instance as seen by a pinhole camera.
 struct EdgeView {
   const std::vector<MeshEdge>& edges;
   const std::vector<std::int8_t>& sides;  ///< see side_of()
@@ -144,13 +145,13 @@ struct EdgeView {
     return sensor_from_object * positions[vertex].cast<double>().homogeneous();
   }
 
-  /// Adds the pixels by those of the edges [begin, end) that are silhouettes.
+  /// Adds the pixels near silhouettes among the edges [begin, end).
   void add_pixels(std::size_t begin, std::size_t end, std::vector<std::size_t>& pixels) const {
     for (std::size_t i = begin; i < end; ++i) {
       const MeshEdge& edge = edges[i];
       if (!is_silhouette(edge, sides)) continue;
       const PixelLine line = project(point(edge.from), point(edge.to), *beams.pinhole);
-      if (!line.is_seen) continue;
+      if (!line.is_visible) continue;
       for_pixels_by(line, band_px, part, [&](std::size_t row, std::size_t col) {
         pixels.push_back(row * beams.cols + col);
       });
@@ -161,16 +162,16 @@ struct EdgeView {
 }  // namespace
 
 std::vector<MeshEdge> mesh_edges(const Mesh& mesh) {
-  const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
+  const std::vector<HalfEdge> half_edges = sorted_half_edges(mesh);
   std::vector<MeshEdge> edges;
-  for (std::size_t begin = 0, end = 0; begin < halves.size(); begin = end) {
-    const HalfEdge& first = halves[begin];
-    while (end < halves.size() && halves[end].is_along(first)) ++end;
-    const bool is_pair = end - begin == 2 && halves[begin + 1].triangle() != first.triangle();
+  for (std::size_t begin = 0, end = 0; begin < half_edges.size(); begin = end) {
+    const HalfEdge& first = half_edges[begin];
+    while (end < half_edges.size() && half_edges[end].is_along(first)) ++end;
+    const bool is_pair = end - begin == 2 && half_edges[begin + 1].triangle() != first.triangle();
     const Triangle& corners = mesh.triangles[first.triangle()];
     const std::uint32_t k = first.index % 3;
     edges.push_back({corners[k], corners[(k + 1) % 3], first.triangle(),
-                     is_pair ? halves[begin + 1].triangle() : MeshEdge::kNone});
+                     is_pair ? half_edges[begin + 1].triangle() : MeshEdge::kNone});
   }
   return edges;
 }

@@ -25,17 +25,17 @@ struct MeshEdge {
 /// position have no edge between them.
 std::vector<MeshEdge> mesh_edges(const Mesh& mesh);
 
-/// The pixels whose beams pass a silhouette closely: an edge with a triangle on one side only, or
-/// with one triangle that faces the sensor and one that does not. Elsewhere the surface goes on
-/// beyond an edge, so that a rasterizer that moves the edge picks at worst an adjacent triangle.
+/// The pixels whose beams pass close to a silhouette: an edge with a triangle on one side only, or
+/// between a triangle that faces the sensor and one that does not. At other edges, a rasterizer
+/// that moves the edge selects at worst an adjacent triangle.
 class SilhouettePixels {
  public:
-  /// Beams within `band_px` of a silhouette, in pixels, are found.
+  /// Finds beams within `band_px` of a silhouette, pixels.
   explicit SilhouettePixels(double band_px) : band_px_(band_px) {}
 
   [[nodiscard]] double band_px() const { return band_px_; }
 
-  /// Finds those in a part of the picture, as row * columns of the whole picture + column, in
+  /// Finds those in a rectangle of the image, as row * columns of the whole image + column, in
   /// rising order. `edges` has the edges of each mesh; the resolver has the cast's poses.
   const std::vector<std::size_t>& find(const CastRequest& request, const Resolver& resolver,
                                        const std::vector<std::vector<MeshEdge>>& edges,

@@ -16,7 +16,7 @@ Vector interpolate(const std::vector<Vector>& values, const SurfacePoint& surfac
   return (1.0F - w1 - w2) * values[corners[0]] + w1 * values[corners[1]] + w2 * values[corners[2]];
 }
 
-/// The texel of a material's texture at a place; white when the texture is not used.
+/// The texel of a material's texture at a point; white when the texture is not used.
 Eigen::Vector4f texel_at(const Scene& scene, const SurfacePoint& surface_point,
                          const TextureUse& use) {
   if (!use.used()) return Eigen::Vector4f::Ones();

@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// A place on a mesh: a triangle and the weights of its corners 1 and 2.
+/// A point on a mesh: a triangle and the barycentric weights of its corners 1 and 2.
 struct SurfacePoint {
   const Mesh& mesh;
   const Instance& instance;
@@ -17,20 +17,19 @@ struct SurfacePoint {
   Eigen::Vector2f weights;
 };
 
-/// The material at a place.
+/// The material at a point.
 const Material& material_at(const Scene& scene, const SurfacePoint& surface_point);
 
-/// The texture coordinate at a place; zero where the mesh has none.
+/// The texture coordinate at a point; zero where the mesh has none.
 Eigen::Vector2f uv_at(const SurfacePoint& surface_point, std::uint8_t uv_set);
 
-/// True when the material's alpha mask lets a beam through at the place.
+/// True when the material's alpha mask is transparent at the point.
 bool is_cut_out(const Scene& scene, const SurfacePoint& surface_point);
 
-/// True when a normal map bends the normals at a place.
+/// True when the material has a normal map that applies to the mesh.
 bool has_normal_map(const Material& material, const Mesh& mesh);
 
-/// The unit normal `smooth` bent by the material's normal map, in the object frame on the front
-/// side.
+/// The unit normal `smooth` after the material's normal map, in the object frame on the front side.
 Eigen::Vector3f apply_normal_map(const Scene& scene, const SurfacePoint& surface_point,
                                  const Eigen::Vector3f& smooth);
 

@@ -8,15 +8,14 @@
 namespace glidar {
 namespace {
 
-/// One number at each corner of sixteen triangles.
+/// A scalar at the corners of sixteen triangles.
 struct CornerValues {
   Lanes<float> at_0;
   Lanes<float> at_1;
   Lanes<float> at_2;
 };
 
-/// A component of a vertex attribute at the corners of the group's triangles; lanes of others take
-/// the first of the group.
+/// Collects a component of a vertex attribute at the corners of triangles.
 template <class Vector>
 void gather(const std::vector<Vector>& of_vertex, Eigen::Index component,
             const std::array<const Triangle*, kLanes>& triangles, CornerValues& values) {
@@ -47,7 +46,7 @@ GLIDAR_SIMD void multiply(const Lanes3<float>& by, Lanes3<float>& rgb) {
   for (unsigned i = 0; i < kLanes; ++i) rgb.z[i] *= by.z[i];
 }
 
-/// Of the product of a colour and a tint.
+/// Luminances of a colour times tints.
 GLIDAR_SIMD void luminances(const Eigen::Vector3f& colour, const Lanes3<float>& tint,
                             Lanes<float>& out) {
   const float red = colour.x();
@@ -148,13 +147,13 @@ void SurfaceColours::write_tinted(const HitFieldMask& fields, const Group& group
     });
   }
   if (!fields.reflectance) return;
-  Lanes3<float> shine;
-  fill(Eigen::Vector3f::Ones(), shine);
-  multiply_by_texture(group, material.specular_texture, shine);
+  Lanes3<float> gloss;
+  fill(Eigen::Vector3f::Ones(), gloss);
+  multiply_by_texture(group, material.specular_texture, gloss);
   Lanes<float> ambient;
   Lanes<float> specular;
   luminances(material.ambient, tint, ambient);
-  luminances(material.specular, shine, specular);
+  luminances(material.specular, gloss, specular);
   for_lanes(group.lanes, [&](unsigned i) {
     hits.reflectance[group.block.beam[i]] = {diffuse[i], ambient[i], specular[i],
                                              material.shininess};

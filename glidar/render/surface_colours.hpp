@@ -25,13 +25,13 @@ class SurfaceColours {
     return fields.diffuse || fields.colour || fields.reflectance || fields.noise_scale;
   }
 
-  /// Writes the columns for the hits of a block, of whose triangles w1 and w2 weigh corners 1
+  /// Writes the columns for the hits of a block; w1 and w2 are the barycentric weights of corners 1
   /// and 2.
   void write(const HitFieldMask& fields, const HitBlock& block, const Lanes<float>& w1,
              const Lanes<float>& w2, Hits& hits) const;
 
  private:
-  /// A material as one instance has it.
+  /// A material of one instance.
   struct Slot {
     const Mesh* mesh;
     const Material* material;
@@ -62,7 +62,7 @@ class SurfaceColours {
 
   const Scene& scene_;
   std::vector<Slots> slots_;             ///< per instance
-  std::vector<LookupTexture> textures_;  ///< per texture of the scene; empty: not of colours
+  std::vector<LookupTexture> textures_;  ///< per texture of the scene; empty: not used for colours
 };
 
 }  // namespace glidar

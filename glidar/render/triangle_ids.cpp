@@ -17,7 +17,7 @@ TriangleIds::TriangleIds(const Scene& scene, const char* renderer)
     if (next < kNoTriangleId) continue;
     throw Error({.where = std::string(renderer) + " renderer",
                  .found = "too many triangles: " + std::to_string(next),
-                 .allowed = "up to 2147483647, those of every instance counted",
+                 .allowed = "up to 1073741822, counting every instance",
                  .remedy = "use --renderer rays"});
   }
 }

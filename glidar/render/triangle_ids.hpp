@@ -10,7 +10,7 @@
 
 namespace glidar {
 
-/// A rectangle of a picture's pixels.
+/// A rectangle of pixels.
 struct PixelRect {
   std::uint32_t first_row;
   std::uint32_t first_col;
@@ -18,34 +18,34 @@ struct PixelRect {
   std::uint32_t cols;
 };
 
-/// Set in the number of a triangle that the pixel's beam certainly does not pass by.
+/// Flag: the pixel's beam certainly hits this triangle.
 inline constexpr std::uint32_t kCertainFlag = std::uint32_t{1} << 31U;
 
-/// Set in the number of a pixel where another triangle is so close that the beam has to be cast.
+/// Flag: another triangle is so close that the beam must be cast.
 inline constexpr std::uint32_t kContestedFlag = std::uint32_t{1} << 30U;
 
-/// The bits of a number that are a triangle's.
+/// The bits of an id without flags.
 inline constexpr std::uint32_t kTriangleIdMask = kContestedFlag - 1;
 
-/// "No triangle": nothing was drawn at the pixel. Greater than all triangles' numbers.
+/// Nothing was drawn at the pixel. Greater than all triangle ids.
 inline constexpr std::uint32_t kNoTriangleId = kTriangleIdMask;
 
-/// The triangles of all instances, numbered through, so that 30 bits hold both.
+/// Consecutive ids for the triangles of all instances, so that 30 bits store both.
 class TriangleIds {
  public:
-  /// Throws Error, naming the renderer, when the scene has more triangles than numbers.
+  /// Throws Error, naming the renderer, when the scene has more triangles than ids.
   TriangleIds(const Scene& scene, const char* renderer);
 
-  /// The number of an instance's first triangle.
+  /// The id of an instance's first triangle.
   [[nodiscard]] std::uint32_t first(std::uint32_t instance) const { return first_[instance]; }
 
-  /// For renderers that draw an instance's triangles in an order of their own: which one has the
-  /// k-th number. Must stay where it is.
+  /// For renderers that draw an instance's triangles in another order: `drawn[k]` is the triangle
+  /// with the k-th id. The vector must not move.
   void set_order(std::uint32_t instance, const std::vector<std::uint32_t>& drawn) {
     drawn_[instance] = drawn.data();
   }
 
-  /// What a number of the picture tells.
+  /// The triangle of an id; kNoTriangleId: none.
   [[nodiscard]] PrimitiveRef decode(std::uint32_t id) const {
     if (id == kNoTriangleId) return {};
     id &= kTriangleIdMask;

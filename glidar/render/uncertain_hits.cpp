@@ -8,8 +8,8 @@
 namespace glidar {
 namespace {
 
-// An area is a sum of six products of single precision: wrong by less than this part of the square
-// of the farthest corner's distance.
+// An area is a sum of six products in single precision; its error is below this fraction of the
+// squared distance to the farthest corner.
 constexpr float kAreaRounding = 0x1p-20F;
 
 GLIDAR_SIMD std::uint32_t outside(const ExactHits& e, const CornerBlock& c) {

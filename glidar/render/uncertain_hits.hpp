@@ -8,9 +8,9 @@
 
 namespace glidar {
 
-/// A bit for every hit lane whose beam may pass beside its triangle or start behind it. A
-/// rasterizer moves corners to a grid of 1/256 of a pixel (or coarser), so it may show a beam so
-/// near a border the triangle on its other side.
+/// A bit for every hit lane whose beam may miss its triangle or start behind it. Rasterizers snap
+/// vertices to a grid of 1/256 of a pixel (or coarser), so a pixel near an edge may show the
+/// neighbouring triangle.
 std::uint32_t uncertain_lanes(const Resolver& resolver, const HitBlock& block,
                               const ExactHits& exact);
 

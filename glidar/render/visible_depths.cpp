@@ -13,8 +13,8 @@ using Planes = Eigen::Matrix<double, 5, 4>;
 constexpr int kBorders = 4;
 constexpr int kDepth = 4;  // the row that gives the depth
 
-/// Rows 0 to 3: how far inside each border of the view a point of the mesh lies; the borders run
-/// along the outer edges of the picture's pixels. Row 4: its depth.
+/// Rows 0 to 3: signed distance of a point of the mesh inside each border of the view; borders are
+/// the outer edges of the image's pixels. Row 4: its depth.
 Planes view_planes(const InstanceView& view, const PinholeIntrinsics& k) {
   const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(view);
   const double half = 0.5;
@@ -42,14 +42,14 @@ std::uint8_t borders_beyond(const Values& values) {
   return bits;
 }
 
-/// A convex polygon: three corners, and one more for every border that cuts it.
+/// A convex polygon: three corners, and one more for every border that clips it.
 struct Polygon {
   std::array<Values, 3 + kBorders> corners;
   int count = 0;
 };
 
 /// Sutherland and Hodgman, "Reentrant polygon clipping" (1974), at one border.
-Polygon cut(const Polygon& polygon, int border) {
+Polygon clip(const Polygon& polygon, int border) {
   Polygon inside;
   for (int i = 0; i < polygon.count; ++i) {
     const Values& a = polygon.corners[static_cast<std::size_t>(i)];
@@ -71,7 +71,7 @@ DepthSpan depths_of(const Planes& planes, const Mesh& mesh, const Triangle& tria
     polygon.corners[k] = values_at(planes, mesh.positions_m[triangle[k]]);
   }
   for (int border = 0; border < kBorders && polygon.count > 0; ++border) {
-    polygon = cut(polygon, border);
+    polygon = clip(polygon, border);
   }
   DepthSpan span;
   for (int i = 0; i < polygon.count; ++i) {
@@ -80,16 +80,16 @@ DepthSpan depths_of(const Planes& planes, const Mesh& mesh, const Triangle& tria
   return span;
 }
 
-/// Calls work(begin, end) on pieces of [0, count), and joins the spans that it returns.
-template <class Work>
-DepthSpan joined(std::size_t count, ThreadPool& thread_pool, std::vector<DepthSpan>& spans,
-                 const Work& work) {
+/// Calls work(begin, end) on sections of [0, count), and joins the returned spans.
+template <class Body>
+DepthSpan join_spans(std::size_t count, ThreadPool& thread_pool, std::vector<DepthSpan>& spans,
+                     const Body& body) {
   constexpr std::size_t kDepthsPerPiece = 16384;
-  const std::size_t pieces = (count + kDepthsPerPiece - 1) / kDepthsPerPiece;
-  spans.assign(pieces, {});
-  thread_pool.parallel_for(pieces, 1, [&](std::size_t begin, std::size_t end) {
+  const std::size_t sections = (count + kDepthsPerPiece - 1) / kDepthsPerPiece;
+  spans.assign(sections, {});
+  thread_pool.parallel_for(sections, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      spans[i] = work(i * kDepthsPerPiece, std::min(count, (i + 1) * kDepthsPerPiece));
+      spans[i] = body(i * kDepthsPerPiece, std::min(count, (i + 1) * kDepthsPerPiece));
     }
   });
   DepthSpan all;
@@ -103,9 +103,9 @@ DepthSpan VisibleDepths::of(const InstanceView& view, const Mesh& mesh, const Pi
                             ThreadPool& thread_pool) {
   const Planes planes = view_planes(view, k);
   outside_.resize(mesh.positions_m.size());
-  // Vertices that no triangle uses count too: loaders leave none.
+  // Vertices that no triangle uses count too; loaders remove them.
   DepthSpan span =
-      joined(outside_.size(), thread_pool, spans_, [&](std::size_t i, std::size_t end) {
+      join_spans(outside_.size(), thread_pool, spans_, [&](std::size_t i, std::size_t end) {
         DepthSpan inside;
         for (; i < end; ++i) {
           const Values values = values_at(planes, mesh.positions_m[i]);
@@ -115,7 +115,7 @@ DepthSpan VisibleDepths::of(const InstanceView& view, const Mesh& mesh, const Pi
         return inside;
       });
   span.extend(
-      joined(mesh.triangles.size(), thread_pool, spans_, [&](std::size_t i, std::size_t end) {
+      join_spans(mesh.triangles.size(), thread_pool, spans_, [&](std::size_t i, std::size_t end) {
         DepthSpan inside;
         for (; i < end; ++i) {
           const Triangle& t = mesh.triangles[i];

@@ -11,7 +11,7 @@
 
 namespace glidar {
 
-/// Depths along the boresight between which something lies; nearest > farthest: nothing does.
+/// Range of depths along the boresight; empty where nearest > farthest.
 struct DepthSpan {
   double nearest_m = std::numeric_limits<double>::infinity();
   double farthest_m = -std::numeric_limits<double>::infinity();
@@ -26,16 +26,16 @@ struct DepthSpan {
   }
 };
 
-/// Finds the depths of the part of a surface that lies in a pinhole's view, hidden or not, exactly:
-/// triangles that reach out of the view are cut at its borders. So a plane may hug the surface also
-/// where the nearest vertex is outside of the view or behind the sensor.
+/// Finds the depths of the part of a surface in a pinhole's view, occluded or not, exactly:
+/// triangles are clipped at the borders of the view. Depth planes can therefore be tight also where
+/// the nearest vertex is outside of the view or behind the sensor.
 class VisibleDepths {
  public:
   DepthSpan of(const InstanceView& view, const Mesh& mesh, const PinholeIntrinsics& k,
                ThreadPool& thread_pool);
 
  private:
-  std::vector<std::uint8_t> outside_;  ///< per vertex, a bit for every border it lies beyond
+  std::vector<std::uint8_t> outside_;  ///< per vertex, a bit for every border beyond which it is
   std::vector<DepthSpan> spans_;       ///< per piece of the work
 };
 

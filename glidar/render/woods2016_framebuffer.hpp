@@ -18,7 +18,7 @@ struct Woods2016DepthPlanes {
   double far_m;
 };
 
-/// Draws such pictures.
+/// Draws quantized framebuffers.
 class Woods2016Camera {
  public:
   Woods2016Camera() = default;
@@ -26,18 +26,18 @@ class Woods2016Camera {
   Woods2016Camera& operator=(const Woods2016Camera&) = delete;
   virtual ~Woods2016Camera() = default;
 
-  /// Draws a pinhole's picture; the hit fields, `then` and progress are not looked at. The planes
-  /// hug what of the surface is in view, unless others are given.
+  /// Draws a pinhole's image; hit fields, on_tile_done and progress are ignored. The depth planes
+  /// enclose the visible surfaces tightly, unless others are given.
   virtual void draw(const CastRequest& request, const PhongHeadlight& light,
                     const std::optional<Woods2016DepthPlanes>& planes,
-                    Woods2016Framebuffer& picture) = 0;
+                    Woods2016Framebuffer& framebuffer) = 0;
 };
 
 /// Builds a camera over a valid scene, which must outlive it. Throws Error without OpenGL.
 std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
                                                    const RendererOptions& options);
 
-/// The same over a context of the caller's, see make_opengl_renderer().
+/// The same with the caller's context, see make_opengl_renderer().
 std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
                                                    const RendererOptions& options,
                                                    std::unique_ptr<opengl::Context> context);

@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// Work spaces that threads take and give back, so that a later cast finds them ready.
+/// Workspaces that threads acquire and release; they are kept for later casts.
 template <class T>
 class WorkspacePool {
  public:

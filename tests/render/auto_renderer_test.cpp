@@ -25,10 +25,10 @@ bool are_same(const Hits& a, const Hits& b) {
          std::memcmp(a.range_m.data(), b.range_m.data(), a.range_m.size() * sizeof(double)) == 0;
 }
 
-// Beams along the edges of a box, where the two may tell one triangle or its neighbour.
+// Beams along the edges of a box, where both renderers may report either neighbour.
 const Pose kAlongEdges = look_at({4.0, 4.0, 0.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
 
-TEST(AutoRenderer, TellsWhatTheRasterTellsOfPinholesAndWhatRaysTellOfAllOthers) {
+TEST(AutoRenderer, EqualsTheRasterForPinholesAndRaysForOtherBeams) {
   const Scene scene = builtin_scene("asteroid");
   Beams beams = camera_beams(201, 151, 150.0);
   EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
@@ -38,14 +38,14 @@ TEST(AutoRenderer, TellsWhatTheRasterTellsOfPinholesAndWhatRaysTellOfAllOthers) 
                        cast_by("rays", scene, beams, kAlongEdges)));
 }
 
-TEST(AutoRenderer, CastsRaysWhereTrianglesFarOutnumberBeams) {
+TEST(AutoRenderer, CastsRaysIfTrianglesFarOutnumberBeams) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(9, 9, 8.0);
   EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
                        cast_by("rays", scene, beams, kAlongEdges)));
 }
 
-TEST(AutoRenderer, ChoosesAnewForEachCast) {
+TEST(AutoRenderer, ChoosesTheRendererForEachCast) {
   const Scene scene = builtin_scene("asteroid");
   const auto renderer = make_renderer(scene, {.kind = "auto", .threads = 2});
   const Beams few = camera_beams(9, 9, 8.0);
@@ -60,7 +60,7 @@ TEST(AutoRenderer, ChoosesAnewForEachCast) {
   }
 }
 
-TEST(AutoRenderer, TellsWhatRaysTellOfScannersOfAllKinds) {
+TEST(AutoRenderer, EqualsRaysForScannersOfAllKinds) {
   const Scene scene = builtin_scene("asteroid");
   for (const Scanner& scanner : {Scanner{.rows = 64, .cols = 1024},  // few triangles per beam
                                  Scanner{.rows = 4, .cols = 64},     // many

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles of one mesh that lie on each other, and the cameras that cannot tell them apart.
+// Coincident triangles of one mesh, and cameras that cannot resolve their gap.
 #include <glidar/render/close_triangles.hpp>
 #include <glidar/render/depth_range.hpp>
 #include <render/renderer_suite.hpp>
@@ -15,7 +15,7 @@ using testing::camera_beams;
 
 constexpr double kBand_px = 1.0 / 128.0;
 
-class CloseSheetsTest : public ::testing::Test {
+class CloseTrianglesTest : public ::testing::Test {
  protected:
   /// The number of close triangles of the scene, seen by 100x100 beams from (0, 0, distance).
   std::size_t close_from(double distance_m) {
@@ -58,31 +58,31 @@ class CloseSheetsTest : public ::testing::Test {
   std::unique_ptr<Resolver> resolver_;
 };
 
-TEST_F(CloseSheetsTest, NeighboursOnASurfaceAreNotClose) {
+TEST_F(CloseTrianglesTest, NeighboursOnASurfaceAreNotClose) {
   for (const char* model : {"plane", "box", "torus", "asteroid"}) {
     scene_ = builtin_scene(model);
     EXPECT_EQ(close_from(4.0), 0U) << model;
   }
 }
 
-TEST_F(CloseSheetsTest, SheetsOnEachOtherAreCloseFromAnywhere) {
+TEST_F(CloseTrianglesTest, CoincidentTrianglesAreCloseFromAnyDistance) {
   set_sheets(0.0F);
   EXPECT_EQ(close_from(2.0), 4U);
   EXPECT_EQ(close_from(50.0), 4U);
 }
 
-TEST_F(CloseSheetsTest, SheetsAreCloseWhereTheirGapIsAPartOfAPixel) {
+TEST_F(CloseTrianglesTest, ParallelTrianglesAreCloseIfTheirGapIsBelowAPixel) {
   set_sheets(1e-3F);
   EXPECT_EQ(close_from(2.0), 0U);  // a pixel sees 20 mm
   EXPECT_EQ(close_from(8.0), 4U);  // 80 mm, of which the driver may move 1/64
 }
 
-TEST_F(CloseSheetsTest, AMeshOfFewPixelsIsCloseAsAWhole) {
+TEST_F(CloseTrianglesTest, AMeshOfFewPixelsIsCompletelyClose) {
   scene_ = builtin_scene("box");
   EXPECT_EQ(close_from(1000.0), scene_.meshes[0].triangles.size());
 }
 
-TEST_F(CloseSheetsTest, CopiesOfATriangleCountAsOne) {
+TEST_F(CloseTrianglesTest, CopiesOfATriangleCountAsOne) {
   scene_ = builtin_scene("plane");
   std::vector<Triangle>& triangles = scene_.meshes[0].triangles;
   const std::vector<Triangle> once = triangles;

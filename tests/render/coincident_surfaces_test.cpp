@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Of surfaces that coincide every renderer reports the lowest (instance, triangle).
+// Every renderer reports the lowest (instance, triangle) of coincident surfaces.
 #include <render/renderer_suite.hpp>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class CoincidentSurfaces : public testing::RendererSuite {
         std::count(hits.instance.begin(), hits.instance.end(), instance));
   }
 
-  /// A second instance, with a mesh of its own.
+  /// A second instance, with its own mesh.
   static Instance& add(Scene& scene, Mesh mesh) {
     Instance instance = scene.instances[0];
     instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
@@ -44,14 +44,14 @@ class CoincidentSurfaces : public testing::RendererSuite {
   }
 };
 
-TEST_P(CoincidentSurfaces, OfIdenticalInstancesTheFirstIsReported) {
+TEST_P(CoincidentSurfaces, TheFirstOfIdenticalInstancesIsReported) {
   Scene scene = builtin_scene("asteroid");
   scene.instances[0].world_from_object = turned(0.7, {1.0, 2.0, 3.0}, {0.4, -0.2, 3.0});
   scene.instances.push_back(scene.instances[0]);
   expect_first_only(scene, 1000);
 }
 
-TEST_P(CoincidentSurfaces, IdenticalInstancesHaveTheTrianglesAndRangesOfOneAlone) {
+TEST_P(CoincidentSurfaces, IdenticalInstancesEqualASingleInstance) {
   Scene scene = builtin_scene("sphere");
   scene.instances[0].world_from_object = turned(0.7, {1.0, 2.0, 3.0}, {0.1, -0.2, 5.0});
   const Beams beams = camera_beams(150, 120, 200.0);
@@ -67,7 +67,7 @@ TEST_P(CoincidentSurfaces, IdenticalInstancesHaveTheTrianglesAndRangesOfOneAlone
   }
 }
 
-TEST_P(CoincidentSurfaces, AFirstInstanceThatIsNotPresentLeavesTheNext) {
+TEST_P(CoincidentSurfaces, TheNextInstanceIsReportedIfTheFirstIsDisabled) {
   Scene scene = builtin_scene("sphere");
   scene.instances.push_back(scene.instances[0]);
   scene.instances.push_back(scene.instances[0]);
@@ -83,7 +83,7 @@ TEST_P(CoincidentSurfaces, AFirstInstanceThatIsNotPresentLeavesTheNext) {
   EXPECT_EQ(count(hits, 0) + count(hits, 2), 0U);
 }
 
-TEST_P(CoincidentSurfaces, OfDifferentMeshesOfOneGeometryTheFirstIsReported) {
+TEST_P(CoincidentSurfaces, TheFirstOfMeshesWithEqualGeometryIsReported) {
   Scene scene = builtin_scene("torus");
   Mesh other = scene.meshes[0];
   std::reverse(other.triangles.begin(), other.triangles.end());
@@ -91,7 +91,7 @@ TEST_P(CoincidentSurfaces, OfDifferentMeshesOfOneGeometryTheFirstIsReported) {
   expect_first_only(scene, 1000);
 }
 
-TEST_P(CoincidentSurfaces, OfOppositeWindingsTheFirstIsReported) {
+TEST_P(CoincidentSurfaces, TheFirstOfOppositeWindingsIsReported) {
   Scene scene = builtin_scene("torus");
   Mesh other = scene.meshes[0];
   for (Triangle& t : other.triangles) std::swap(t[0], t[1]);
@@ -99,7 +99,7 @@ TEST_P(CoincidentSurfaces, OfOppositeWindingsTheFirstIsReported) {
   expect_first_only(scene, 1000);
 }
 
-TEST_P(CoincidentSurfaces, OfMeshesThatScalesMakeEqualTheFirstIsReported) {
+TEST_P(CoincidentSurfaces, TheFirstOfMeshesThatAreEqualAfterScalingIsReported) {
   Scene scene = builtin_scene("asteroid");
   scene.instances[0].world_from_object = turned(1.1, {0.3, -1.0, 0.2}, {12.5, 3.0, -4.0});
   Mesh half = scene.meshes[0];
@@ -122,8 +122,8 @@ Scene planes_in_one_place(const Pose& world_from_planes, bool is_large_first) {
   return scene;
 }
 
-/// Casts at both, from so far along the planes' own (x, y, z), and expects the small plane (if it
-/// comes first) exactly where the beams meet it.
+/// Casts at both, from an offset (x, y, z) in the planes' frame, and expects the small plane (if it
+/// comes first) exactly where beams hit it.
 void expect_small_inside_large(const Scene& scene, const Hits& hits, const Beams& beams,
                                const Pose& planes_from_sensor) {
   std::size_t on_small = 0;
@@ -143,7 +143,7 @@ void expect_small_inside_large(const Scene& scene, const Hits& hits, const Beams
   EXPECT_EQ(scene.instances.size(), 2U);
 }
 
-TEST_P(CoincidentSurfaces, OfPlanesOfDifferentTrianglesInOnePlaceTheFirstIsReported) {
+TEST_P(CoincidentSurfaces, TheFirstOfCoplanarSurfacesWithOtherTrianglesIsReported) {
   const Pose world_from_planes = turned(0.9, {1.0, 0.4, -0.3}, {100.0, -20.0, 7.0});
   for (const double distance_m : {3.0, 300.0, 10000.0}) {
     const Beams beams = camera_beams(100, 100, 25.0 * distance_m);
@@ -169,7 +169,7 @@ TEST_P(CoincidentSurfaces, ASurfaceNearerThanSinglePrecisionResolvesIsReported) 
   }
 }
 
-/// A ground and 400 plates that lie on it, in the ground's plane; the ground comes last.
+/// A ground and 400 plates in the ground's plane; the ground comes last.
 Scene plates_on_ground(const Pose& world) {
   Scene scene = builtin_scene("plane");
   Instance one = scene.instances[0];
@@ -186,7 +186,7 @@ Scene plates_on_ground(const Pose& world) {
   return scene;
 }
 
-TEST_P(CoincidentSurfaces, OfPlatesOnAGroundThePlatesAreReportedAndAGroundInFrontHidesThem) {
+TEST_P(CoincidentSurfaces, PlatesInTheGroundPlaneAreReportedUnlessAGroundIsInFront) {
   const Pose world = turned(2.0, {1.0, 0.7, -0.4}, {3.0, 40.0, -5.0});
   const Pose pose = world * look_at({0.0, -6.0, 12.0}, {0.1, 0.2, 0.0}, Eigen::Vector3d::UnitZ());
   const Beams beams = camera_beams(160, 120, 150.0);
@@ -216,8 +216,8 @@ TEST_P(CoincidentSurfaces, OfPlatesOnAGroundThePlatesAreReportedAndAGroundInFron
   EXPECT_EQ(count(hidden, 0), beams.size() - count(hits, kInvalidId));
 }
 
-/// A floor, and a wall across it 3 m ahead, in a world that is turned. The sensor is in the floor's
-/// plane and so is every beam, so that rounding decides where a beam meets the floor.
+/// A floor, and a wall across it 3 m ahead, in a rotated world. The sensor is in the floor's
+/// plane and so is every beam, so that rounding decides where a beam hits the floor.
 struct EdgeOnFloor {
   Scene scene = testing::builtin_scene("plane");
   Pose world_from_sensor;
@@ -255,7 +255,7 @@ TEST_P(CoincidentSurfaces, AFloorSeenEdgeOnIsNotReportedBehindTheWallInFront) {
   EXPECT_GT(on_wall, 1000U);
 }
 
-TEST_P(CoincidentSurfaces, CullingLeavesTheOneThatFacesTheSensor) {
+TEST_P(CoincidentSurfaces, CullingKeepsTheFrontFacingSurface) {
   Scene scene = builtin_scene("plane");
   Mesh other = scene.meshes[0];
   for (Triangle& t : other.triangles) std::swap(t[0], t[1]);
@@ -285,7 +285,7 @@ TEST_P(CoincidentSurfaces, HolesOfTheFirstShowTheSecond) {
   }
 }
 
-/// Two sheets of one mesh over each other, cut into triangles differently.
+/// Two nearly coincident surfaces of one mesh with different triangles.
 Mesh two_sheets(float height_m) {
   constexpr int kSide = 12;
   Mesh mesh;
@@ -307,7 +307,7 @@ Mesh two_sheets(float height_m) {
   return mesh;
 }
 
-TEST_P(CoincidentSurfaces, OfSheetsOfOneMeshThatNearlyTouchTheSameTrianglesAreReportedAsByRays) {
+TEST_P(CoincidentSurfaces, NearlyCoincidentSurfacesOfOneMeshEqualRays) {
   const Beams beams = camera_beams(120, 90, 100.0);
   for (const float height_m : {0.0F, 1e-9F, 1e-7F, -1e-7F, 1e-6F, 1e-5F, 1e-3F}) {
     Scene scene = builtin_scene("plane");

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/resolver.hpp>
+#include <glidar/render/coincident_triangles.hpp>
 
 #include <render/renderer_suite.hpp>
 
@@ -24,20 +24,20 @@ Mesh square() {
   return mesh;
 }
 
-TEST(WithoutCopies, LeavesOutNothingWhereAllDiffer) {
+TEST(DistinctTriangles, KeepsAllTrianglesThatDiffer) {
   Mesh mesh = square();
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   EXPECT_TRUE(distinct(mesh).empty());
   EXPECT_TRUE(distinct(Mesh{}).empty());
 }
 
-TEST(WithoutCopies, LeavesOutLaterTrianglesOfTheSameCornersAndSenseAlsoOfOtherVertices) {
+TEST(DistinctTriangles, RemovesLaterTrianglesWithEqualCornersAndWinding) {
   Mesh mesh = square();
   mesh.triangles = {{0, 1, 2}, {1, 2, 0}, {0, 2, 3}, {4, 5, 6}, {6, 7, 4}};
   EXPECT_EQ(distinct(mesh), (Indices{0, 2}));
 }
 
-TEST(WithoutCopies, KeepsOneOfEachSense) {
+TEST(DistinctTriangles, KeepsOneTriangleOfEachWinding) {
   Mesh mesh = square();
   mesh.triangles = {{0, 1, 2}, {2, 1, 0}, {5, 4, 6}, {0, 2, 3}, {0, 1, 2}};
   EXPECT_EQ(distinct(mesh), (Indices{0, 1, 3}));
@@ -45,7 +45,7 @@ TEST(WithoutCopies, KeepsOneOfEachSense) {
 
 class Copies : public testing::RendererSuite {};
 
-TEST_P(Copies, OfASceneModelledTwiceTheFirstTrianglesAreReported) {
+TEST_P(Copies, ReportTheFirstTriangleOfEachPair) {
   Scene scene = testing::builtin_scene("asteroid");
   const Scene single = scene;
   std::vector<Triangle>& triangles = scene.meshes[0].triangles;

@@ -14,7 +14,7 @@ Mesh torus() {
   return make_builtin_model("torus").mesh;
 }
 
-/// How often a corner must be worked out, per triangle, by a device that remembers the last 32.
+/// Processed vertices per triangle on a device with a cache of the last 32.
 double corners_per_triangle(const std::vector<Triangle>& triangles) {
   constexpr std::size_t kRemembered = 32;
   std::vector<std::uint32_t> last;
@@ -31,7 +31,7 @@ double corners_per_triangle(const std::vector<Triangle>& triangles) {
   return static_cast<double>(worked_out) / static_cast<double>(triangles.size());
 }
 
-/// The k-th triangle in a scattered order.
+/// The k-th triangle in a random order.
 Mesh scattered(const Mesh& mesh) {
   Mesh result = mesh;
   const std::size_t n = mesh.triangles.size();
@@ -56,13 +56,13 @@ TEST(DrawOrder, DrawsEveryTriangleOnceWithItsOwnCorners) {
   EXPECT_TRUE(in_order(order, std::vector<float>{}).empty());
 }
 
-TEST(DrawOrder, BringsScatteredTrianglesTogether) {
+TEST(DrawOrder, KeepsNeighbouringTrianglesTogether) {
   const Mesh mesh = scattered(torus());
   EXPECT_GT(corners_per_triangle(mesh.triangles), 2.0);
   EXPECT_LT(corners_per_triangle(draw_order(mesh, {}).triangles), 1.1);
 }
 
-TEST(DrawOrder, KindsAreDrawnOneAfterTheOther) {
+TEST(DrawOrder, DrawsTheTrianglesOfAKindTogether) {
   const Mesh mesh = torus();
   std::vector<std::uint32_t> kinds;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) kinds.push_back(i % 3 == 0 ? 7 : 2);
@@ -79,14 +79,14 @@ TEST(DrawOrder, KindsAreDrawnOneAfterTheOther) {
   }
 }
 
-TEST(DrawOrder, TrianglesInOnePlaceKeepTheirOrder) {
+TEST(DrawOrder, TrianglesAtOnePositionKeepTheirOrder) {
   Mesh mesh;
   mesh.positions_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}};
   mesh.triangles = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}};
   EXPECT_EQ(draw_order(mesh, {}).drawn, (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
-TEST(DrawOrder, TakesMeshesWithoutSizeAndWithoutTriangles) {
+TEST(DrawOrder, AcceptsMeshesWithoutSizeOrTriangles) {
   EXPECT_TRUE(draw_order({}, {}).ranges.empty());
   Mesh point;
   point.positions_m.assign(3, Eigen::Vector3f(5.0F, 5.0F, 5.0F));
@@ -94,7 +94,7 @@ TEST(DrawOrder, TakesMeshesWithoutSizeAndWithoutTriangles) {
   EXPECT_EQ(draw_order(point, {}).drawn.size(), 1U);
 }
 
-TEST(DrawOrder, TakesTheLargestAndTheSmallestCoordinates) {
+TEST(DrawOrder, AcceptsTheLargestAndSmallestCoordinates) {
   Mesh small;
   small.positions_m = {{0.0F, 0.0F, 0.0F}, {1e-42F, 0.0F, 0.0F}, {0.0F, 1e-42F, 0.0F}};
   small.triangles = {{0, 1, 2}};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Beams that meet triangles edge-on, right at their start, or where they have no width.
+// Beams that hit triangles edge-on, close to their start, or where they have no width.
 #include <render/renderer_suite.hpp>
 
 #include <cmath>
@@ -14,14 +14,14 @@ using testing::Draws;
 
 class GrazingBeams : public testing::RendererSuite {};
 
-TEST_P(GrazingBeams, ATriangleWithoutWidthThatStitchesOthersLeavesNoHoles) {
+TEST_P(GrazingBeams, ATriangleWithoutWidthBetweenOthersLeavesNoHoles) {
   for (const float width : {1e-6F, 1e-12F, 1e-30F, 0.0F}) {
     Scene scene = builtin_scene("plane");
     Mesh& mesh = scene.meshes[0];
     mesh = Mesh();
     mesh.positions_m = {{-64, 0, 0}, {0, width, 0}, {64, 0, 0}, {0, -64, 0}, {0, 64, 0}};
     mesh.triangles = {{0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {0, 2, 1}};
-    // the middle row of 43 looks along the line
+    // the middle row of 43 is along the line
     const Hits hits = cast(scene, camera_beams(61, 43, 60.0),
                            look_at({0.1, 0.0, 5.0}, {0.3, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
     for (std::size_t i = 0; i < hits.range_m.size(); ++i) {
@@ -32,7 +32,7 @@ TEST_P(GrazingBeams, ATriangleWithoutWidthThatStitchesOthersLeavesNoHoles) {
   }
 }
 
-TEST_P(GrazingBeams, RangesAreAboveZeroRightBesideASurface) {
+TEST_P(GrazingBeams, RangesArePositiveCloseToASurface) {
   const Scene scene = builtin_scene("asteroid");
   const Mesh& mesh = scene.meshes[0];
   Draws draws(21);

@@ -31,7 +31,7 @@ Pose looking(const Eigen::Vector3d& from) {
   return look_at(from, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
 }
 
-TEST(GridWindow, HoldsEveryVertexThatTheCameraSees) {
+TEST(GridWindow, ContainsEveryVisibleVertex) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(80, 60, 50.0);
   const PinholeIntrinsics& k = *beams.pinhole;
@@ -53,7 +53,7 @@ TEST(GridWindow, HoldsEveryVertexThatTheCameraSees) {
   }
 }
 
-TEST(GridWindow, IsWholeWhereSomethingIsBesideOrBehindTheCamera) {
+TEST(GridWindow, IsTheWholeGridIfSomethingIsBesideOrBehindTheCamera) {
   const Scene scene = builtin_scene("box");  // half side 1
   const Beams beams = camera_beams(8, 8, 60.0);
   const GridWindow whole = window(scene, beams, looking({0.5, 0.0, 0.0}));
@@ -61,7 +61,7 @@ TEST(GridWindow, IsWholeWhereSomethingIsBesideOrBehindTheCamera) {
   EXPECT_TRUE(holds(whole, 7, 7));
 }
 
-TEST(GridWindow, IsEmptyWhereNothingIsPresentOrAllIsOutOfView) {
+TEST(GridWindow, IsEmptyIfNothingIsEnabledOrInView) {
   const Scene scene = builtin_scene("box");
   const Beams beams = camera_beams(8, 8, 20.0);
   const std::array<std::uint8_t, 1> absent = {0};
@@ -73,7 +73,7 @@ TEST(GridWindow, IsEmptyWhereNothingIsPresentOrAllIsOutOfView) {
   EXPECT_FALSE(window(scene, beams, beside).meets(inner));
 }
 
-TEST(GridWindow, IsWholeForBeamsOfNoPinhole) {
+TEST(GridWindow, IsTheWholeGridForOtherBeams) {
   Beams beams = camera_beams(8, 8, 20.0);
   beams.pinhole.reset();
   EXPECT_TRUE(holds(window(builtin_scene("box"), beams, looking({9.0, 0.0, 0.0})), 7, 0));

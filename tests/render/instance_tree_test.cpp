@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The tree over instances finds what a look at every instance finds.
+// The tree over instances finds the same instances as a test of each.
 #include <glidar/render/instance_tree.hpp>
 #include <render/renderer_suite.hpp>
 
@@ -12,7 +12,7 @@ namespace {
 using testing::Draws;
 using Box = InstanceTree::Box;
 
-/// Boxes of many sizes around the origin, and the tree over those that are present.
+/// Boxes of many sizes around the origin, and the tree over the enabled ones.
 class Stage {
  public:
   Scene scene = testing::builtin_scene("box");
@@ -91,7 +91,7 @@ TEST(InstanceTree, FindsTheInstancesAroundAPoint) {
   }
 }
 
-TEST(InstanceTree, EndsASearchWhenItIsTold) {
+TEST(InstanceTree, EndsASearchIfTheVisitorReturnsFalse) {
   const Stage stage(100, 5);
   int visited = 0;
   stage.tree.visit_near({Eigen::Vector3d::Constant(-99.0), Eigen::Vector3d::Constant(99.0)},
@@ -99,7 +99,7 @@ TEST(InstanceTree, EndsASearchWhenItIsTold) {
   EXPECT_EQ(visited, 7);
 }
 
-TEST(InstanceTree, KnowsWhereBoxesOfOthersOverlap) {
+TEST(InstanceTree, ReportsWhereBoxesOverlap) {
   const Stage stage(120, 6);
   std::size_t alone = 0;
   for (std::uint32_t i = 0; i < stage.present.size(); ++i) {

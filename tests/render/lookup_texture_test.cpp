@@ -24,7 +24,7 @@ Texture random_texture(std::uint32_t width, std::uint32_t height, std::uint32_t 
   return texture;
 }
 
-/// Texture coordinates within the texture, around it, far away, on texels' borders and not finite.
+/// Texture coordinates within the texture, around it, far away, on texels' borders, and non-finite.
 std::vector<float> coordinates() {
   std::vector<float> values = {0.0F,   1.0F,   -1.0F, 0.5F,   0.25F,      1e-30F,
                                1e6F,   -1e6F,  1e20F, -1e30F, 3.4e38F,    -0.0F,
@@ -65,7 +65,7 @@ void expect_equal_bits(const Texture& texture, const TextureUse& use) {
   }
 }
 
-TEST(LookupTexture, HasTheBitsOfTheTextureForAllSizesAndChannels) {
+TEST(LookupTexture, EqualsTheTextureForAllSizesAndChannels) {
   for (const std::uint32_t channels : {1U, 2U, 3U, 4U}) {
     for (const auto& [width, height] :
          {std::pair{1U, 1U}, {1U, 7U}, {5U, 1U}, {3U, 3U}, {4U, 4U}, {17U, 9U}, {64U, 33U}}) {
@@ -75,7 +75,7 @@ TEST(LookupTexture, HasTheBitsOfTheTextureForAllSizesAndChannels) {
   }
 }
 
-TEST(LookupTexture, HasTheBitsOfTheTextureForAllWrapModesFiltersAndTransforms) {
+TEST(LookupTexture, EqualsTheTextureForAllWrapModesFiltersAndTransforms) {
   const Texture texture = random_texture(13, 6, 3);
   for (const Wrap wrap_u : {Wrap::repeat, Wrap::mirror, Wrap::clamp}) {
     for (const Wrap wrap_v : {Wrap::repeat, Wrap::mirror, Wrap::clamp}) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Drawing in a context that somebody else made, uses and changes.
+// Drawing in a context that the application created, uses and changes.
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
@@ -19,7 +19,7 @@ namespace {
 using testing::builtin_scene;
 using testing::camera_beams;
 
-/// A context that several may draw in, as they would in that of a window.
+/// A context that several clients share, such as that of a window.
 class SharedContext final : public opengl::Context {
  public:
   SharedContext(opengl::EglContext& shared, int& uses) : shared_(shared), uses_(uses) {}
@@ -73,7 +73,7 @@ class OpenglContext : public ::testing::Test {
   int uses_ = 0;
 };
 
-TEST_F(OpenglContext, AnothersContextDrawsTheSameHitsAndTheSamePicture) {
+TEST_F(OpenglContext, ASharedContextDrawsTheSameHitsAndFramebuffer) {
   const std::unique_ptr<Renderer> theirs = renderer();
   const auto camera = make_paper_camera(scene_, {.threads = 1}, shared());
   Hits hits;
@@ -89,7 +89,7 @@ TEST_F(OpenglContext, AnothersContextDrawsTheSameHitsAndTheSamePicture) {
   EXPECT_EQ(picture.rgba, own.rgba);
 }
 
-TEST_F(OpenglContext, WhatWasCurrentBeforeIsCurrentAfterwardsWithItsSurface) {
+TEST_F(OpenglContext, ThePreviousContextAndSurfaceAreRestored) {
   opengl::EglContext other({});
   const opengl::ScopedContext use(other);
   const EGLDisplay display = eglGetCurrentDisplay();
@@ -116,13 +116,13 @@ TEST_F(OpenglContext, WhatWasCurrentBeforeIsCurrentAfterwardsWithItsSurface) {
   EXPECT_EQ(eglGetCurrentSurface(EGL_READ), surface);
 }
 
-TEST_F(OpenglContext, NothingIsCurrentAfterwardsWhereNothingWasBefore) {
+TEST_F(OpenglContext, NoContextIsCurrentAfterwardsIfNoneWasBefore) {
   Hits hits;
   renderer()->cast(request(), hits);
   EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
 }
 
-TEST_F(OpenglContext, TheStateThatOthersLeaveDoesNotMatter) {
+TEST_F(OpenglContext, ResultsDoNotDependOnThePreviousState) {
   const std::unique_ptr<Renderer> theirs = renderer();
   const auto camera = make_paper_camera(scene_, {.threads = 1}, shared());
   Woods2016Framebuffer before;
@@ -152,7 +152,7 @@ TEST_F(OpenglContext, TheStateThatOthersLeaveDoesNotMatter) {
   EXPECT_EQ(picture.rgba, before.rgba);
 }
 
-TEST_F(OpenglContext, WhatDrawingChangesIsAsInANewContextAfterwards) {
+TEST_F(OpenglContext, DrawingResetsTheStateThatItChanges) {
   const std::unique_ptr<Renderer> theirs = renderer();
   Hits hits;
   theirs->cast(request(), hits);
@@ -174,23 +174,23 @@ TEST_F(OpenglContext, WhatDrawingChangesIsAsInANewContextAfterwards) {
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-TEST_F(OpenglContext, AContextThatCannotBeCurrentSaysWhy) {
+TEST_F(OpenglContext, AContextThatCannotBeCurrentIsAnError) {
   EXPECT_EQ(error_text([&] {
               make_opengl_renderer(scene_, {.threads = 1}, std::make_unique<NoContext>());
             }),
             "window: it is closed");
 }
 
-TEST_F(OpenglContext, TellsOfResetsWhereTheDriverCan) {
+TEST_F(OpenglContext, ReportsDeviceResetsIfTheDriverDoes) {
   const opengl::ScopedContext use(*window_);
   opengl::check_not_lost();
-  if (epoxy_gl_version() < 45) GTEST_SKIP() << "this driver need not tell";
+  if (epoxy_gl_version() < 45) GTEST_SKIP() << "this driver need not report resets";
   GLint strategy = 0;
   glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
   EXPECT_EQ(strategy, GL_LOSE_CONTEXT_ON_RESET);
 }
 
-TEST(OpenglReset, SaysWhoseFaultItIsAndWhatToDo) {
+TEST(OpenglReset, ReportsTheCauseAndARemedy) {
   const auto text = [](GLenum status) { return error_text([&] { opengl::check_reset(status); }); };
   EXPECT_EQ(text(GL_NO_ERROR), "no error");
   EXPECT_EQ(text(GL_UNKNOWN_CONTEXT_RESET),

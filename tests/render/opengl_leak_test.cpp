@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory and open files stay as they are, however much is drawn and however often one begins anew.
+// Memory and open files stay constant, however many frames are drawn or renderers are created.
 #include <glidar/render/woods2016_framebuffer.hpp>
 #include <render/renderer_suite.hpp>
 
@@ -16,7 +16,7 @@ namespace {
 using testing::builtin_scene;
 using testing::camera_beams;
 
-/// What the process holds.
+/// Memory and open files of the process.
 struct Held {
   double memory_MiB;
   std::ptrdiff_t files;
@@ -36,7 +36,7 @@ class OpenglLeak : public ::testing::Test {
  protected:
   void SetUp() override { GLIDAR_NEEDS_OPENGL(); }
 
-  /// Does it some times to warm up, then many times more, and expects to hold no more than before.
+  /// Runs a function some times to warm up, then many times more, and expects no growth.
   static void expect_flat(int warm_up, int times, double allowance_MiB, const auto& action) {
     for (int i = 0; i < warm_up; ++i) action(i);
     const Held before = held();
@@ -53,7 +53,7 @@ class OpenglLeak : public ::testing::Test {
   Pose pose_ = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
 };
 
-TEST_F(OpenglLeak, TenThousandFramesHoldNoMoreThanAThousand) {
+TEST_F(OpenglLeak, MemoryStaysConstantOverTenThousandFrames) {
   const auto renderer = make_renderer(scene_, {.kind = "opengl", .threads = 1});
   Hits hits;
   expect_flat(1000, 10'000, 1.0, [&](int /*frame*/) {
@@ -61,7 +61,7 @@ TEST_F(OpenglLeak, TenThousandFramesHoldNoMoreThanAThousand) {
   });
 }
 
-TEST_F(OpenglLeak, BatchesAndChangesOfSizeHoldNoMoreAfterMany) {
+TEST_F(OpenglLeak, MemoryStaysConstantOverBatchesAndResizes) {
   const auto renderer = make_renderer(scene_, {.kind = "opengl", .threads = 1});
   const Beams wide = camera_beams(40, 10, 12.0);
   std::vector<Hits> all(6);
@@ -75,7 +75,7 @@ TEST_F(OpenglLeak, BatchesAndChangesOfSizeHoldNoMoreAfterMany) {
   });
 }
 
-TEST_F(OpenglLeak, TenThousandPicturesOfThePapersCameraHoldNoMoreThanAThousand) {
+TEST_F(OpenglLeak, MemoryStaysConstantOverTenThousandFramebuffers) {
   const auto camera = make_paper_camera(scene_, {.threads = 1});
   Woods2016Framebuffer picture;
   expect_flat(1000, 10'000, 1.0, [&](int /*frame*/) {
@@ -83,10 +83,10 @@ TEST_F(OpenglLeak, TenThousandPicturesOfThePapersCameraHoldNoMoreThanAThousand) 
   });
 }
 
-// What a driver keeps of every context is not ours; a scene of ours is much more.
+// Drivers keep some memory per context; a scene takes much more.
 constexpr double kPerContext_MiB = 0.03;
 
-TEST_F(OpenglLeak, AHundredRenderersComeAndGo) {
+TEST_F(OpenglLeak, MemoryStaysConstantOverAHundredRenderers) {
   Hits hits;
   expect_flat(10, 100, 100 * kPerContext_MiB, [&](int /*frame*/) {
     make_renderer(scene_, {.kind = "opengl", .threads = 1})
@@ -94,7 +94,7 @@ TEST_F(OpenglLeak, AHundredRenderersComeAndGo) {
   });
 }
 
-TEST_F(OpenglLeak, AHundredPaperCamerasComeAndGo) {
+TEST_F(OpenglLeak, MemoryStaysConstantOverAHundredFramebufferCameras) {
   Woods2016Framebuffer picture;
   expect_flat(10, 100, 100 * kPerContext_MiB, [&](int /*frame*/) {
     make_paper_camera(scene_, {.threads = 1})

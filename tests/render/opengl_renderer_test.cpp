@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is particular to OpenGL: its devices, and that many live side by side.
+// OpenGL only: selection of devices, and many renderers at a time.
 #include <glidar/core/error.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <render/renderer_suite.hpp>
@@ -17,7 +17,7 @@ class OpenglRenderer : public ::testing::Test {
   void SetUp() override { GLIDAR_NEEDS_OPENGL(); }
 };
 
-TEST_F(OpenglRenderer, NamesTheDevicesWhenTheOneAskedForIsNotThere) {
+TEST_F(OpenglRenderer, AnUnknownDeviceIsAnErrorThatListsTheDevices) {
   const std::vector<std::string> devices = opengl::graphics_devices();
   if (devices.empty()) GTEST_SKIP() << "this machine's EGL does not list devices";
   const Scene scene;
@@ -26,7 +26,7 @@ TEST_F(OpenglRenderer, NamesTheDevicesWhenTheOneAskedForIsNotThere) {
   EXPECT_EQ(text.rfind("graphics device: 1000; allowed: 0: " + devices[0], 0), 0U) << text;
 }
 
-TEST_F(OpenglRenderer, ManyRenderersComeAndGoAndDrawInTurns) {
+TEST_F(OpenglRenderer, ManyRenderersCanDrawInTurns) {
   const Scene scene = builtin_scene("box");
   const Beams beams = camera_beams(8, 8, 8.0);
   const auto first = make_renderer(scene, {.kind = "opengl", .threads = 1});

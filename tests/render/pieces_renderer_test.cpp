@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes whose parts have origins of their own, in every renderer.
+// Meshes whose parts have their own origins, in every renderer.
 #include <glidar/core/error.hpp>
 #include <glidar/core/mesh_pieces.hpp>
 #include <glidar/io/model/model.hpp>
@@ -22,7 +22,8 @@ using PiecesSuite = RendererSuite;
 
 constexpr double kTolerance_m = 1e-7;
 
-/// Boxes of this size, m, at these places: no single precision near zero holds them all.
+/// Boxes of this size, m, at these positions, which single precision cannot represent with one
+/// origin.
 constexpr double kSide_m = 0.7;
 const std::vector<Eigen::Vector3d>& places_m() {
   static const std::vector<Eigen::Vector3d> places = {
@@ -61,7 +62,7 @@ Scene scene_of_boxes() {
   return scene;
 }
 
-/// Where a ray enters the upright box around a place: the slabs of Kay and Kajiya (1986).
+/// Where a ray enters the upright box around a position: the slabs of Kay and Kajiya (1986).
 double entry_m(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction,
                const Eigen::Vector3d& place) {
   const double half = double{static_cast<float>(0.5 * kSide_m)};
@@ -99,7 +100,7 @@ TEST_P(PiecesSuite, PartsFarFromEachOtherAreExact) {
   }
 }
 
-TEST_P(PiecesSuite, TellTheSameAsOneInstancePerPart) {
+TEST_P(PiecesSuite, EqualOneInstancePerPart) {
   const Scene scene = scene_of_boxes();
   Scene apart;
   add_model(apart, make_builtin_model("sphere"));
@@ -126,7 +127,7 @@ TEST_P(PiecesSuite, TellTheSameAsOneInstancePerPart) {
   }
 }
 
-TEST_P(PiecesSuite, PosesPresenceAndBatchesAreThoseOfTheScene) {
+TEST_P(PiecesSuite, PosesEnabledInstancesAndBatchesReferToTheScene) {
   const Scene scene = scene_of_boxes();
   const Beams beams = camera_beams(20, 20, 30.0);
   const auto device = renderer(scene);

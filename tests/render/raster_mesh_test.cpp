@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// How a mesh is cut into clusters, where they are looked for, and how a picture is cut into parts.
+// Clusters of a mesh, their bounds in the image, and the tiles of an image.
 #include <glidar/render/raster/packed_mesh.hpp>
 #include <glidar/render/raster/tile_grid.hpp>
 #include <glidar/render/raster/visible_clusters.hpp>
@@ -21,7 +21,7 @@ Eigen::Vector3d corner_of(const Mesh& mesh, std::uint32_t triangle, std::size_t 
   return mesh.positions_m[mesh.triangles[triangle][k]].cast<double>();
 }
 
-TEST(RasterPackedMesh, HoldsEveryTriangleWithAreaOnceNearItsClustersMiddle) {
+TEST(RasterPackedMesh, ContainsEveryTriangleWithAreaOnce) {
   Mesh mesh = builtin_scene("asteroid").meshes[0];
   mesh.triangles.push_back({5, 5, 9});  // without area
   const PackedMesh packed(mesh);
@@ -59,7 +59,7 @@ TEST(RasterPackedMesh, AnEmptyMeshHasNoCluster) {
   EXPECT_EQ(PackedMesh(Mesh{}).clusters, 0U);
 }
 
-/// Depths between which all of a scene lies, as a pinhole at the pose sees it.
+/// Range of depths of a scene from a pose.
 DepthRange depths_of(const Scene& scene, const InstanceView& view) {
   double near_m = 1e9;
   double far_m = -1e9;
@@ -69,7 +69,7 @@ DepthRange depths_of(const Scene& scene, const InstanceView& view) {
   return tight_depth_range(near_m, far_m);
 }
 
-TEST(RasterSight, HoldsEveryCornerOfAClusterFromOutsideAndWithin) {
+TEST(RasterVisibleClusters, ContainsEveryCornerFromOutsideAndInside) {
   Scene scene = builtin_scene("asteroid");
   scene.instances[0].scale = 1.3;
   scene.instances[0].world_from_object = testing::turned(0.7, {1.0, 2.0, 3.0}, {0.1, 0.2, -0.3});
@@ -112,7 +112,7 @@ TEST(RasterSight, HoldsEveryCornerOfAClusterFromOutsideAndWithin) {
   EXPECT_GT(within, 10'000U);
 }
 
-TEST(RasterSight, ClustersBehindAndBesideAreNotSeen) {
+TEST(RasterVisibleClusters, ClustersBehindOrBesideAreNotVisible) {
   const Scene scene = builtin_scene("sphere");  // radius 1
   const PackedMesh packed(scene.meshes[0]);
   const Beams beams = camera_beams(64, 64, 100.0);
@@ -132,7 +132,7 @@ TEST(RasterSight, ClustersBehindAndBesideAreNotSeen) {
   }
 }
 
-TEST(RasterParts, EveryPixelOfTheWindowIsWrittenOnceAndDrawnWithThoseAround) {
+TEST(RasterTileGrid, EveryPixelIsWrittenOnceAndDrawnWithItsNeighbours) {
   for (const GridWindow& window : {GridWindow{0, 480, 0, 640}, GridWindow{7, 300, 33, 34},
                                    GridWindow{100, 2000, 5, 600}, GridWindow{479, 480, 639, 640}}) {
     TileGrid parts;
@@ -161,7 +161,7 @@ TEST(RasterParts, EveryPixelOfTheWindowIsWrittenOnceAndDrawnWithThoseAround) {
   }
 }
 
-TEST(RasterParts, TellEachPartWhatItSees) {
+TEST(RasterTileGrid, ListsTheClustersOfEachTile) {
   TileGrid parts;
   parts.build({0, 480, 0, 640}, 480, 640);
   std::mt19937 random(2);

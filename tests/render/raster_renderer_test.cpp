@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is particular to the raster: single precision at extremes, and its two ways to draw.
+// Raster only: single precision at extremes, and both methods of drawing.
 #include <render/renderer_suite.hpp>
 
 #include <cmath>
@@ -23,7 +23,7 @@ Hits cast_by(const char* kind, const Scene& scene, const Beams& beams, const Pos
   return hits;
 }
 
-/// Beams that tell another triangle than cast rays.
+/// Number of beams that report another triangle than rays.
 std::size_t others(const Hits& drawn, const Hits& cast) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < cast.primitive.size(); ++i) {
@@ -34,7 +34,7 @@ std::size_t others(const Hits& drawn, const Hits& cast) {
   return count;
 }
 
-TEST(RasterRenderer, SomethingAsFarAsCanBeDoesNotHideWhatIsNear) {
+TEST(RasterRenderer, ADistantObjectDoesNotHideANearOne) {
   Scene scene = builtin_scene("sphere");
   add_model(scene, make_builtin_model("sphere"));
   add_model(scene, make_builtin_model("box"));
@@ -47,7 +47,7 @@ TEST(RasterRenderer, SomethingAsFarAsCanBeDoesNotHideWhatIsNear) {
   EXPECT_LE(others(drawn, cast_by("rays", scene, beams, Pose::Identity())), 2U);
 }
 
-TEST(RasterRenderer, SeesFromWithinAndFromBetweenTriangles) {
+TEST(RasterRenderer, WorksFromInsideAndBetweenTriangles) {
   Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(160, 120, 60.0);
   const Eigen::Vector3d middle = bounds(scene).center();
@@ -65,7 +65,7 @@ TEST(RasterRenderer, SeesFromWithinAndFromBetweenTriangles) {
   EXPECT_LE(differ, hits / 20'000);
 }
 
-TEST(RasterRenderer, CullsBacksAsCastRaysDo) {
+TEST(RasterRenderer, CullsBackFacesAsRaysDo) {
   const Scene scene = builtin_scene("torus");
   const Beams beams = camera_beams(160, 120, 100.0);
   const Pose pose = look_at({1.0, 0.0, 0.1}, {0.0, 1.0, 0.0}, Eigen::Vector3d::UnitZ());
@@ -73,7 +73,7 @@ TEST(RasterRenderer, CullsBacksAsCastRaysDo) {
   EXPECT_LE(others(cast_by("raster", scene, beams, pose, true), cast), 2U);
 }
 
-TEST(RasterRenderer, HolesAreHolesInTrianglesOfEverySize) {
+TEST(RasterRenderer, AlphaMasksWorkOnTrianglesOfEverySize) {
   Scene scene = builtin_scene("plane");
   scene.textures.push_back({.name = "mask",
                             .width = 3,
@@ -118,8 +118,8 @@ std::vector<Triangle> grid(std::uint32_t side) {
   return triangles;
 }
 
-TEST(RasterRenderer, FromATrianglesPlaneItSeesWhatIsBeyond) {
-  // A floor, and a wall that stands on it; the eye is on the floor.
+TEST(RasterRenderer, ATriangleSeenEdgeOnHidesNothing) {
+  // A floor, and a wall on it; the sensor is on the floor.
   const Scene scene = scene_of_mesh({{-4, -3, 0},
                                      {4, -3, 0},
                                      {4, 3, 0},
@@ -136,8 +136,8 @@ TEST(RasterRenderer, FromATrianglesPlaneItSeesWhatIsBeyond) {
   EXPECT_EQ(others(drawn, cast_by("rays", scene, beams, pose)), 0U);
 }
 
-TEST(RasterRenderer, AMeshOfFineAndOfVastTrianglesDoesNotLeak) {
-  // Fine ground below the eye, from whose border triangles go out to 3 km.
+TEST(RasterRenderer, AMeshOfSmallAndVastTrianglesDoesNotLeak) {
+  // Fine ground below the sensor, surrounded by triangles of up to 3 km.
   constexpr std::uint32_t kSide = 6;
   std::vector<Eigen::Vector3f> positions;
   for (std::uint32_t row = 0; row <= kSide; ++row) {
@@ -169,8 +169,8 @@ TEST(RasterRenderer, AMeshOfFineAndOfVastTrianglesDoesNotLeak) {
   for (std::size_t i = 0; i < beams.size(); ++i) ASSERT_NEAR(drawn.depth_m[i], 1.0, 1e-9) << i;
 }
 
-TEST(RasterRenderer, AmongCreasesSmallerThanAPixelItTellsTheTruth) {
-  // Noise on a grid: silhouettes everywhere. Brute force tells what is met, the eye close or far.
+TEST(RasterRenderer, CreasesSmallerThanAPixelEqualBruteForce) {
+  // Noise on a grid, with silhouettes everywhere, compared with brute force from near and far.
   constexpr std::uint32_t kSide = 60;
   testing::Draws draws(8);
   std::vector<Eigen::Vector3f> positions;

@@ -11,7 +11,7 @@
 namespace glidar::raster {
 namespace {
 
-/// A square with borders along rows and columns, everywhere as near.
+/// A square with edges along rows and columns and constant nearness.
 TriangleSetup square(const PixelBounds& rect, float nearness, std::uint32_t triangle_id) {
   TriangleSetup setup{};
   setup.rect = rect;
@@ -32,7 +32,7 @@ std::vector<std::uint32_t> drawn_numbers(const TileBuffer& tile) {
   return triangle_ids;
 }
 
-/// The numbers without what is marked.
+/// The ids without flags.
 std::vector<std::uint32_t> triangles_of(const TileBuffer& tile) {
   std::vector<std::uint32_t> triangle_ids = drawn_numbers(tile);
   for (std::uint32_t& triangle_id : triangle_ids) triangle_id &= kTriangleIdMask | kCertainFlag;
@@ -45,7 +45,7 @@ std::unique_ptr<TileBuffer> empty_canvas(int cols, int rows) {
   return tile;
 }
 
-/// Shapes at random, sloping and overlapping.
+/// Random setups, sloping and overlapping.
 std::vector<TriangleSetup> many_shapes(int cols, int rows) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> tile(0.0F, 1.0F);
@@ -54,7 +54,7 @@ std::vector<TriangleSetup> many_shapes(int cols, int rows) {
     const int left = static_cast<int>(tile(random) * static_cast<float>(cols - 1));
     const int top = static_cast<int>(tile(random) * static_cast<float>(rows - 1));
     const PixelBounds rect{left, std::min(cols - 1, left + 9), top, std::min(rows - 1, top + 6)};
-    // Few different ones, so that some are equally near.
+    // Few different values, so that some triangles are equally near.
     TriangleSetup setup = square(rect, 0.25F * std::floor(4.0F * tile(random)), i);
     if (i % 2 == 0) setup.nearness_per_col = 0.01F * tile(random);
     shapes.push_back(setup);
@@ -62,7 +62,7 @@ std::vector<TriangleSetup> many_shapes(int cols, int rows) {
   return shapes;
 }
 
-TEST(RasterCanvas, IsEmptyAtFirstAndAfterItIsCleared) {
+TEST(RasterTileBuffer, IsEmptyAfterClear) {
   const auto tile = empty_canvas(10, 6);
   EXPECT_EQ(drawn_numbers(*tile), std::vector<std::uint32_t>(60, kNoTriangleId));
   tile->depth_test(3, 2, 0.5F, 0.0F, 7);
@@ -71,7 +71,7 @@ TEST(RasterCanvas, IsEmptyAtFirstAndAfterItIsCleared) {
   EXPECT_EQ(drawn_numbers(*tile), std::vector<std::uint32_t>(45, kNoTriangleId));
 }
 
-TEST(RasterCanvas, TheNearestStaysInWhateverOrderItComes) {
+TEST(RasterTileBuffer, TheNearestTriangleWinsInAnyOrder) {
   const int cols = 61;
   const int rows = 47;
   std::vector<TriangleSetup> shapes = many_shapes(cols, rows);
@@ -83,7 +83,7 @@ TEST(RasterCanvas, TheNearestStaysInWhateverOrderItComes) {
   EXPECT_EQ(triangles_of(*forward), triangles_of(*shuffled));
 }
 
-TEST(RasterCanvas, OfEquallyNearTheLowerNumberStays) {
+TEST(RasterTileBuffer, TheLowerIdWinsAtEqualNearness) {
   const auto tile = empty_canvas(8, 8);
   tile->draw(square({0, 7, 0, 7}, 0.5F, 5));
   tile->draw(square({0, 7, 0, 7}, 0.5F, 3));
@@ -95,7 +95,7 @@ TEST(RasterCanvas, OfEquallyNearTheLowerNumberStays) {
   EXPECT_EQ(triangle_ids[8 + 2], 1U | kCertainFlag | kContestedFlag);
 }
 
-TEST(RasterCanvas, MarksSurfacesTooCloseToTellInEitherOrder) {
+TEST(RasterTileBuffer, MarksSurfacesThatAreTooCloseInEitherOrder) {
   const TriangleSetup near = square({0, 7, 0, 7}, 0.5F, 5);
   for (const float apart : {0x1p-24F, 0x1p-20F, -0x1p-24F, -0x1p-20F}) {
     const TriangleSetup far = square({0, 7, 0, 7}, 0.5F - apart, 3);
@@ -109,7 +109,7 @@ TEST(RasterCanvas, MarksSurfacesTooCloseToTellInEitherOrder) {
   }
 }
 
-TEST(RasterCanvas, MarksNoneOfSurfacesThatAreClearlyApart) {
+TEST(RasterTileBuffer, DoesNotMarkSurfacesThatAreClearlyApart) {
   const auto tile = empty_canvas(8, 8);
   tile->draw(square({0, 7, 0, 7}, 0.5F, 5));
   tile->draw(square({0, 7, 0, 7}, 0.5F - 0x1p-16F, 3));
@@ -118,7 +118,7 @@ TEST(RasterCanvas, MarksNoneOfSurfacesThatAreClearlyApart) {
   EXPECT_EQ(drawn_numbers(*tile)[8 + 1], 5U | kCertainFlag);
 }
 
-TEST(RasterCanvas, MarksASurfaceWhoseNearnessIsRough) {
+TEST(RasterTileBuffer, MarksSurfacesWithRoughNearness) {
   TriangleSetup rough = square({0, 7, 0, 7}, 0.5F, 5);
   rough.margin = 0.01F;
   const auto tile = empty_canvas(8, 8);
@@ -127,7 +127,7 @@ TEST(RasterCanvas, MarksASurfaceWhoseNearnessIsRough) {
   EXPECT_EQ(drawn_numbers(*tile)[3 * 8 + 3], 3U | kCertainFlag | kContestedFlag);
 }
 
-TEST(RasterCanvas, TellsWhatIsCertainByTheDistanceFromBorders) {
+TEST(RasterTileBuffer, MarksPixelsFarFromEdgesAsCertain) {
   const auto tile = empty_canvas(8, 8);
   tile->draw(square({1, 6, 1, 6}, 0.5F, 2));
   const std::vector<std::uint32_t> triangle_ids = drawn_numbers(*tile);
@@ -136,7 +136,7 @@ TEST(RasterCanvas, TellsWhatIsCertainByTheDistanceFromBorders) {
   EXPECT_EQ(triangle_ids[3 * 8 + 3], 2U | kCertainFlag);  // in the middle
 }
 
-TEST(RasterCanvas, HidesOnlyWhereAllOfARectangleIsNearer) {
+TEST(RasterTileBuffer, OccludesARectangleOnlyIfAllOfItIsNearer) {
   for (const int side : {6, 40}) {  // pixel by pixel, and by cells
     const auto tile = empty_canvas(100, 100);
     const PixelBounds rect{20, 20 + side, 30, 30 + side};
@@ -149,7 +149,7 @@ TEST(RasterCanvas, HidesOnlyWhereAllOfARectangleIsNearer) {
   }
 }
 
-TEST(RasterCanvas, CellsThatHangOverItsBorderHideToo) {
+TEST(RasterTileBuffer, CellsBeyondTheBorderOccludeToo) {
   const auto tile = empty_canvas(43, 29);
   tile->draw(square({0, 42, 0, 28}, 0.5F, 1));
   tile->mark_stale({0, 42, 0, 28});

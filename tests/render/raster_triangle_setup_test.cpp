@@ -18,7 +18,8 @@ const Nearness& nearness() {
   return between;
 }
 
-/// How far a pixel lies inside a triangle, pixels; the corners in front of the sensor.
+/// Distance of a pixel from the edges of a triangle in front of the sensor, pixels; positive
+/// inside.
 double inside_px(const Eigen::Matrix3d& corners, int col, int row) {
   Eigen::Matrix<double, 2, 3> projections = corners.colwise().hnormalized();
   const Eigen::Vector2d e1 = projections.col(1) - projections.col(0);
@@ -33,7 +34,7 @@ double inside_px(const Eigen::Matrix3d& corners, int col, int row) {
   return smallest;
 }
 
-/// Nearness where a pixel's beam meets the triangle's plane.
+/// Nearness where a pixel's beam hits the triangle's plane.
 double nearness_at(const Eigen::Matrix3d& corners, int col, int row) {
   const Eigen::Vector3d normal =
       (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
@@ -41,7 +42,7 @@ double nearness_at(const Eigen::Matrix3d& corners, int col, int row) {
   return nearness().at(depth);
 }
 
-/// Sixteen triangles of about one size, on the canvas and around it; column k: corner k as (column,
+/// Sixteen triangles of about one size, in the tile and around it; column k: corner k as (column,
 /// row, 1) times depth.
 std::array<Eigen::Matrix3d, kLanes> triangles(double size_px, unsigned seed) {
   std::mt19937 random(seed);
@@ -78,7 +79,7 @@ TileTransform tile_transform(const std::array<Eigen::Matrix3d, kLanes>& all, Cor
           .cull_back_faces = false};
 }
 
-/// What a shape tells of a pixel.
+/// The coverage of a pixel by a setup.
 struct Told {
   bool coverage;
   bool certain;
@@ -101,10 +102,10 @@ Told tell(const TriangleSetup& s, int col, int row) {
   return told;
 }
 
-/// Whoever is inside must be covered, and nobody who is clearly outside; what is called certain is.
+/// Pixels inside are covered, those clearly outside are not, and certain ones are inside.
 void expect_true(const Told& told, const Eigen::Matrix3d& corners, int col, int row) {
   const double inside = inside_px(corners, col, row);
-  // The room is along the larger of row and column, up to sqrt(2) times as wide; twice for
+  // The margin is along the larger of row and column, up to sqrt(2) times as wide; twice for
   // rounding.
   constexpr double kClear_px = 3.0 * static_cast<double>(kEdgeMargin_px);
   if (inside >= 0.0) {
@@ -121,7 +122,7 @@ void expect_true(const Told& told, const Eigen::Matrix3d& corners, int col, int 
   EXPECT_NEAR(told.nearness, nearness_at(corners, col, row), 1e-6);
 }
 
-TEST(RasterFootprints, CoverThePixelsWhoseBeamsMeetTheTriangles) {
+TEST(RasterTriangleSetup, CoversThePixelsWhoseBeamsHitTheTriangles) {
   std::size_t covered_pixels = 0;
   for (const double size_px : {0.4, 1.5, 5.0, 20.0}) {
     for (unsigned seed = 0; seed < 40; ++seed) {
@@ -159,7 +160,7 @@ TEST(RasterFootprints, CoverThePixelsWhoseBeamsMeetTheTriangles) {
   EXPECT_GT(covered_pixels, 50'000U);
 }
 
-TEST(RasterFootprints, DoublePrecisionCoversTheSamePixels) {
+TEST(RasterTriangleSetup, DoublePrecisionCoversTheSamePixels) {
   for (const double size_px : {5.0, 20.0, 400.0}) {
     for (const Eigen::Matrix3d& corners : triangles(size_px, 9)) {
       const std::optional<TriangleSetup> setup = set_up_triangle(corners, nearness(), kAll, false);
@@ -172,7 +173,7 @@ TEST(RasterFootprints, DoublePrecisionCoversTheSamePixels) {
   }
 }
 
-TEST(RasterFootprints, CornersBehindTheSensorAreWelcome) {
+TEST(RasterTriangleSetup, AcceptsCornersBehindTheSensor) {
   // A floor 1 m below the sensor, from 30 m behind to 40 m ahead: below the horizon all is covered.
   const double focal_px = 30.0;
   const Eigen::Vector2d centre(30.0, 25.0);
@@ -199,7 +200,7 @@ TEST(RasterFootprints, CornersBehindTheSensorAreWelcome) {
   }
 }
 
-TEST(RasterFootprints, CullBacksWhenAsked) {
+TEST(RasterTriangleSetup, CullsBackFacesOnRequest) {
   const auto all = triangles(6.0, 1);
   CornerBlock corners;
   TileTransform transform = tile_transform(all, corners);
@@ -221,7 +222,7 @@ TEST(RasterFootprints, CullBacksWhenAsked) {
   EXPECT_GT(dropped, 2U);
 }
 
-TEST(RasterFootprints, LeaveToDoublePrecisionWhatSinglePrecisionCannotTell) {
+TEST(RasterTriangleSetup, UsesDoublePrecisionWhereSingleIsNotSufficient) {
   auto all = triangles(5.0, 2);
   all[0].col(1) *= -1.0;                                     // behind
   all[1].col(2) = 8.0 * Eigen::Vector3d(4000.0, 20.0, 1.0);  // far beside the canvas

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The promises of renderers that draw triangles in place of casting rays: which beams they take,
-// and that they tell the very bits of cast rays.
+// Rasterizers: which beams they accept, and that their results are those of rays, bit for bit.
 #include <glidar/core/error.hpp>
 #include <render/renderer_suite.hpp>
 #include <support/error_text.hpp>
@@ -36,11 +35,11 @@ class Rasterizer : public ::testing::TestWithParam<const char*> {
   }
 };
 
-/// How many beams tell another triangle than cast rays, and whether those that tell the same tell
-/// the same bits.
+/// Number of beams that report another triangle than rays, and whether all others have the same
+/// bits.
 struct Compared {
   std::size_t hits = 0;
-  std::size_t other_triangle = 0;  ///< at the same range, but for rounding
+  std::size_t other_triangle = 0;  ///< at the same range, except for rounding
   std::size_t other_surface = 0;
 };
 
@@ -61,7 +60,7 @@ Compared compare(const Hits& drawn, const Hits& cast) {
   return compared;
 }
 
-TEST_P(Rasterizer, TellsTheVeryBitsOfCastRaysOnADenseMesh) {
+TEST_P(Rasterizer, EqualsRaysOnADenseMesh) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(400, 300, 500.0);
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
@@ -70,15 +69,15 @@ TEST_P(Rasterizer, TellsTheVeryBitsOfCastRaysOnADenseMesh) {
       compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
   EXPECT_GT(compared.hits, 30'000U);
   EXPECT_LE(compared.other_triangle, compared.hits / 10'000);
-  // The outline is some 1000 pixels long, and in doubt 1/128 of a pixel to either side.
+  // The outline is some 1000 pixels long, and beams are uncertain within 1/128 of a pixel.
   EXPECT_LE(compared.other_surface, 15U);
 }
 
-TEST_P(Rasterizer, TellsTheVeryBitsOfCastRaysOnTheBunny) {
+TEST_P(Rasterizer, EqualsRaysOnTheBunny) {
   GLIDAR_NEEDS_DATA();
   const Scene scene = testing::scene_of(testing::load_data_model("models/stanford/bun_zipper.ply"));
   const Eigen::Vector3d middle = bounds(scene).center();
-  // From 5 km with triangles far smaller than the grid's step, and from near with large ones.
+  // From 5 km with triangles far smaller than a pixel, and from near with large ones.
   for (const double distance_m : {0.15, 0.4, 5.0, 5000.0}) {
     const Beams beams = camera_beams(300, 300, 1000.0 * distance_m);
     const Pose pose =
@@ -92,7 +91,7 @@ TEST_P(Rasterizer, TellsTheVeryBitsOfCastRaysOnTheBunny) {
   }
 }
 
-TEST_P(Rasterizer, DrawsPicturesLargerThanOnePart) {
+TEST_P(Rasterizer, DrawsImagesLargerThanOneTile) {
   const Scene scene = builtin_scene("torus");
   PinholeIntrinsics k{.width = 2500, .height = 2100, .fx = 9000.0, .fy = 7000.0};
   k.cx = 1100.25;
@@ -107,7 +106,7 @@ TEST_P(Rasterizer, DrawsPicturesLargerThanOnePart) {
   EXPECT_LE(compared.other_surface, 50U);
 }
 
-TEST_P(Rasterizer, FollowsAnyPrincipalPointFocalLengthsAndPixelCentre) {
+TEST_P(Rasterizer, AcceptsAnyPrincipalPointFocalLengthsAndPixelCentre) {
   Scene scene = builtin_scene("asteroid");
   PinholeIntrinsics k{.width = 203, .height = 101, .fx = 311.7, .fy = 187.3};
   k.cx = -60.5;  // outside of the picture
@@ -125,7 +124,7 @@ TEST_P(Rasterizer, FollowsAnyPrincipalPointFocalLengthsAndPixelCentre) {
   }
 }
 
-TEST_P(Rasterizer, SeesSurfacesAtTheSensorsNoseAndTenKilometresBehind) {
+TEST_P(Rasterizer, RendersSurfacesAtTheSensorAndTenKilometresAway) {
   Scene scene = builtin_scene("plane");
   add_model(scene, make_builtin_model("plane"));
   const double far_m = 1e4;
@@ -146,10 +145,10 @@ TEST_P(Rasterizer, SeesSurfacesAtTheSensorsNoseAndTenKilometresBehind) {
   EXPECT_LT(near_hits, 1000U);
 }
 
-TEST_P(Rasterizer, TellsThinLayersApartFromTenKilometres) {
+TEST_P(Rasterizer, ResolvesThinLayersFromTenKilometres) {
   Scene scene = builtin_scene("plane");
   add_model(scene, make_builtin_model("plane"));
-  // A sheet 0.1 mm behind another: far below what single precision resolves of 10 km.
+  // A surface 0.1 mm behind another: far below what single precision resolves of 10 km.
   scene.instances[0].world_from_object.translation().z() = 1e4 + 1e-4;
   scene.instances[1].world_from_object.translation().z() = 1e4;
   const Hits drawn = draw(scene, camera_beams(50, 50, 1e6), Pose::Identity());
@@ -162,7 +161,7 @@ TEST_P(Rasterizer, TellsThinLayersApartFromTenKilometres) {
   EXPECT_GT(found, 1000U);
 }
 
-TEST_P(Rasterizer, MasksOfSomeSlotsKeepTheTrianglesNumbers) {
+TEST_P(Rasterizer, AlphaMasksOfSomeSlotsKeepTriangleIds) {
   Scene scene = builtin_scene("sphere");
   Mesh& mesh = scene.meshes[0];
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -192,7 +191,7 @@ TEST_P(Rasterizer, MasksOfSomeSlotsKeepTheTrianglesNumbers) {
   EXPECT_LE(compared.other_triangle + compared.other_surface, compared.hits / 200);
 }
 
-TEST_P(Rasterizer, AbsentInstancesAreNotDrawn) {
+TEST_P(Rasterizer, DisabledInstancesAreNotDrawn) {
   Scene scene = builtin_scene("sphere");
   add_model(scene, make_builtin_model("sphere"));
   scene.instances[0].world_from_object.translation().z() = 4.0;
@@ -208,7 +207,7 @@ TEST_P(Rasterizer, AbsentInstancesAreNotDrawn) {
 }
 
 TEST_P(Rasterizer, BeamsExactlyAtVerticesAndAlongEdgesDoNotLeak) {
-  // A rough sheet in front of a far one: its vertices lie where beams go, and half-way between.
+  // A rough surface in front of a far one, with vertices at beams and half-way between.
   Scene scene = builtin_scene("plane");
   scene.instances[0].scale = 100.0;
   scene.instances[0].world_from_object.translation().z() = 50.0;
@@ -234,7 +233,7 @@ TEST_P(Rasterizer, BeamsExactlyAtVerticesAndAlongEdgesDoNotLeak) {
   scene.meshes.push_back(std::move(sheet));
   scene.sources.push_back({});
   scene.instances.push_back(
-      {.name = "sheet", .mesh = 1, .materials = scene.instances[0].materials});
+      {.name = "surface", .mesh = 1, .materials = scene.instances[0].materials});
   PinholeIntrinsics k{.width = 39, .height = 39, .fx = focal_px, .fy = focal_px};
   k.cx = k.cy = 19.0;
   k.pixel_centre = 0.0;
@@ -245,7 +244,7 @@ TEST_P(Rasterizer, BeamsExactlyAtVerticesAndAlongEdgesDoNotLeak) {
   }
 }
 
-TEST_P(Rasterizer, TellsOfEveryBeamOnceAndOfItsProgress) {
+TEST_P(Rasterizer, ReportsEveryBeamOnceAndItsProgress) {
   const Scene scene = builtin_scene("torus");
   const Beams beams = camera_beams(70, 50, 60.0);
   const Pose away = turned(3.1, {0.0, 1.0, 0.0}, {0.0, 0.0, -5.0});
@@ -266,7 +265,7 @@ TEST_P(Rasterizer, TellsOfEveryBeamOnceAndOfItsProgress) {
   }
 }
 
-TEST_P(Rasterizer, RefusesBeamsThatItCannotDraw) {
+TEST_P(Rasterizer, RejectsBeamsThatItCannotDraw) {
   const Scene scene = builtin_scene("box");
   Beams beams = camera_beams(4, 4, 4.0);
   const bool is_raster = GetParam() == std::string("raster");
@@ -283,7 +282,7 @@ TEST_P(Rasterizer, RefusesBeamsThatItCannotDraw) {
   refusal("beams with origins of their own");
   beams.origins_m.clear();
   beams.pinhole.reset();
-  refusal(is_raster ? "a lens's picture of fewer than 16 rows or columns"
+  refusal(is_raster ? "a lens's image with fewer than 16 rows or columns"
                     : "beams that are not a pinhole's straight grid");
 }
 

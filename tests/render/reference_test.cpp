@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Truth computed elsewhere: double-precision brute force, another program's OpenGL images, and a
-// real scanner.
+// External references: brute force in double precision, images from the OpenGL renderer of another
+// program, and a real scanner.
 #include <glidar/render/renderer.hpp>
 #include <render/renderer_suite.hpp>
 #include <support/data.hpp>
@@ -73,7 +73,7 @@ Beams spinning_beams(const json& params) {
   return beams;
 }
 
-/// Where a scanner stood in the model's own axes. Files of z up were turned to y up for the
+/// Position of a scanner in the model's own axes. Files of z up were rotated to y up for the
 /// reference.
 Eigen::Vector3d scanner_origin(const json& params) {
   const json& o = params["origin"];
@@ -84,7 +84,7 @@ Eigen::Vector3d scanner_origin(const json& params) {
 
 constexpr double kSingle = 6e-8;  // one rounding to single precision
 
-/// How far outside a triangle a point of its plane lies; negative inside.
+/// Distance of a point of a triangle's plane from the triangle; negative inside.
 double outside_m(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& point) {
   std::array<Eigen::Vector3d, 3> v;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -99,7 +99,7 @@ double outside_m(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d
   return outside;
 }
 
-/// What was computed elsewhere for a case's beams.
+/// External results for a case's beams.
 struct Reference {
   bool is_depth;                  ///< along the boresight; else range along the beam
   std::vector<float> distance_m;  ///< 0: no hit
@@ -132,8 +132,8 @@ void expect_reference(const Scene& scene, const Reference& reference, const Hits
     if (distance_m == 0.0) continue;
     const auto theirs = static_cast<std::uint32_t>(reference.triangle[i]);
     if (hits.primitive[i] != theirs) {
-      // Right only where both hold the beam's point, as far as single precision tells: on a common
-      // border, or where one sheet lies on another.
+      // Valid only where both triangles contain the beam's point, within single precision: at a
+      // common edge, or on coincident surfaces.
       ++on_both;
       EXPECT_LT(outside_m(scene.meshes[0], hits.primitive[i], hits.object_point_m[i]), 1e-12);
       EXPECT_LT(outside_m(scene.meshes[0], theirs, hits.object_point_m[i]), kSingle * distance_m)
@@ -147,13 +147,13 @@ void expect_reference(const Scene& scene, const Reference& reference, const Hits
     EXPECT_NEAR(hits.cos_incidence[i], cosine, 1e-3) << "beam " << i;
   }
   EXPECT_GT(compared, reference.distance_m.size() / 2);
-  // Zarya and the apartment have sheets that lie on each other to within single precision.
+  // Zarya and the apartment have coincident surfaces within single precision.
   EXPECT_LE(on_both, compared / 100);
 }
 
 class ReferenceCase : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ReferenceCase, EveryStableBeamMeetsTheSameTriangleAtTheSameDepthWithEveryRenderer) {
+TEST_P(ReferenceCase, StableBeamsHitTheReferenceTriangleAtTheReferenceDepth) {
   GLIDAR_NEEDS_DATA();
   const std::filesystem::path folder = testing::data_folder() / "reference/core" / GetParam();
   const json params = read_json(folder / "params.json");
@@ -191,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(Core, ReferenceCase,
                                            "rmagine_sphere_inside", "toyblocks_cube", "zarya"),
                          [](const auto& test) { return test.param; });
 
-/// Colours at the hits against nearest-texel look-ups made elsewhere.
+/// Compares colours at the hits with nearest-texel look-ups by another program.
 class TextureCase : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(TextureCase, UvsInterpolateAsInTheReference) {
@@ -226,7 +226,7 @@ TEST_P(TextureCase, UvsInterpolateAsInTheReference) {
 INSTANTIATE_TEST_SUITE_P(Core, TextureCase, ::testing::Values("duck_texture", "fuze_texture"),
                          [](const auto& test) { return test.param; });
 
-TEST(M3tOpengl, ItsDepthImageAndSilhouetteAreOurs) {
+TEST(M3tOpengl, DepthImageAndSilhouetteEqualTheReference) {
   GLIDAR_NEEDS_DATA();
   const std::filesystem::path folder = testing::data_folder() / "reference/m3t_opengl";
   const json params = read_json(folder / "params.json");
@@ -237,7 +237,7 @@ TEST(M3tOpengl, ItsDepthImageAndSilhouetteAreOurs) {
     const std::size_t i = add_model(scene, testing::load_data_model(body["mesh"]));
     scene.instances[i].world_from_object =
         pose_from(body["world2body"]).inverse(Eigen::Affine) * pose_from(body["geometry2body"]);
-    // Printed with six digits: made a rotation again.
+    // Printed with six digits, so it must be orthonormalised.
     Eigen::Matrix3d rotation = scene.instances[i].world_from_object.linear();
     rotation = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
     scene.instances[i].world_from_object.linear() = rotation;
@@ -267,7 +267,7 @@ TEST(M3tOpengl, ItsDepthImageAndSilhouetteAreOurs) {
   EXPECT_LT(largest, 0.2e-3);  // the program's 16-bit depth steps are up to 0.06 mm here
 }
 
-TEST(StanfordScan, TheBunnySeenAsTheScannerSawItLiesOnTheScan) {
+TEST(StanfordScan, TheRenderedBunnyMatchesTheScan) {
   GLIDAR_NEEDS_DATA();
   const std::filesystem::path folder = testing::data_folder() / "recordings/stanford_bunny_scans";
   std::ifstream file(folder / "bun000.ply");

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Many casts given together come out as one by one, in any renderer.
+// A batch of casts equals single casts, in every renderer.
 #include <render/renderer_suite.hpp>
 #include <support/error_text.hpp>
 
@@ -24,7 +24,7 @@ class RendererBatch : public testing::RendererSuite {
     scene_.instances[1].scale = 0.3;
   }
 
-  /// At the scene from a random side; every fifth looks away from it.
+  /// A view of the scene from a random side; every fifth looks away from it.
   Pose next_pose() {
     const Eigen::Vector3d eye = (3.0 + 20.0 * draws_.next()) * draws_.direction();
     const bool is_away = count_++ % 5 == 4;
@@ -37,7 +37,7 @@ class RendererBatch : public testing::RendererSuite {
         {.beams = beams, .world_from_sensor = next_pose(), .fields = kAllHitFields});
   }
 
-  /// Casts all together, then each alone, and compares every bit of every column.
+  /// Casts a batch, then each request alone, and compares every bit of every column.
   void expect_as_one_by_one() {
     const std::unique_ptr<Renderer> one = renderer(scene_);
     std::vector<Hits> together(requests_.size());
@@ -80,13 +80,13 @@ class RendererBatch : public testing::RendererSuite {
   std::vector<CastRequest> requests_;
 };
 
-TEST_P(RendererBatch, ManySmallViewsOfOneSizeSomeOfThemEmpty) {
+TEST_P(RendererBatch, ManySmallViewsOfOneSizeEqualSingleCasts) {
   const Beams beams = camera_beams(64, 64, 60.0);
   for (int i = 0; i < 70; ++i) add(beams);  // more than go into one target
   expect_as_one_by_one();
 }
 
-TEST_P(RendererBatch, ViewsOfManySizesInTurnAndInRuns) {
+TEST_P(RendererBatch, ViewsOfManySizesEqualSingleCasts) {
   const std::vector<Beams> sizes = {camera_beams(61, 43, 50.0), camera_beams(128, 128, 90.0),
                                     camera_beams(33, 200, 40.0)};
   for (std::size_t i = 0; i < 15; ++i) add(sizes[i % sizes.size()]);
@@ -94,7 +94,7 @@ TEST_P(RendererBatch, ViewsOfManySizesInTurnAndInRuns) {
   expect_as_one_by_one();
 }
 
-TEST_P(RendererBatch, ViewsLargerThanATargetAmongSmallOnes) {
+TEST_P(RendererBatch, ViewsLargerThanATargetEqualSingleCasts) {
   const Beams small = camera_beams(100, 80, 90.0);
   const Beams large = camera_beams(2300, 300, 300.0);
   for (const Beams* beams : {&small, &large, &large, &small, &small}) add(*beams);
@@ -113,7 +113,7 @@ TEST_P(RendererBatch, EveryCastHasItsOwnPosesFieldsAndCulling) {
   expect_as_one_by_one();
 }
 
-TEST_P(RendererBatch, TellsEveryCastOfItsBeamsOnceAndOfItsProgress) {
+TEST_P(RendererBatch, ReportsTheBeamsAndProgressOfEveryCast) {
   const Beams beams = camera_beams(40, 30, 35.0);
   constexpr std::size_t kCasts = 7;
   std::vector<std::vector<std::atomic<int>>> told;
@@ -141,7 +141,7 @@ TEST_P(RendererBatch, TellsEveryCastOfItsBeamsOnceAndOfItsProgress) {
   }
 }
 
-TEST_P(RendererBatch, ACastThatIsBrokenOffDoesNotHarmTheNext) {
+TEST_P(RendererBatch, AnAbortedCastDoesNotAffectTheNext) {
   const Beams beams = camera_beams(40, 30, 35.0);
   for (int i = 0; i < 3; ++i) add(beams);
   const std::unique_ptr<Renderer> one = renderer(scene_);
@@ -158,11 +158,11 @@ TEST_P(RendererBatch, ACastThatIsBrokenOffDoesNotHarmTheNext) {
   expect_same(all[2], expected, 2);
 }
 
-TEST_P(RendererBatch, NothingToCastIsDone) {
+TEST_P(RendererBatch, AnEmptyBatchIsAccepted) {
   renderer(scene_)->cast_batch({}, {});
 }
 
-TEST_P(RendererBatch, RefusesHitsForOtherCasts) {
+TEST_P(RendererBatch, RejectsAWrongNumberOfHits) {
   const Beams beams = camera_beams(4, 4, 4.0);
   add(beams);
   EXPECT_EQ(error_text([&] { renderer(scene_)->cast_batch(requests_, {}); }),

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed meshes do not leak, in any renderer. A new renderer joins by its name at the end.
+// Closed meshes do not leak, in any renderer.
 #include <glidar/render/resolver.hpp>
 #include <render/renderer_suite.hpp>
 
@@ -20,7 +20,7 @@ class RendererLeak : public testing::RendererSuite {};
 struct Target {
   Eigen::Vector3d point;
   std::vector<std::uint32_t> around;
-  bool on_border = false;  ///< of the mesh: a beam there may rightly pass by
+  bool on_border = false;  ///< of the mesh, where a beam may miss
 };
 
 std::vector<Target> targets_of(const Mesh& mesh) {
@@ -46,8 +46,8 @@ std::vector<Target> targets_of(const Mesh& mesh) {
   return targets;
 }
 
-/// Casts one beam from outside at every target with only fronts around it; counts those that go
-/// past.
+/// Casts one beam from outside at every target that is surrounded by front faces; counts the beams
+/// that miss.
 struct Aimed {
   std::size_t beams = 0;
   std::size_t leaked = 0;
@@ -83,13 +83,13 @@ Aimed aim_at(Renderer& renderer, const Scene& scene, const std::vector<Target>& 
   const double tolerance = 1e-6 * bounds(scene).diagonal().norm();
   Aimed aimed{.beams = ranges.size(), .leaked = 0};
   for (std::size_t i = 0; i < ranges.size(); ++i) {
-    // Something nearer may rightly hide the target; going past it is the leak.
+    // Something nearer may occlude the target; a miss is a leak.
     if (!(hits.range_m[i] <= ranges[i] + tolerance)) ++aimed.leaked;
   }
   return aimed;
 }
 
-/// Aims at all vertices and edge midpoints from many eyes until a million beams are cast.
+/// Aims at all vertices and edge midpoints from many positions until a million beams are cast.
 void expect_no_leak(Renderer& renderer, const Scene& scene) {
   const std::vector<Target> targets = targets_of(scene.meshes[0]);
   const std::vector<TrianglePlane> planes = triangle_planes(scene.meshes[0]);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What the tests that every renderer passes share.
+// Shared parts of the tests that every renderer must pass.
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/math/random.hpp>
@@ -22,7 +22,7 @@
 
 namespace glidar::testing {
 
-/// Draws for test rays: always the same.
+/// Random numbers for test rays, always the same.
 class Draws {
  public:
   explicit Draws(std::uint64_t seed) : draw_{.seed = seed} {}
@@ -89,7 +89,7 @@ inline Scene builtin_scene(const char* name) {
   return scene_of(make_builtin_model(name));
 }
 
-/// Why there is no OpenGL here at all; empty where there is.
+/// Why OpenGL is not available; empty if it is.
 inline std::string missing_opengl() {
   try {
     const opengl::EglContext context({});
@@ -99,7 +99,7 @@ inline std::string missing_opengl() {
   }
 }
 
-/// Skips the test, saying why, where a machine has no OpenGL at all.
+/// Skips the test on a machine without OpenGL, with the reason.
 #define GLIDAR_NEEDS_OPENGL()                                                            \
   if (const std::string missing = ::glidar::testing::missing_opengl(); !missing.empty()) \
   GTEST_SKIP() << missing
@@ -127,7 +127,7 @@ class RendererSuite : public ::testing::TestWithParam<std::string> {
   }
 };
 
-/// The promises of renderers that cast beams of any pattern.
+/// Tests of renderers that cast beams of any pattern.
 class AnyBeamsSuite : public RendererSuite {};
 
 }  // namespace glidar::testing

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Promises every renderer keeps: a new one joins by itself, and by its name at the end if it casts
-// beams of any pattern.
+// Tests that every renderer must pass. New renderers join automatically; those that cast beams of
+// any pattern are listed at the end.
 #include <glidar/core/error.hpp>
 #include <render/renderer_suite.hpp>
 
@@ -21,19 +21,19 @@ using testing::loose_beams;
 using testing::RendererSuite;
 using testing::turned;
 
-/// A beam this near a border (relative to the scene's size) may be told to the neighbour.
+/// At this distance from an edge (relative to the scene's size), the neighbour may be reported.
 constexpr double kBorder = 1e-5;
 /// Both sides compute the range in double, by different formulas.
 constexpr double kRangeTolerance = 1e-12;
 
-/// Half the width, in pixels, of the band around a border where a renderer may tell the neighbour:
+/// Half the width, in pixels, of the band around an edge where a renderer may report the neighbour:
 /// twice the step of a rasterizer's grid.
 double border_px(const std::string& renderer) {
   if (renderer == "opengl") return 1.0 / 128.0;
   return renderer == "raster" || renderer == "auto" ? 1.0 / 2048.0 : 0.0;
 }
 
-/// Compares every beam with the judge; returns how many were compared (not near a border).
+/// Compares every beam with brute force; returns how many were compared (not near an edge).
 std::size_t expect_judged(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
                           const Hits& hits, double band_px = 0.0) {
   const double size = bounds(scene).diagonal().norm();
@@ -67,7 +67,7 @@ std::size_t expect_judged(const Scene& scene, const Beams& beams, const Pose& wo
   return compared;
 }
 
-TEST_P(RendererSuite, SeesTheSameTrianglesAsBruteForceOnASphere) {
+TEST_P(RendererSuite, EqualsBruteForceOnASphere) {
   const Scene scene = builtin_scene("sphere");
   const Beams beams = camera_beams(61, 43, 60.0);  // odd sizes: tiles that hang over the border
   const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
@@ -75,7 +75,7 @@ TEST_P(RendererSuite, SeesTheSameTrianglesAsBruteForceOnASphere) {
   EXPECT_GT(expect_judged(scene, beams, pose, hits, border_px(GetParam())), beams.size() * 9 / 10);
 }
 
-TEST_P(RendererSuite, SeesTheSameTrianglesAsBruteForceAmongMovedScaledAndMixedInstances) {
+TEST_P(RendererSuite, EqualsBruteForceAmongMovedAndScaledInstances) {
   Scene scene = builtin_scene("torus");
   add_model(scene, make_builtin_model("box"));
   add_model(scene, make_builtin_model("sphere"));
@@ -107,7 +107,7 @@ TEST_P(AnyBeamsSuite, FollowsBeamOriginsAndDirectionsInAllDirections) {
   for (const std::uint32_t instance : hits.instance) EXPECT_EQ(instance, 0U);  // it is closed
 }
 
-TEST_P(RendererSuite, LosesNothingTenKilometresAwayFromAMillionMetresOff) {
+TEST_P(RendererSuite, IsExactTenKilometresAwayAndAThousandFromTheOrigin) {
   Scene scene = builtin_scene("box");
   scene.instances[0].world_from_object = turned(0.4, {0.2, 0.5, 1.0}, {1.0e6, -5.0e5, 2.5e5});
   const Eigen::Vector3d object = scene.instances[0].world_from_object.translation();
@@ -119,14 +119,14 @@ TEST_P(RendererSuite, LosesNothingTenKilometresAwayFromAMillionMetresOff) {
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (hits.instance[i] == kInvalidId) continue;
     ++on_object;
-    // The hit point lies on the box of half side 1: one coordinate is exactly 1, none is larger.
+    // The hit point is on the box of half side 1: one coordinate is exactly 1, none is larger.
     const double largest = hits.object_point_m[i].cwiseAbs().maxCoeff();
     EXPECT_NEAR(largest, 1.0, 4e-10);  // a position of 1e6 m is known to 1.2e-10 m in double
   }
   EXPECT_GT(on_object, beams.size() / 4);
 }
 
-TEST_P(RendererSuite, EveryColumnTellsOneStory) {
+TEST_P(RendererSuite, AllColumnsAreConsistent) {
   Scene scene = builtin_scene("torus");
   scene.instances[0].scale = 2.0;
   scene.instances[0].world_from_object = turned(1.0, {1.0, 0.0, 0.2}, {0.0, 0.1, 7.0});
@@ -162,7 +162,7 @@ TEST_P(RendererSuite, EveryColumnTellsOneStory) {
   }
 }
 
-TEST_P(AnyBeamsSuite, APinholesStructureChangesNoBit) {
+TEST_P(AnyBeamsSuite, APinholesIntrinsicsDoNotChangeResults) {
   const Scene scene = builtin_scene("asteroid");
   PinholeIntrinsics odd{.width = 203, .height = 101, .fx = 311.7, .fy = 287.3};
   odd.cx = 97.1;
@@ -179,7 +179,7 @@ TEST_P(AnyBeamsSuite, APinholesStructureChangesNoBit) {
                            with.range_m.size() * sizeof(double)));
 }
 
-TEST_P(RendererSuite, AVastObjectBehindASmallOneSpoilsNeither) {
+TEST_P(RendererSuite, AVastObjectBehindASmallOneIsExact) {
   // A satellite 20 m away in front of a globe as large as the Earth, 400 km below.
   Scene scene = builtin_scene("asteroid");
   add_model(scene, make_builtin_model("sphere"));
@@ -209,7 +209,7 @@ TEST_P(RendererSuite, AVastObjectBehindASmallOneSpoilsNeither) {
   EXPECT_LE(differ, of_small / 500);
 }
 
-TEST_P(RendererSuite, CullsBackFacesOnlyWhenAsked) {
+TEST_P(RendererSuite, CullsBackFacesOnlyOnRequest) {
   const Scene scene = builtin_scene("box");
   const Beams beams = camera_beams(8, 8, 8.0);
   const Hits both = cast(scene, beams, Pose::Identity());  // from inside: only backs
@@ -255,7 +255,7 @@ TEST_P(RendererSuite, InstancesMoveWithTheRequestedPoses) {
   }
 }
 
-TEST_P(RendererSuite, CutOutTexelsLetTheBeamThrough) {
+TEST_P(RendererSuite, TransparentTexelsLetTheBeamPass) {
   Scene scene = builtin_scene("plane");
   scene.textures.push_back(
       {.name = "mask", .width = 2, .height = 1, .channels = 1, .texels = {0, 255}});
@@ -272,7 +272,7 @@ TEST_P(RendererSuite, CutOutTexelsLetTheBeamThrough) {
   }
 }
 
-TEST_P(RendererSuite, TellsTheFirstOfTrianglesThatLieOnEachOther) {
+TEST_P(RendererSuite, ReportsTheFirstOfCoincidentTriangles) {
   Scene scene = builtin_scene("sphere");
   Mesh& mesh = scene.meshes[0];
   const std::vector<Triangle> once = mesh.triangles;
@@ -299,7 +299,7 @@ TEST_P(AnyBeamsSuite, ABeamWithoutDirectionHitsNothing) {
   }
 }
 
-TEST_P(RendererSuite, RefusesRequestsThatDoNotFit) {
+TEST_P(RendererSuite, RejectsInconsistentRequests) {
   const Scene scene = builtin_scene("box");
   Beams beams = camera_beams(4, 4, 4.0);
   beams.cols = 5;
@@ -310,7 +310,7 @@ TEST_P(RendererSuite, RefusesRequestsThatDoNotFit) {
   EXPECT_THROW(cast(scene, beams, far), Error);
 }
 
-TEST_P(RendererSuite, AtTheEdgeOfReachItMissesInsteadOfStopping) {
+TEST_P(RendererSuite, BeamsAtTheLimitsMissWithoutAnError) {
   const Scene scene = builtin_scene("box");
   Pose far = Pose::Identity();
   far.translation().x() = 1e15;
@@ -334,7 +334,7 @@ TEST_P(RendererSuite, AnEmptySceneIsAllMisses) {
   for (const double range : hits.range_m) EXPECT_TRUE(std::isnan(range));
 }
 
-TEST_P(RendererSuite, TheSameBytesForAnyNumberOfThreads) {
+TEST_P(RendererSuite, ResultsDoNotDependOnTheNumberOfThreads) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(200, 150, 150.0);
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
@@ -364,7 +364,7 @@ INSTANTIATE_TEST_SUITE_P(All, RendererSuite, ::testing::ValuesIn(renderer_kinds(
 INSTANTIATE_TEST_SUITE_P(All, AnyBeamsSuite, ::testing::Values("auto", "rays"),
                          [](const auto& test) { return test.param; });
 
-TEST(MakeRenderer, NamesTheKindsThereAre) {
+TEST(MakeRenderer, ListsTheKindsOnAnUnknownOne) {
   const Scene scene;
   try {
     make_renderer(scene, {.kind = "opengel"});
@@ -377,7 +377,7 @@ TEST(MakeRenderer, NamesTheKindsThereAre) {
   }
 }
 
-TEST(MakeRenderer, RefusesABrokenScene) {
+TEST(MakeRenderer, RejectsAnInvalidScene) {
   Scene scene = builtin_scene("box");
   scene.instances[0].mesh = 3;
   EXPECT_THROW(make_renderer(scene, {}), Error);

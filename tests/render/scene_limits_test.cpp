@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// At the limits of scale every renderer returns what rays return; beyond them it refuses.
+// At the limits of scale every renderer equals rays; beyond them, scenes are rejected.
 #include <glidar/core/error.hpp>
 #include <glidar/core/scene.hpp>
 #include <render/renderer_suite.hpp>
@@ -21,7 +21,7 @@ using testing::RendererSuite;
 
 class SceneLimits : public RendererSuite {
  protected:
-  /// Sees the box from `distance` times its size, with rays and with the renderer: the same bits.
+  /// Compares rays and the renderer from `distance` times the size of the box: the same bits.
   static void expect_ranges_of_rays(double scale, double distance) {
     Scene scene = builtin_scene("box");
     scene.instances[0].scale = scale;
@@ -60,7 +60,7 @@ class SceneLimits : public RendererSuite {
   }
 };
 
-TEST_P(SceneLimits, ScalesUpToTheLimitsAreMeasuredAsRaysDo) {
+TEST_P(SceneLimits, ScalesUpToTheLimitsEqualRays) {
   for (const double scale : {kMinScale, 1e-6, 1.0, 1e6, 0.1 * kMaxScale}) {
     SCOPED_TRACE(scale);
     expect_ranges_of_rays(scale, 3.0);  // from outside
@@ -68,7 +68,7 @@ TEST_P(SceneLimits, ScalesUpToTheLimitsAreMeasuredAsRaysDo) {
   }
 }
 
-TEST_P(SceneLimits, VerticesOfTheSmallestReachAreMeasuredAsRaysDo) {
+TEST_P(SceneLimits, TheSmallestMeshesEqualRays) {
   Scene scene = builtin_scene("box");
   for (Eigen::Vector3f& position : scene.meshes[0].positions_m) position *= 1e-15F;
   scene.instances[0].scale = kMinScale;
@@ -79,7 +79,7 @@ TEST_P(SceneLimits, VerticesOfTheSmallestReachAreMeasuredAsRaysDo) {
                           [](double range_m) { return std::isfinite(range_m); }));
 }
 
-TEST_P(SceneLimits, ScalesAndVerticesBeyondThemAreRefusedBeforeAnythingIsCast) {
+TEST_P(SceneLimits, ScalesAndVerticesBeyondTheLimitsAreErrors) {
   for (const double scale : {1e-300, 0.9 * kMinScale, 1.1 * kMaxScale, 1e300}) {
     Scene scene = builtin_scene("box");
     scene.instances[0].scale = scale;
@@ -103,7 +103,7 @@ TEST_P(SceneLimits, ACastWithAnInstanceOutOfReachNamesIt) {
 }
 
 /// The raster alone: OpenGL clips in single precision.
-TEST(RasterLimits, ASurfaceABillionthOfItsSizeInFrontOfTheSensorIsSeenAsByRays) {
+TEST(RasterLimits, AVeryCloseSurfaceEqualsRays) {
   Scene scene = builtin_scene("plane");
   const Beams beams = camera_beams(32, 24, 24.0);
   const auto raster = make_renderer(scene, {.kind = "raster"});

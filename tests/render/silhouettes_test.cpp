@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Beams that pass silhouettes by less than a rasterizer's grid meet what brute force in double
-// says.
+// Beams that pass silhouettes by less than a rasterizer's grid have the same hits as brute force in
+// double.
 #include <glidar/render/silhouettes.hpp>
 #include <render/renderer_suite.hpp>
 
@@ -19,8 +19,8 @@ using testing::turned;
 
 constexpr std::uint32_t kSide = 64;
 
-/// Thin and broad triangles at many depths before two walls; one border of each passes the beam of
-/// a pixel by up to 1/200 of a pixel, on either side.
+/// Thin and wide triangles at many depths in front of two walls; one edge of each passes the beam
+/// of a pixel by up to 1/200 of a pixel, on either side.
 Scene triangles_at_beams(std::uint64_t seed) {
   Draws draws(seed);
   Scene scene = testing::builtin_scene("plane");
@@ -61,8 +61,8 @@ Scene triangles_at_beams(std::uint64_t seed) {
 
 class Silhouettes : public testing::RendererSuite {
  protected:
-  /// Beams this near a border are not compared: rays of single precision are traced 2^-20 of the
-  /// scene's radius beside the beam; brute force itself is off by some roundings of double.
+  /// Beams this near to an edge are not compared, because the reference rays start 2^-20 of the
+  /// scene's radius beside the beam; brute force has errors of some roundings of double.
   static double room_m(const Scene& scene) {
     return GetParam() == "rays" ? 0x1p-18 * bounds(scene).diagonal().norm() : 1e-12;
   }
@@ -85,17 +85,17 @@ class Silhouettes : public testing::RendererSuite {
   }
 };
 
-TEST_P(Silhouettes, BeamsWithinAGridStepOfABorderMeetWhatBruteForceMeets) {
+TEST_P(Silhouettes, BeamsWithinAGridStepOfAnEdgeEqualBruteForce) {
   const Beams beams = camera_beams(kSide, kSide, kSide);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Scene scene = triangles_at_beams(seed);
-    // Single precision refuses a share of these beams; the others compare all but ties.
+    // Single precision rejects a fraction of these beams; the others compare all except ties.
     expect_brute_force(scene, beams, Pose::Identity(),
                        GetParam() == "rays" ? beams.size() * 8 / 10 : beams.size() - 5);
   }
 }
 
-TEST_P(Silhouettes, TheSameFromFarAway) {
+TEST_P(Silhouettes, DistantEdgesEqualBruteForce) {
   const Scene scene = triangles_at_beams(4);
   const double distance_m = 2000.0;
   const Beams beams = camera_beams(kSide, kSide, 10.0 * distance_m);
@@ -103,7 +103,7 @@ TEST_P(Silhouettes, TheSameFromFarAway) {
   expect_brute_force(scene, beams, pose, beams.size() * 9 / 10);
 }
 
-/// A cone of so many triangles around its tip that most beams pass borders of several.
+/// A cone with so many triangles around its tip that most beams pass edges of several.
 Mesh cone(std::uint32_t count) {
   Mesh fan;
   fan.positions_m.emplace_back(0.0F, 0.0F, 1.0F);
@@ -116,7 +116,7 @@ Mesh cone(std::uint32_t count) {
   return fan;
 }
 
-TEST_P(Silhouettes, AConeOfManyTrianglesAroundItsTipIsWholeAndMeetsWhatBruteForceMeets) {
+TEST_P(Silhouettes, AConeOfManyTrianglesEqualsBruteForce) {
   Scene scene = testing::builtin_scene("plane");
   scene.meshes[0] = cone(3000);
   const Pose pose = look_at({0.4, 0.3, 6.0}, {0.0, 0.0, 0.5}, Eigen::Vector3d::UnitY());
@@ -141,7 +141,7 @@ TEST(MeshEdges, AClosedMeshHasTwoTrianglesAtEachEdgeAndAnOpenOneEnds) {
 }
 
 TEST(MeshEdges, AFanOfAHundredThousandTrianglesHasItsEdges) {
-  // The work is that of a sort: over the pairs of triangles around the hub it would take minutes.
+  // The cost is that of a sort: over the pairs of triangles around the hub it would take minutes.
   constexpr std::uint32_t kCount = 100'000;
   const Mesh fan = cone(kCount);
   const std::vector<MeshEdge> edges = mesh_edges(fan);
@@ -151,7 +151,7 @@ TEST(MeshEdges, AFanOfAHundredThousandTrianglesHasItsEdges) {
             kCount);
 }
 
-TEST(MeshEdges, OfThreeTrianglesAtAnEdgeNoneIsTheOther) {
+TEST(MeshEdges, AnEdgeOfThreeTrianglesCountsAsOpen) {
   Mesh mesh;
   mesh.positions_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F},  {0.0F, 1.0F, 0.0F},
                       {0.0F, 0.0F, 1.0F}, {0.0F, -1.0F, 0.0F}, {1.0F, 0.0F, 0.0F}};
@@ -166,8 +166,8 @@ TEST(MeshEdges, OfThreeTrianglesAtAnEdgeNoneIsTheOther) {
   EXPECT_EQ(shared->second, MeshEdge::kNone);
 }
 
-TEST(SilhouettePixels, AreThoseByTheOutlineAndNotThoseByInnerEdges) {
-  // A square of 2 m, 4 m away, seen 32 pixels wide: its left border passes pixel centres by 0.003.
+TEST(SilhouettePixels, AreNearTheOutlineAndNotNearInnerEdges) {
+  // A square of 2 m, 4 m away, seen 32 pixels wide: its left edge passes pixel centres by 0.003.
   Scene scene = testing::builtin_scene("plane");
   scene.instances[0].world_from_object.translation() =
       Eigen::Vector3d(-0.5 / 64.0 * 4.0 + 0.003 / 64.0 * 4.0, 0.01, 4.0);

@@ -24,27 +24,27 @@ Pose at(double x, double y, double z) {
   return pose;
 }
 
-TEST(VisibleDepths, AreTheVerticesWhenAllIsInView) {
+TEST(VisibleDepths, AreThoseOfTheVerticesIfAllAreInView) {
   const Scene scene = builtin_scene("box");  // half side 1
   const DepthSpan span = depths(scene, camera_beams(64, 64, 60.0), at(0.1, 0.2, -5.0));
   EXPECT_DOUBLE_EQ(span.nearest_m, 4.0);
   EXPECT_DOUBLE_EQ(span.farthest_m, 6.0);
 }
 
-TEST(VisibleDepths, AreCutAtTheBordersOfTheViewFromInside) {
+TEST(VisibleDepths, AreClippedAtTheBordersOfTheView) {
   const Scene scene = builtin_scene("box");
-  // A view of 45 degrees to each side from the middle: of the walls only the one ahead is seen, and
-  // of the side walls nothing but their far edges.
+  // A view of 45 degrees to each side from the middle: only the wall ahead is visible, and of the
+  // side walls only their far edges.
   const DepthSpan wide = depths(scene, camera_beams(64, 64, 32.0), at(0.0, 0.0, 0.0));
   EXPECT_NEAR(wide.nearest_m, 1.0, 1e-15);
   EXPECT_NEAR(wide.farthest_m, 1.0, 1e-15);
-  // Of 63.4 degrees: the side walls come in at half the depth. All vertices are at -1 or 1.
+  // Of 63.4 degrees: the side walls are visible from half the depth. All vertices are at -1 or 1.
   const DepthSpan wider = depths(scene, camera_beams(64, 64, 16.0), at(0.0, 0.0, 0.0));
   EXPECT_NEAR(wider.nearest_m, 0.5, 1e-15);
   EXPECT_NEAR(wider.farthest_m, 1.0, 1e-15);
 }
 
-TEST(VisibleDepths, OfWhatIsBehindOrBesideAreNone) {
+TEST(VisibleDepths, AreEmptyForSurfacesBehindOrBeside) {
   const Scene scene = builtin_scene("box");
   for (const Pose& pose : {at(0.0, 0.0, 5.0), at(50.0, 0.0, -5.0)}) {
     const DepthSpan span = depths(scene, camera_beams(64, 64, 60.0), pose);
@@ -52,7 +52,7 @@ TEST(VisibleDepths, OfWhatIsBehindOrBesideAreNone) {
   }
 }
 
-TEST(VisibleDepths, HugWhatBeamsMeetOnAnAsteroidThatFillsTheView) {
+TEST(VisibleDepths, AreTightAroundTheHitsOnAnAsteroidThatFillsTheView) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(150, 100, 400.0);
   const Pose pose = look_at({1.6, 0.3, 0.2}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());

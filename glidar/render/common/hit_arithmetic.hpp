@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-// The arithmetic of hit_distance(), for every way to find the error of a product: all give the same
-// bits.
+// The arithmetic of hit_distance(), for every method of computing the error of a product: all give
+// the same bits.
 namespace glidar::hit_arithmetic {
 
 /// A corner in the sheared frame, in which the ray is the z axis.
@@ -43,8 +43,8 @@ double determinant(const Sheared& p, const Sheared& q) {
   return (first - second) + error;
 }
 
-/// What the rounding of two corners may change of their determinant, in roundings: each coordinate
-/// is wrong by less than 2^-52 of |x| + |y| + |z|.
+/// Bounds the change of the determinant by the rounding of two corners, in roundings: the error of
+/// each coordinate is below 2^-52 of |x| + |y| + |z|.
 inline double determinant_margin(const Sheared& p, const Sheared& q) {
   const double width_p = std::abs(p.x) + std::abs(p.y);
   const double width_q = std::abs(q.x) + std::abs(q.y);
@@ -59,8 +59,8 @@ inline double sum_in_any_order(double a, double b, double c) {
   return (std::min(low, c) + std::max(high, c)) + middle;
 }
 
-/// z where the axis crosses the segment from p to q, which it does: from these corners alone, so
-/// that it is the same for all triangles at the edge, and at a vertex exactly its z.
+/// z where the axis crosses the segment from p to q, which it must do. Only these corners matter,
+/// so all triangles at the edge get the same value, and at a vertex it is exactly z of the vertex.
 inline double depth_on_edge(const Sheared& p, const Sheared& q) {
   const bool is_wide = std::abs(p.x) + std::abs(q.x) >= std::abs(p.y) + std::abs(q.y);
   const double to_p = std::abs(is_wide ? p.x : p.y);
@@ -84,9 +84,8 @@ inline double largest(double a, double b, double c) {
 }
 
 /// True for an origin on the triangle, within rounding: not all corners are on one side of
-/// it, and `volume`, its distance from the plane times twice the area, is within what rounding may
-/// make of zero. The second bound is for slivers, whose volume is always small: the distance itself
-/// is then within kTouchingHeight of the corners' size.
+/// it, and `volume`, its distance from the plane times twice the area, is within the rounding error
+/// of zero. The second bound is for slivers, whose volume is always small: the distance itself
 inline bool is_touching(const Sheared& a, const Sheared& b, const Sheared& c, double volume) {
   if (std::min(std::min(a.z, b.z), c.z) > 0.0 || largest(a.z, b.z, c.z) < 0.0) return false;
   const double margin = sum_in_any_order(determinant_margin(c, b) * std::abs(a.z),

@@ -17,7 +17,7 @@ inline float next_above(double value) {
   return std::nextafter(static_cast<float>(value), kInfinityf);
 }
 
-/// Further below and above, by a few steps, but computed faster.
+/// Lower and higher bounds that are looser by a few steps, but faster to compute.
 inline float well_below(double value) {
   const auto rounded = static_cast<float>(value);
   return rounded - 0x1p-22F * std::abs(rounded) - 0x1p-120F;

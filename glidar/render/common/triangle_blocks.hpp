@@ -14,15 +14,15 @@ namespace glidar {
 /// How many triangles a block holds.
 inline constexpr unsigned kBlockSize = 8;
 
-/// Eight triangles side by side, corners as the mesh stores them: five cache lines. What remains of
-/// the last block of a cluster repeats its last triangle.
+/// Eight triangles side by side, corners as in the mesh: five cache lines. Unused places of a
+/// cluster's last block repeat its last triangle.
 struct alignas(64) TriangleBlock {
   float corner[3][3][kBlockSize];       ///< corner a, b, c; then x, y, z; then triangle
   std::uint32_t primitive[kBlockSize];  ///< index in the mesh
 };
 static_assert(sizeof(TriangleBlock) == 320);
 
-/// Some triangles near each other: the leaf of a tree.
+/// Neighbouring triangles: the leaf of a tree.
 struct TriangleCluster {
   float centre[3];
   float radius;  ///< at least the largest |p_i - centre_i| of a corner p
@@ -31,15 +31,15 @@ struct TriangleCluster {
 };
 static_assert(sizeof(TriangleCluster) == 24);
 
-/// The triangles of a mesh, or of a run of it with its own origin (see Mesh::origins).
+/// The triangles of a mesh, or of a part with its own origin (see Mesh::origins).
 struct MeshTriangles {
   std::span<const Eigen::Vector3f> positions;
   std::span<const Triangle> triangles;
   std::uint32_t first_primitive = 0;           ///< index in the mesh of triangles[0]
-  std::span<const std::uint32_t> chosen = {};  ///< indices of those that count; empty: all do
+  std::span<const std::uint32_t> chosen = {};  ///< indices of those to use; empty: all
 };
 
-/// Blocks that `count` triangles take.
+/// Number of blocks for `count` triangles.
 inline std::uint32_t block_count(std::uint32_t count) {
   return (count + kBlockSize - 1) / kBlockSize;
 }
@@ -59,7 +59,7 @@ inline HitTriangle corners_of(const Mesh& mesh, std::uint32_t triangle) {
   return {corner(0), corner(1), corner(2)};
 }
 
-/// A triangle by its slot: kBlockSize * block + place in the block.
+/// A triangle by its slot: kBlockSize * block + index in the block.
 inline HitTriangle triangle_at(const TriangleBlock* blocks, std::uint32_t slot) {
   const TriangleBlock& block = blocks[slot / kBlockSize];
   const unsigned i = slot % kBlockSize;

@@ -4,8 +4,8 @@
 
 namespace glidar::opengl {
 
-/// A context of OpenGL 3.3 or later: one without a window (EglContext), or that of a window. What
-/// draws needs it to be current and does not care whose it is.
+/// A context of OpenGL 3.3 or later: without a window (EglContext), or that of a window. Drawing
+/// code needs it to be current and does not depend on its type.
 class Context {
  public:
   Context() = default;
@@ -13,15 +13,15 @@ class Context {
   Context& operator=(const Context&) = delete;
   virtual ~Context() = default;
 
-  /// Makes it current in this thread, or throws Error. Asked for by one thread at a time, and not
+  /// Makes it current in this thread, or throws Error. Called by one thread at a time, and not
   /// again before release().
   virtual void make_current() = 0;
 
-  /// Makes current again what was so before make_current(), in the same thread.
+  /// Restores the context that was current before make_current(), in the same thread.
   virtual void release() = 0;
 };
 
-/// A context is current in this thread while this lives.
+/// Makes a context current in this thread for the lifetime of this object.
 class ScopedContext {
  public:
   explicit ScopedContext(Context& context) : context_(context) { context_.make_current(); }

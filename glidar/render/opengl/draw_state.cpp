@@ -11,7 +11,7 @@ namespace glidar::opengl {
 namespace {
 
 constexpr int kMinVersion = 33;
-constexpr GLuint kTextureUnits = 5;  // those that shaders here use
+constexpr GLuint kTextureUnits = 5;  // as many as the shaders use
 
 void set_pixel_store() {
   for (const GLenum length : {GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS,
@@ -25,7 +25,7 @@ void set_pixel_store() {
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
-/// What this program never changes, but whoever else has the context may have.
+/// Resets state that this library never changes, but other users of the context may have changed.
 void reset_state() {
   for (const GLenum feature : {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_BLEND, GL_COLOR_LOGIC_OP,
                                GL_RASTERIZER_DISCARD, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART,

@@ -11,12 +11,12 @@
 
 namespace glidar::opengl {
 
-/// 3.3 alone cannot put the digits of float depths to use (GL_ARB_clip_control): without it the
-/// fragment shader writes them.
+/// True if depths can use the precision of floats near 0 (GL_ARB_clip_control). OpenGL 3.3 alone
+/// cannot: then the fragment shader writes depths.
 bool has_clip_control();
 
-/// A context is current in this thread while this lives, and its state is that of a new one as far
-/// as drawing and reading depend on it; so is it afterwards where drawing changes it.
+/// Makes a context current in this thread for the lifetime of this object. State that drawing and
+/// reading depend on is that of a new context; state that drawing changes is reset afterwards.
 class ScopedDrawState {
  public:
   explicit ScopedDrawState(Context& context);
@@ -28,13 +28,13 @@ class ScopedDrawState {
   ScopedContext use_;
 };
 
-/// Depth 1 is near and 0 far; rows run downwards in the picture, upwards in the window.
+/// Depth 1 is near and 0 far; rows run downwards in the image, upwards in the window.
 void set_draw_state(bool has_clip_control, bool cull_back_faces);
 
 /// Draws a range of the bound vertex array with the current program.
 void draw_triangles(const DrawRange& range);
 
-/// As shaders/texel.glsl takes it.
+/// Number of a wrap mode in shaders/texel.glsl.
 GLint wrap_number(Wrap wrap);
 
 }  // namespace glidar::opengl

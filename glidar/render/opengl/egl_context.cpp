@@ -14,8 +14,8 @@
 
 namespace glidar::opengl {
 
-/// What is current in this thread. EGL has one current context for OpenGL and OpenGL ES together,
-/// so it is this one also when a window's library made it.
+/// The thread's current context. EGL has one for OpenGL and OpenGL ES together, so this is also the
+/// context of a window library.
 struct Current {
   EGLDisplay display = eglGetCurrentDisplay();
   EGLContext context = eglGetCurrentContext();
@@ -48,7 +48,7 @@ bool can_open(const char* library) {
   return handle != nullptr;
 }
 
-/// libepoxy ends the program when it needs a library that is not there, so it is not asked then.
+/// libepoxy terminates the program if a library is missing, so this is tested first.
 bool has_libraries() {
   return can_open("libEGL.so.1") && (can_open("libOpenGL.so.0") || can_open("libGL.so.1"));
 }
@@ -81,7 +81,7 @@ std::string describe(EGLDeviceEXT device) {
   return "a graphics device";
 }
 
-/// The display of a device, or that of Mesa without any where EGL cannot list devices.
+/// The display of a device; without a device, that of Mesa where EGL cannot list devices.
 EGLDisplay display_of(EGLDeviceEXT device) {
   if (device != EGL_NO_DEVICE_EXT) {
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
@@ -91,7 +91,7 @@ EGLDisplay display_of(EGLDeviceEXT device) {
   return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
 
-/// A core context of this version; EGL_NO_CONTEXT where that cannot be had. It reports
+/// A core context of this version; EGL_NO_CONTEXT if not supported. It reports
 /// resets of the graphics device if the driver supports that.
 EGLContext make_context_of_version(EGLDisplay display, EGLint major, EGLint minor) {
   const std::array<EGLint, 6> version = {
@@ -115,8 +115,8 @@ EGLContext make_context_of_api(EGLDisplay display) {
   return context != EGL_NO_CONTEXT ? context : make_context_of_version(display, 3, 3);
 }
 
-/// A context without config and surface; EGL_NO_CONTEXT where that cannot be had. A display stays
-/// initialised: EGL shares it among all who ask for it, and others may use it.
+/// A context without config and surface; EGL_NO_CONTEXT if not supported. A display stays
+/// initialised, because EGL shares it within the process and others may use it.
 EGLContext make_context(EGLDisplay display) {
   if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
     return EGL_NO_CONTEXT;
@@ -143,7 +143,7 @@ std::string listed(const std::vector<std::string>& all) {
   return text;
 }
 
-/// The devices to try: the one chosen, or all, or none in particular where none are listed.
+/// The devices to try: the selected one, or all, or the default where none are listed.
 std::vector<EGLDeviceEXT> candidates(std::optional<std::uint32_t> chosen) {
   std::vector<EGLDeviceEXT> all = devices();
   if (!chosen) return all.empty() ? std::vector<EGLDeviceEXT>{EGL_NO_DEVICE_EXT} : all;

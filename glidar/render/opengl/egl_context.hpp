@@ -12,14 +12,14 @@
 
 namespace glidar::opengl {
 
-/// The graphics devices that EGL tells of, each in words: hardware first, software last.
+/// Descriptions of the graphics devices that EGL lists: hardware first, software last.
 std::vector<std::string> graphics_devices();
 
 /// An OpenGL 3.3 core context without window or display.
 class EglContext final : public Context {
  public:
-  /// On the device of this index among graphics_devices(); empty: on the first that can. Throws
-  /// Error that says what to install when there is none.
+  /// On the device of this index among graphics_devices(); empty: on the first with a context.
+  /// Throws Error that states what to install when there is none.
   explicit EglContext(std::optional<std::uint32_t> device);
   ~EglContext() override;
 

@@ -9,7 +9,7 @@
 
 namespace glidar::opengl {
 
-/// Owns one name of OpenGL; the context it was made in must be current when it is deleted.
+/// Owns one OpenGL object; the context it was made in must be current when it is deleted.
 template <class Kind>
 class GlObject {
  public:
@@ -88,14 +88,14 @@ using Framebuffer = GlObject<FramebufferKind>;
 using Renderbuffer = GlObject<RenderbufferKind>;
 using Program = GlObject<ProgramKind>;
 
-/// Throws Error, saying what to do, for a glGetGraphicsResetStatus() other than GL_NO_ERROR.
+/// Throws Error with a remedy for a glGetGraphicsResetStatus() other than GL_NO_ERROR.
 void check_reset(GLenum status);
 
-/// Throws Error when the current context is lost, as far as the driver tells: the graphics device
-/// was reset, and nothing that was read from it since counts.
+/// Throws Error when the current context is lost, if the driver reports it: the graphics device was
+/// reset, and everything read since is invalid.
 void check_not_lost();
 
-/// Throws Error when OpenGL reports a fault since it was last asked.
+/// Throws Error when OpenGL reports an error since the last call. `doing` names the operation.
 void check_gl(const char* doing);
 
 }  // namespace glidar::opengl

@@ -26,7 +26,7 @@
 namespace glidar {
 namespace {
 
-/// One picture is drawn, one copied and one worked out at a time.
+/// At a time, one batch of tiles is drawn, one is read back, and one is converted to hits.
 constexpr std::size_t kTargets = 3;
 
 class OpenglRenderer final : public Renderer {
@@ -73,14 +73,14 @@ class OpenglRenderer final : public Renderer {
   }
 
  private:
-  /// What lives in the graphics device's memory.
+  /// Objects in the memory of the graphics device.
   struct GpuResources {
     explicit GpuResources(const Scene& scene) : drawing(scene) {}
     opengl::TriangleIdDrawing drawing;
     std::array<opengl::TriangleIdTarget, kTargets> targets;
   };
 
-  /// Makes room for a cast's hits and adds its pictures, if there is anything to draw.
+  /// Resizes a cast's hits and adds its tiles, if there is anything to draw.
   void plan(const CastRequest& request, std::size_t cast, Hits& hits) {
     resize(hits, request.beams.size(), request.fields);
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
@@ -94,9 +94,9 @@ class OpenglRenderer final : public Renderer {
     if (request.progress) request.progress(1.0);
   }
 
-  /// While the hits of one group of pictures are written, the next is copied and the one after it
-  /// is drawn. A driver in software draws behind our back but copies before our eyes: so each is
-  /// copied only after the next was given to draw.
+  /// While the hits of one batch are written, the next is copied and the one after it is drawn.
+  /// Software drivers draw asynchronously but copy synchronously, so each batch is copied only
+  /// after the next one was submitted.
   void draw_and_write(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
     const opengl::ScopedDrawState state(*context_);
     for (std::size_t step = 0; step < batches_.size() + 2; ++step) {
@@ -159,11 +159,12 @@ class OpenglRenderer final : public Renderer {
     }
   }
 
-  /// True when surfaces may be so near to the sensor that the picture's nearest plane cuts them
-  /// off, or that rounding moves them to the other side of the sensor.
+  /// True when surfaces may be so near to the sensor that the near plane clips them, or that
+  /// rounding moves them to the other side of the sensor.
   [[nodiscard]] bool is_surface_at_sensor(const CastRequest& request,
                                           const DepthRange& depths) const {
-    constexpr double kNearPart = 0x1p-19;  // some times tight_depth_range()'s least part
+    constexpr double kNearPart =
+        0x1p-19;  // several times the smallest ratio of tight_depth_range()
     const double slope = std::max({std::abs(points_.x.front()), std::abs(points_.x.back()),
                                    std::abs(points_.y.front()), std::abs(points_.y.back())});
     if (depths.near_m > kNearPart * depths.far_m) return false;
@@ -179,9 +180,8 @@ class OpenglRenderer final : public Renderer {
     return false;
   }
 
-  /// Decides the beams for which the picture does not do: those that pass a silhouette so closely
-  /// that the driver's rounding may have moved it over them, or all where something is right at the
-  /// sensor.
+  /// Casts the beams that the rasterizer cannot decide: those so close to a silhouette that the
+  /// driver's rounding may have moved it across them, or all where a surface is at the sensor.
   void cast_uncertain_beams(const CastRequest& request, const opengl::RenderTile& tile) {
     if (is_surface_at_sensor(request, tile.depths)) {
       list_beams(request.beams, tile.rect);
@@ -191,7 +191,7 @@ class OpenglRenderer final : public Renderer {
     }
   }
 
-  /// All of a part of the picture.
+  /// Lists all beams of a rectangle.
   void list_beams(const Beams& beams, const PixelRect& rect) {
     all_beams_.clear();
     for (std::size_t row = rect.first_row; row < rect.first_row + rect.rows; ++row) {
@@ -211,8 +211,8 @@ class OpenglRenderer final : public Renderer {
     });
   }
 
-  /// How far a driver may move a border: corners are rounded to its grid, both across and along,
-  /// and rounded in single precision before.
+  /// How far a driver may move an edge: vertices are snapped to its grid along both axes, after
+  /// rounding in single precision.
   static double edge_uncertainty_px() {
     constexpr double kMinSilhouette_px = 1.0 / 128.0;
     GLint bits = 0;
@@ -229,12 +229,12 @@ class OpenglRenderer final : public Renderer {
   std::vector<std::vector<MeshEdge>> edges_;  ///< per mesh
   std::unique_ptr<opengl::Context> context_;
   std::unique_ptr<GpuResources> gpu_;
-  std::vector<opengl::RenderTile> tiles_;  ///< of the batch under way
+  std::vector<opengl::RenderTile> tiles_;  ///< of the current cast_batch()
   std::vector<opengl::TileBatch> batches_;
   std::optional<SilhouettePixels> silhouettes_;
   std::vector<std::size_t> all_beams_;
-  std::vector<CastHit> cast_hits_;        ///< of the picture whose hits are written
-  PlanePoints points_;                    ///< of the picture whose hits are written
+  std::vector<CastHit> cast_hits_;        ///< of the tile whose hits are written
+  PlanePoints points_;                    ///< of the tile whose hits are written
   std::optional<ProgressCounter> count_;  ///< of its cast
 };
 

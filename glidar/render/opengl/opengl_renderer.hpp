@@ -10,19 +10,18 @@
 namespace glidar {
 
 /// Rasterisation by OpenGL 3.3 or later, on a GPU or in software, without a display. The device
-/// draws which triangle each pixel sees; range, normal and all else are worked out from that
-/// triangle in double, by the same code as for every renderer.
+/// draws the visible triangle's id per pixel; range, normal and all other columns are computed from
+/// that triangle in double, by the code that all renderers share.
 ///
-/// It draws pinhole cameras without distortion only, all beams of which start at the sensor's
-/// origin, and throws Error for other beams: to read those off depth images would not be exact.
-/// A beam meets the same triangle as a cast ray unless it passes within some 1/64 of a pixel of the
-/// border of a hole in an alpha mask, or of a line in which surfaces of one mesh cut each other.
+/// Only pinhole cameras without distortion are supported, with all beams from the sensor's origin.
+/// Other beams throw Error, because depth images would not be exact for them. A beam hits the same
+/// triangle as a cast ray, except within about 1/64 of a pixel of the border of a hole in an alpha
+/// mask, or of a line where surfaces of one mesh intersect.
 std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options);
 
-/// The same over a context of the caller's, say that of a window; options.graphics_device is not
-/// looked at. Whatever the context's state, it sets what it needs. Afterwards framebuffer, program,
-/// depth, culling and clip control are as in a new context; viewport and other bindings are not
-/// given back.
+/// The same with the caller's context, such as that of a window; options.graphics_device is
+/// ignored. All required state is set. Afterwards framebuffer, program, depth, culling and clip
+/// control are as in a new context; viewport and other bindings are not restored.
 std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options,
                                                std::unique_ptr<opengl::Context> context);
 

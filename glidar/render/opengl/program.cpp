@@ -24,7 +24,7 @@ std::string joined(std::initializer_list<std::string_view> texts,
   return text;
 }
 
-/// Compiles one stage into the program; the shader itself goes with the program.
+/// Compiles one stage into the program; the program owns the shader.
 void attach(const Program& program, GLenum stage, const std::string& text) {
   const GLuint shader = glCreateShader(stage);
   const char* start = text.c_str();

@@ -9,17 +9,17 @@
 
 namespace glidar::opengl {
 
-/// The text of a file of shaders/, built into the program; throws std::out_of_range for another.
+/// Text of a file of shaders/, embedded in the library; throws std::out_of_range for unknown names.
 std::string_view shader_text(std::string_view file);
 
-/// The texts of each stage, which follow each other, and the macros they are compiled with.
+/// Texts of each stage, which are concatenated, and macros for their compilation.
 struct ProgramSource {
   std::initializer_list<std::string_view> vertex;
   std::initializer_list<std::string_view> fragment;
   std::initializer_list<std::string_view> macros;
 };
 
-/// Compiles and links for GLSL 3.30. Throws Error with the driver's words when it refuses.
+/// Compiles and links for GLSL 3.30. Throws Error with the driver's log on failure.
 Program make_program(const ProgramSource& source);
 
 }  // namespace glidar::opengl

@@ -21,8 +21,8 @@ Eigen::Matrix4f clip_from_object(const InstanceView& view, const PinholeIntrinsi
   clip.row(2) = -to_depth * seen.row(2);
   clip(2, 3) += to_depth * depths.far_m;
   clip.row(3) = seen.row(2);
-  // Some graphics devices draw nothing at 1e-30 m. A factor of all four coordinates changes nothing
-  // else, and a power of two no digit.
+  // Some graphics devices draw nothing at 1e-30 m. A common factor of all four coordinates has no
+  // other effect, and a power of two rounds nothing.
   return (std::ldexp(1.0, -std::ilogb(depths.far_m)) * clip).cast<float>();
 }
 

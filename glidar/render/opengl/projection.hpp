@@ -12,10 +12,10 @@
 namespace glidar::opengl {
 
 /// From a mesh's vertices (relative to its origin) to clip coordinates of a pinhole's pixels: row 0
-/// lies at the bottom of the window, and pixel centres lie where the beams go. Depth in the window
-/// is near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far plane. Floating point
-/// has its digits near 0, so that single precision tells depths apart evenly. Worked out in double
-/// relative to the sensor, so that a world far from its zero loses nothing.
+/// is at the bottom of the window, and beams pass through pixel centres. Window depth is reversed:
+/// near (far - z) / (z (far - near)), 1 at the near plane and 0 at the far plane. Floats are
+/// densest near 0, so single precision resolves depths evenly. Computed in double relative to the
+/// sensor, so that scenes far from the world's origin lose no precision.
 Eigen::Matrix4f clip_from_object(const InstanceView& view, const PinholeIntrinsics& k,
                                  const PixelRect& rect, const DepthRange& depths);
 

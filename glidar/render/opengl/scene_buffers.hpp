@@ -19,8 +19,8 @@ struct MeshBuffers {
   Buffer triangles;
   std::array<Buffer, 2> uvs;
   std::array<bool, 2> has_uvs{};
-  std::vector<DrawRange> ranges;  ///< their kinds are material slots
-  /// Which triangle of the mesh is drawn at each place.
+  std::vector<DrawRange> ranges;  ///< by material slot
+  /// Triangle of the mesh at each position of the drawing order.
   std::vector<std::uint32_t> drawn;
 };
 
@@ -36,7 +36,7 @@ struct SceneBuffers {
   std::vector<MaskTexture> masks;
 };
 
-/// True when some of the material lets beams through.
+/// True when the material has an alpha mask.
 bool has_mask(const Material& material);
 
 template <class Value>

@@ -7,9 +7,9 @@
 namespace glidar::opengl {
 namespace {
 
-/// More pictures than this in one go save no waiting any more, but leave the processor's cache.
+/// Larger batches save no more waiting, but exceed the processor's cache.
 constexpr std::size_t kMaxBatchPixels = 512UL * 512UL;
-constexpr std::uint32_t kMaxBatchTiles = 64;  // OpenGL 3.3 promises 256 layers
+constexpr std::uint32_t kMaxBatchTiles = 64;  // OpenGL 3.3 guarantees 256 layers
 
 bool fits_batch(const RenderTile& tile, const RenderTile& first, std::uint32_t count) {
   const std::size_t pixels = std::size_t{first.rect.rows} * first.rect.cols;
@@ -21,7 +21,7 @@ bool fits_batch(const RenderTile& tile, const RenderTile& first, std::uint32_t c
 
 void add_tiles(const Beams& beams, std::size_t cast, const DepthRange& depths,
                std::vector<RenderTile>& tiles) {
-  constexpr std::uint32_t kSide = 2048;  // drivers of OpenGL 3.3 draw at least half of it
+  constexpr std::uint32_t kSide = 2048;  // OpenGL 3.3 guarantees 1024
   for (std::uint32_t row = 0; row < beams.rows; row += kSide) {
     for (std::uint32_t col = 0; col < beams.cols; col += kSide) {
       tiles.push_back(

@@ -11,24 +11,24 @@
 
 namespace glidar::opengl {
 
-/// A picture to draw: all of a cast's, or a part of it that fits a target.
+/// A cast's image, or a tile of it that fits a target.
 struct RenderTile {
-  std::size_t cast;  ///< which of the batch
+  std::size_t cast;  ///< index in the batch of casts
   PixelRect rect;
   DepthRange depths;
 };
 
-/// Pictures of one size that share a target: [first, first + count) of all.
+/// Consecutive tiles of one size that share a target: [first, first + count).
 struct TileBatch {
   std::size_t first;
   std::uint32_t count;
 };
 
-/// Adds the parts of a cast's picture, row by row of parts.
+/// Adds the tiles of a cast's image, row by row.
 void add_tiles(const Beams& beams, std::size_t cast, const DepthRange& depths,
                std::vector<RenderTile>& tiles);
 
-/// Puts pictures that follow each other and have one size together, as many as are worth while.
+/// Groups consecutive tiles of one size into batches of limited size.
 void group_tiles(std::span<const RenderTile> tiles, std::vector<TileBatch>& batches);
 
 inline TileSize size_of(std::span<const RenderTile> tiles, const TileBatch& batch) {

@@ -15,7 +15,7 @@
 namespace glidar::opengl {
 namespace {
 
-/// The scene, if each mesh can be drawn at once.
+/// The scene; throws Error if a mesh is too large for one draw call.
 const Scene& checked(const Scene& scene) {
   constexpr std::size_t kMaxAtOnce = std::numeric_limits<GLsizei>::max() / 3;  // in one draw
   for (const Mesh& mesh : scene.meshes) {

@@ -13,14 +13,14 @@
 
 namespace glidar::opengl {
 
-/// Draws the number of each triangle of a scene where it is seen.
+/// Draws the ids of a scene's visible triangles.
 class TriangleIdDrawing {
  public:
-  /// Needs a current context, as everything here does. Throws Error when the scene has more
-  /// triangles than numbers.
+  /// Requires a current context, as all functions here. Throws Error when the scene has more
+  /// triangles than ids.
   explicit TriangleIdDrawing(const Scene& scene);
 
-  /// Draws one part of a pinhole's picture into the current target.
+  /// Draws a tile of a pinhole's image into the current target.
   void draw(const CastRequest& request, const Resolver& resolver, const PixelRect& rect,
             const DepthRange& depths) const;
 

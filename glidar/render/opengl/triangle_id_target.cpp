@@ -38,17 +38,17 @@ void TriangleIdTarget::make_room(const TileSize& size) {
     glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
                               depths_.name());
   }
-  check_gl("making room for a picture");
+  check_gl("allocating a framebuffer");
   if (glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw Error({.where = "OpenGL",
-                 .found = "the driver draws no pictures of 32-bit numbers",
+                 .found = "the driver cannot draw into 32-bit integer textures",
                  .allowed = "",
                  .remedy = "update the driver, or use --renderer rays"});
   }
 }
 
 void TriangleIdTarget::begin(const TileSize& size) {
-  if (is_mapped_) end_reading();  // a cast was broken off
+  if (is_mapped_) end_reading();  // the last cast was aborted
   size_ = size;
   if (!has_room(size)) make_room(size);
   const auto bytes = static_cast<GLsizeiptr>(sizeof(std::uint32_t) * size.pixels() * size.count);
@@ -57,7 +57,7 @@ void TriangleIdTarget::begin(const TileSize& size) {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_.name());
   glBufferData(GL_PIXEL_PACK_BUFFER, bytes, nullptr, GL_STREAM_READ);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  check_gl("making room for a picture");
+  check_gl("allocating a framebuffer");
 }
 
 void TriangleIdTarget::draw_into(std::uint32_t tile) {
@@ -88,7 +88,7 @@ std::span<const std::uint32_t> TriangleIdTarget::triangle_ids() {
                        static_cast<GLsizeiptr>(count * sizeof(std::uint32_t)), GL_MAP_READ_BIT);
   is_mapped_ = start != nullptr;
   check_not_lost();
-  check_gl("reading a picture");
+  check_gl("reading a framebuffer");
   return {static_cast<const std::uint32_t*>(start), count};
 }
 

@@ -11,7 +11,7 @@
 
 namespace glidar::opengl {
 
-/// Pictures of one size.
+/// Number and common size of tiles.
 struct TileSize {
   std::uint32_t rows;
   std::uint32_t cols;
@@ -20,22 +20,22 @@ struct TileSize {
   [[nodiscard]] std::size_t pixels() const { return std::size_t{rows} * cols; }
 };
 
-/// Pictures of 32-bit numbers, one per layer of a texture, with depths, and the memory through
-/// which they are read back together. Each lies at the corner of its layer: elsewhere a driver
-/// would round its corners otherwise. No multisampling: a number cannot be averaged.
+/// Visibility buffers: tiles of 32-bit triangle ids, one per layer of a texture, with depths, and
+/// the memory through which they are read back together. Each tile starts at the corner of its
+/// layer; elsewhere a driver would round vertices differently. No multisampling: ids cannot be
+/// averaged.
 class TriangleIdTarget {
  public:
-  /// Makes room for so many pictures.
+  /// Allocates memory for these tiles.
   void begin(const TileSize& size);
 
-  /// Draws into this picture from now on; all its numbers are kNoTriangleId.
+  /// Draws into this tile from now on, after clearing it to kNoTriangleId.
   void draw_into(std::uint32_t tile);
 
-  /// Starts to copy the pictures to where the processor reads them. A GPU's driver does not wait.
+  /// Starts to copy the tiles to memory of the CPU; drivers of GPUs do not wait.
   void start_reading();
 
-  /// Waits for the copy. The numbers, picture by picture and row by row, stay readable until
-  /// end_reading().
+  /// Waits for the copy. The ids, tile by tile and row by row, are readable until end_reading().
   std::span<const std::uint32_t> triangle_ids();
   void end_reading();
 
@@ -44,7 +44,7 @@ class TriangleIdTarget {
   void make_room(const TileSize& size);
 
   GlTexture triangle_ids_;
-  Renderbuffer depths_;  ///< of all pictures in turn
+  Renderbuffer depths_;  ///< shared by all tiles
   std::vector<Framebuffer> frames_;
   Buffer read_;
   GLsizeiptr read_bytes_ = 0;

@@ -12,7 +12,7 @@
 namespace glidar::opengl {
 namespace {
 
-/// Gives an attribute of the bound vertex array its values, if there are any.
+/// Uploads an attribute of the bound vertex array, if the mesh has it.
 template <class Vector>
 void give(GLuint attribute, const DrawOrder& order, const std::vector<Vector>& values,
           ShadedMesh& mesh) {
@@ -43,7 +43,7 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& dra
   glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, shaded.flat_normals.name());
 }
 
-/// Blends of unit vectors that lie less than 120 degrees from each other have some length.
+/// Interpolated unit vectors less than 120 degrees apart do not vanish.
 bool has_smooth_normals(const Mesh& mesh, const Triangle& t) {
   constexpr float kCosineOf120 = -0.5F;
   if (mesh.normals.empty()) return false;
@@ -78,7 +78,7 @@ ShadedMesh upload_mesh(const Mesh& mesh) {
   return shaded;
 }
 
-/// Grey is spread to rgb, a missing alpha is full.
+/// Converts a texture to RGBA; a missing alpha is opaque.
 std::vector<std::uint8_t> spread(const Texture& texture) {
   const std::size_t pixels = std::size_t{texture.width} * texture.height;
   const std::size_t n = texture.channels;

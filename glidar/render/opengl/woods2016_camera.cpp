@@ -33,38 +33,38 @@ class OpenglWoods2016Camera final : public Woods2016Camera {
 
   void draw(const CastRequest& request, const PhongHeadlight& light,
             const std::optional<Woods2016DepthPlanes>& planes,
-            Woods2016Framebuffer& picture) override {
+            Woods2016Framebuffer& framebuffer) override {
     check(request, resolver_.scene());
     check_pinhole(request.beams, "opengl");
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
-    picture.rows = request.beams.rows;
-    picture.cols = request.beams.cols;
+    framebuffer.rows = request.beams.rows;
+    framebuffer.cols = request.beams.cols;
     const Woods2016DepthPlanes used = planes ? *planes : tight_depth_planes(request);
-    picture.near_m = used.near_m;
-    picture.far_m = used.far_m;
+    framebuffer.near_m = used.near_m;
+    framebuffer.far_m = used.far_m;
     if (!(used.far_m > used.near_m)) {
-      picture.rgba.assign(std::size_t{4} * picture.rows * picture.cols, 0);
+      framebuffer.rgba.assign(std::size_t{4} * framebuffer.rows * framebuffer.cols, 0);
       return;
     }
     const opengl::ScopedDrawState state(*context_);
-    gpu_->target.begin(picture.rows, picture.cols);
+    gpu_->target.begin(framebuffer.rows, framebuffer.cols);
     gpu_->drawing.draw(request, resolver_,
                        {.pinhole = *request.beams.pinhole,
                         .light = light,
                         .planes = used,
                         .depths = tight_depth_range(used.near_m, used.far_m)});
-    gpu_->target.read(picture.rgba);
+    gpu_->target.read(framebuffer.rgba);
   }
 
  private:
-  /// What lives in the graphics device's memory.
+  /// Objects in the memory of the graphics device.
   struct GpuResources {
     explicit GpuResources(const Scene& scene) : drawing(scene) {}
     opengl::Woods2016Drawing drawing;
     opengl::Woods2016Target target;
   };
 
-  /// Section 2.3 of the paper: as tight as possible around what is in view.
+  /// Section 2.3 of the paper: planes tightly around the visible surfaces.
   [[nodiscard]] Woods2016DepthPlanes tight_depth_planes(const CastRequest& request) {
     const Scene& scene = resolver_.scene();
     DepthSpan span;
@@ -73,10 +73,10 @@ class OpenglWoods2016Camera final : public Woods2016Camera {
       span.extend(visible_depths_.of(resolver_.view(i), resolver_.mesh(i), *request.beams.pinhole,
                                      thread_pool_));
     }
-    // A surface across the boresight has one depth; planes need some room between them.
-    constexpr double kMinRoom = 1e-6;
-    const double room = kMinRoom * span.farthest_m - (span.farthest_m - span.nearest_m);
-    if (room > 0.0) return {span.nearest_m - 0.5 * room, span.farthest_m + 0.5 * room};
+    // A surface across the boresight has one depth; the planes must not coincide.
+    constexpr double kMinGap = 1e-6;
+    const double margin = kMinGap * span.farthest_m - (span.farthest_m - span.nearest_m);
+    if (margin > 0.0) return {span.nearest_m - 0.5 * margin, span.farthest_m + 0.5 * margin};
     return {span.nearest_m, span.farthest_m};
   }
 

@@ -28,7 +28,7 @@ bool last_is_alpha(const Scene& scene, const TextureUse& use) {
   return channels == 2 || channels == 4;
 }
 
-/// True unless interpolated normals and the material's own colours are all there is to it.
+/// False if interpolated normals and the material's own colours suffice.
 bool needs_textures(const Material& material, const Mesh& mesh, const DrawRange& range) {
   return !is_smooth(range) || material.diffuse_texture.used() || material.specular_texture.used() ||
          has_mask(material) || !mesh.colours.empty() ||

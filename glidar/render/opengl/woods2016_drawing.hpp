@@ -12,7 +12,7 @@
 
 namespace glidar::opengl {
 
-/// What of one picture is the same for all that is drawn.
+/// Parameters that all draw calls of one image share.
 struct Woods2016View {
   const PinholeIntrinsics& pinhole;
   const PhongHeadlight& light;
@@ -23,14 +23,14 @@ struct Woods2016View {
 /// The paper's vertex and fragment shaders over a scene.
 class Woods2016Drawing {
  public:
-  /// Needs a current context, as everything here does.
+  /// Requires a current context, as all functions here.
   explicit Woods2016Drawing(const Scene& scene);
 
-  /// Draws what is there into the current target.
+  /// Draws all enabled instances into the current target.
   void draw(const CastRequest& request, const Resolver& resolver, const Woods2016View& scope) const;
 
  private:
-  /// One compiled program; what a surface does not need costs much time in software.
+  /// One compiled program; unused features would cost much time in software.
   struct Shader {
     Program program;
 
@@ -57,9 +57,9 @@ class Woods2016Drawing {
   const Scene& scene_;
   bool has_clip_control_;
   ShadedScene shaded_;
-  Shader diffuse_;   ///< without specular light, textures and such
-  Shader shiny_;     ///< with specular light
-  Shader textured_;  ///< with all
+  Shader diffuse_;   ///< only diffuse and ambient light
+  Shader shiny_;     ///< also specular light
+  Shader textured_;  ///< also textures, alpha masks and normal maps
 };
 
 }  // namespace glidar::opengl

@@ -29,7 +29,7 @@ void Woods2016Target::begin(std::uint32_t rows, std::uint32_t cols) {
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
                               colours_.name());
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depths_.name());
-    check_gl("making room for a picture");
+    check_gl("allocating a framebuffer");
   }
   glViewport(0, 0, cols_, rows_);
   constexpr std::array<GLfloat, 4> kNoPaper = {0.0F, 0.0F, 0.0F, 0.0F};
@@ -42,7 +42,7 @@ void Woods2016Target::read(std::vector<std::uint8_t>& rgba) {
   rgba.resize(std::size_t{4} * static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_));
   glReadPixels(0, 0, cols_, rows_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   check_not_lost();
-  check_gl("reading a picture");
+  check_gl("reading a framebuffer");
 }
 
 }  // namespace glidar::opengl

@@ -9,13 +9,13 @@
 
 namespace glidar::opengl {
 
-/// A picture of four bytes a pixel, with depths. No multisampling: it would mix depths.
+/// An image of four bytes per pixel, with depths. No multisampling: it would mix depths.
 class Woods2016Target {
  public:
-  /// Makes room for so many pixels and draws into it from now on; all bytes are 0.
+  /// Resizes and clears the image (all bytes 0), and draws into it from now on.
   void begin(std::uint32_t rows, std::uint32_t cols);
 
-  /// Copies the picture out, row by row.
+  /// Copies the image to memory, row by row.
   void read(std::vector<std::uint8_t>& rgba);
 
  private:

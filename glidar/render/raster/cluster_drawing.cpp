@@ -11,11 +11,11 @@
 namespace glidar::raster {
 namespace {
 
-/// A cluster on its way onto a canvas.
+/// The tile into which clusters of an instance are drawn.
 struct TileTarget {
   const DrawContext& context;
   std::uint32_t instance;
-  std::int32_t first_col;  ///< of the picture on the canvas
+  std::int32_t first_col;  ///< of the image in the tile
   std::int32_t first_row;
   TileBuffer& buffer;
 
@@ -25,12 +25,13 @@ struct TileTarget {
   }
 };
 
-/// Corners nearer than this are not for single precision.
+/// Corners must be at least this deep for single precision.
 float min_depth(const TileTransform& transform, const Eigen::Vector3f& half) {
-  // Nearer than this part of the farthest corner, rounding of its depth would move a corner.
+  // At a smaller fraction of the depth of the farthest corner, rounding of depths would move
+  // corners.
   constexpr float kMinPart = 1.0F / 16.0F;
-  // A column is a sum of three products: where their sizes add up to more than this many pixels,
-  // its rounding comes near kEdgeMargin_px.
+  // A column is a sum of three products: if their sizes add up to more than this many pixels, its
+  // rounding approaches kEdgeMargin_px.
   constexpr float kMaxDrawing_px = 128.0F;
   const Eigen::Map<const Eigen::Matrix3f> matrix(transform.matrix.data());
   const Eigen::Vector3f reach = matrix.cwiseAbs() * half;
@@ -71,7 +72,7 @@ bool is_inside(const TriangleSetup& setup, float across, float down) {
   return true;
 }
 
-/// Draws pixel by pixel, looking for holes.
+/// Draws pixel by pixel, skipping holes of the alpha mask.
 void draw_with_holes(const TileTarget& target, const TriangleSetup& setup,
                      std::uint32_t primitive) {
   const CastRequest& request = target.context.request;

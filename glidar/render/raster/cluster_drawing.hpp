@@ -14,7 +14,7 @@
 
 namespace glidar::raster {
 
-/// What one cast hands to every canvas.
+/// Inputs that all tiles of a cast share.
 struct DrawContext {
   const CastRequest& request;
   const Resolver& resolver;
@@ -25,16 +25,16 @@ struct DrawContext {
   Nearness nearness;
 };
 
-/// Asks the memory for a cluster.
+/// Prefetches a cluster.
 void prefetch(const DrawContext& context, const VisibleCluster& cluster);
 
-/// A pixel of the picture, or where a canvas has its first one there.
+/// A pixel of the image, or the position of a tile's first pixel in the image.
 struct PixelPosition {
   std::int32_t col;
   std::int32_t row;
 };
 
-/// Draws one cluster onto a canvas whose first pixel is this of the picture.
+/// Draws one cluster into a tile that starts at the pixel `first` of the image.
 void draw_cluster(const DrawContext& context, const VisibleCluster& cluster,
                   const PixelPosition& first, TileBuffer& buffer);
 

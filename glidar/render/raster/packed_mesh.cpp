@@ -19,13 +19,13 @@ Eigen::Vector3f corner(const Mesh& mesh, std::uint32_t triangle, std::size_t k) 
   return mesh.positions_m[mesh.triangles[triangle][k]];
 }
 
-/// A triangle and where it is.
+/// A triangle and its centroid.
 struct TriangleCentroid {
   Eigen::Vector3f middle;
   std::uint32_t triangle;
 };
 
-/// Those of the chosen with a plane.
+/// Centroids of the chosen triangles that have a plane.
 std::vector<TriangleCentroid> centroids(const Mesh& mesh, std::span<const std::uint32_t> chosen) {
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   const std::size_t count = chosen.empty() ? mesh.triangles.size() : chosen.size();
@@ -34,7 +34,8 @@ std::vector<TriangleCentroid> centroids(const Mesh& mesh, std::span<const std::u
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t t = chosen.empty() ? i : chosen[i];
     if (std::isnan(planes[t].normal.x())) continue;
-    constexpr float kThird = 1.0F / 3.0F;  // before the sum: that of large ones would overflow
+    constexpr float kThird =
+        1.0F / 3.0F;  // before the sum, which would overflow for large coordinates
     all.push_back(
         {kThird * corner(mesh, t, 0) + kThird * corner(mesh, t, 1) + kThird * corner(mesh, t, 2),
          t});
@@ -42,8 +43,8 @@ std::vector<TriangleCentroid> centroids(const Mesh& mesh, std::span<const std::u
   return all;
 }
 
-/// Puts triangles that lie near each other next to each other: halves across the longest side, and
-/// so on, down to clusters and packets.
+/// Sorts triangles so that neighbours are adjacent: halves across the longest side, recursively,
+/// down to clusters and packets.
 void sort_spatially(std::span<TriangleCentroid> all) {
   if (all.size() <= kLanes) return;
   Eigen::AlignedBox3f box;
@@ -68,7 +69,7 @@ Eigen::Vector3f set_box(const Mesh& mesh, std::span<const TriangleCentroid> own,
   for (const TriangleCentroid& centroid : own) {
     for (std::size_t k = 0; k < 3; ++k) box.extend(corner(mesh, centroid.triangle, k));
   }
-  // Halves first: the sum of large ones would overflow.
+  // Halved before the sum, which would overflow for large coordinates.
   const Eigen::Vector3f middle = 0.5F * box.min() + 0.5F * box.max();
   const Eigen::Vector3f half = (box.max() - middle).cwiseMax(middle - box.min());
   constexpr float kBoxMargin = 1.0F + 4.0F * std::numeric_limits<float>::epsilon();

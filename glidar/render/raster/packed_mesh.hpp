@@ -11,7 +11,7 @@
 
 namespace glidar::raster {
 
-/// Triangles that are worked on together, lane by lane. Unused lanes repeat the last triangle.
+/// Triangles that are processed together, one per lane. Unused lanes repeat the last triangle.
 struct TrianglePacket {
   CornerBlock corners;  ///< relative to the cluster's middle, object units
   std::array<std::uint32_t, kLanes> primitive;
@@ -19,16 +19,16 @@ struct TrianglePacket {
 
 inline constexpr std::size_t kPacketsPerCluster = 4;
 
-/// BoxPacket around kLanes clusters, object units; unused lanes are points.
+/// Boxes around kLanes clusters, object units; unused lanes are points.
 struct BoxPacket {
   Lanes3<float> middle;  ///< relative to the mesh's origin
   Lanes3<float> half;    ///< of their sizes
 };
 
-/// A mesh cut into clusters of triangles that lie near each other, so that many are found hidden or
-/// out of sight at once. Triangles without area, which nothing can hit, are left out.
+/// A mesh divided into clusters of neighbouring triangles, so that many triangles are culled at
+/// once. Triangles without area, which nothing can hit, are left out.
 struct PackedMesh {
-  /// `chosen`: indices of the triangles that count; empty: all do.
+  /// `chosen`: indices of the triangles to use; empty: all.
   explicit PackedMesh(const Mesh& mesh, std::span<const std::uint32_t> chosen = {});
 
   std::vector<TrianglePacket> packets;  ///< kPacketsPerCluster per cluster, fewer in the last

@@ -27,16 +27,16 @@ namespace {
 using raster::DrawContext;
 using raster::VisibleCluster;
 
-/// What one thread draws with.
+/// Workspace of one thread.
 struct TileScratch {
   raster::TileBuffer buffer;
   std::vector<std::uint32_t> triangle_ids;
-  std::vector<std::uint64_t> order;  ///< of the clusters: the nearest first
+  std::vector<std::uint64_t> order;  ///< keys of the clusters, nearest first
 };
 
-constexpr std::size_t kPrefetchDistance = 3;  // clusters on their way from memory
+constexpr std::size_t kPrefetchDistance = 3;  // clusters that are prefetched
 
-/// The part of a cluster that lies on a canvas.
+/// The part of a cluster's bounds within a tile.
 raster::PixelBounds bounds_in(const PixelRect& drawn, const VisibleCluster& cluster) {
   const auto first_col = static_cast<int>(drawn.first_col);
   const auto first_row = static_cast<int>(drawn.first_row);
@@ -51,9 +51,9 @@ raster::PixelPosition first_of(const raster::Tile& tile) {
           .row = static_cast<std::int32_t>(tile.drawn.first_row)};
 }
 
-/// The nearest first; of equals the first.
+/// Sort key: nearest first, then by index.
 std::uint64_t key(const VisibleCluster& cluster, std::uint32_t index) {
-  // The bits of positive numbers rise with them.
+  // Bit patterns of positive floats are ordered as their values.
   const std::uint32_t nearness = std::bit_cast<std::uint32_t>(std::max(cluster.nearness, 0.0F));
   return std::uint64_t{~nearness} << 32U | index;
 }
@@ -105,7 +105,7 @@ class RasterRenderer final : public Renderer {
     return packed_[scene().instances[instance].mesh];
   }
 
-  /// Misses, outside of the window.
+  /// Writes misses outside of the window.
   void write_around(const CastRequest& request, const GridWindow& window, ProgressCounter& count,
                     Hits& hits) {
     const std::uint32_t cols = request.beams.cols;
@@ -183,7 +183,7 @@ class RasterRenderer final : public Renderer {
     });
   }
 
-  /// Writes the hits of what was drawn.
+  /// Converts a drawn tile to hits.
   void write_tile(const DrawContext& context, const raster::Tile& tile, const TileScratch& scratch,
                   Hits& hits) const {
     write_rows({.request = context.request,
@@ -199,7 +199,7 @@ class RasterRenderer final : public Renderer {
                0, tile.written.rows);
   }
 
-  /// For clusters that reach to the sensor's plane, of which clusters do not tell where.
+  /// For clusters that reach the sensor's plane, whose bounds are the whole image.
   [[nodiscard]] bool is_outside(const VisibleCluster& cluster, const PixelRect& drawn) const {
     if (!std::isinf(cluster.nearness)) return false;
     const auto left = static_cast<int>(drawn.first_col);
@@ -215,7 +215,7 @@ class RasterRenderer final : public Renderer {
     return visible_clusters_[static_cast<std::uint32_t>(key)];
   }
 
-  /// Draws the clusters that are seen in a part, the nearest first, but for those found hidden.
+  /// Draws the clusters in a tile, nearest first, except for occluded ones.
   void draw_tile(const DrawContext& context, const raster::Tile& tile,
                  std::span<const std::uint32_t> seen, TileScratch& scratch) const {
     const auto cols = static_cast<int>(tile.drawn.cols);
@@ -225,7 +225,7 @@ class RasterRenderer final : public Renderer {
     for (const std::uint32_t index : seen)
       scratch.order.push_back(key(visible_clusters_[index], index));
     std::sort(scratch.order.begin(), scratch.order.end());
-    // What comes lies anywhere in memory: it is asked for in time, unless it is hidden already.
+    // Clusters are scattered in memory, so visible ones are prefetched.
     std::array<const VisibleCluster*, kPrefetchDistance> coming{};
     for (std::size_t i = 0; i < scratch.order.size() + kPrefetchDistance; ++i) {
       const VisibleCluster*& slot = coming[i % kPrefetchDistance];
@@ -259,8 +259,8 @@ class RasterRenderer final : public Renderer {
   PlanePoints points_;
   std::vector<raster::PixelView> views_;  ///< per instance
   std::vector<raster::ClusterRange> pieces_;
-  std::vector<std::vector<VisibleCluster>> found_;  ///< per piece
-  std::vector<VisibleCluster> visible_clusters_;    ///< all of them
+  std::vector<std::vector<VisibleCluster>> found_;  ///< per range of clusters
+  std::vector<VisibleCluster> visible_clusters_;    ///< of all instances
   raster::TileGrid tiles_;
   WorkspacePool<TileScratch> scratch_pool_;
 };

@@ -9,8 +9,8 @@
 
 namespace glidar {
 
-/// Draws triangles on the CPU, for pinholes: clusters of them, front to back, in vectors, onto a
-/// part of the picture at a time.
+/// Rasterises pinhole cameras on the CPU: clusters of triangles, front to back, vectorised, one
+/// tile of the image at a time.
 std::unique_ptr<Renderer> make_raster_renderer(const Scene& scene, const RendererOptions& options);
 std::unique_ptr<Renderer> make_raster_renderer(std::shared_ptr<CpuBase> base);
 

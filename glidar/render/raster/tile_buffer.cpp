@@ -10,11 +10,11 @@
 namespace glidar::raster {
 namespace {
 
-constexpr float kEmptyNearness = -1.0F;  // less near than all there is
-constexpr int kBlockWidth = 4;           // pixels of a row that lie together
+constexpr float kEmptyNearness = -1.0F;  // below that of all geometry
+constexpr int kBlockWidth = 4;           // pixels of a row that are adjacent in memory
 constexpr float kOutside = std::numeric_limits<float>::infinity();
 
-/// Borders and nearness of a shape at the 16 pixels of a block, from those at its first pixel.
+/// Increments of edge functions and nearness at the 16 pixels of a block from its first pixel.
 struct BlockSteps {
   Lanes<float> edge_0;
   Lanes<float> edge_1;
@@ -35,7 +35,7 @@ struct BlockSteps {
   }
 }
 
-/// What a border can gain within a block, from its first pixel.
+/// The largest increase of an edge function within a block, from its first pixel.
 [[gnu::always_inline]] inline float gain(const TriangleSetup& s, std::size_t edge) {
   constexpr float kDepthSteps = 3.0F;
   const float across = s.per_col[edge] > 0.0F ? s.per_col[edge] : 0.0F;
@@ -43,7 +43,7 @@ struct BlockSteps {
   return kDepthSteps * (across + down);
 }
 
-/// The pixels of a block: where it is, and a shape's values at its first pixel.
+/// A block's pixels, and a triangle's values at its first pixel.
 struct Block {
   float* nearness;
   std::uint32_t* triangle_ids;
@@ -84,7 +84,7 @@ struct Block {
   }
 }
 
-/// A shape's values at a block's first pixel; false where it covers none of the block.
+/// Evaluates a triangle at a block's first pixel; false where it covers none of the block.
 [[gnu::always_inline]] inline bool start_block(const TriangleSetup& s,
                                                const std::array<float, 3>& gains, int col, int row,
                                                Block& block) {
@@ -118,7 +118,7 @@ GLIDAR_SIMD void draw_blocks(const TriangleSetup& s, float scale, std::size_t bl
   }
 }
 
-/// The least of a block's 16.
+/// The minimum of a block's 16 values.
 [[gnu::always_inline]] inline float min_of(const float* values) {
   float min_of_three = values[0];
   for (unsigned i = 1; i < kLanes; ++i)
@@ -133,7 +133,7 @@ void TileBuffer::clear(int cols, int rows, float scale) {
   rows_ = rows;
   scale_ = scale;
   const std::size_t used = static_cast<std::size_t>((rows + kCell - 1) / kCell) * kCell * kSide;
-  // The cells' pixels outside hide nothing and are not drawn.
+  // Pixels of cells outside of the tile occlude nothing and are not drawn.
   const bool is_whole = cols == kSide && rows % kCell == 0;
   std::fill_n(nearness_.begin(), used, is_whole ? kEmptyNearness : kOutside);
   std::fill_n(triangle_ids_.begin(), used, kNoTriangleId);

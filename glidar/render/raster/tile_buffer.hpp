@@ -12,7 +12,7 @@
 
 namespace glidar::raster {
 
-/// A rectangle of a canvas, both ends included.
+/// A rectangle of a tile, both ends included.
 struct PixelBounds {
   int left;
   int right;
@@ -20,58 +20,58 @@ struct PixelBounds {
   int bottom;
 };
 
-/// A triangle on a canvas, ready to be drawn: three borders, each positive inside, and its
-/// nearness, all linear in column and row.
+/// Triangle setup: three edge functions, positive inside, and nearness, all linear in column and
+/// row of the tile.
 struct TriangleSetup {
   std::array<float, 3> per_col;
   std::array<float, 3> per_row;
-  std::array<float, 3> at_corner;  ///< at the left top pixel of the rectangle
-  std::array<float, 3> certain;    ///< who is so far inside of a border is not beyond it
+  std::array<float, 3> at_corner;  ///< at the top left pixel of the rectangle
+  std::array<float, 3> certain;    ///< from these values on, a pixel is certainly inside
   float nearness_per_col;
   float nearness_per_row;
   float nearness_at_corner;
-  float farthest;  ///< nearness is held between these
+  float farthest;  ///< nearness is clamped to these
   float nearest;
-  float margin;  ///< what interpolation may make nearness wrong by, see closeness()
+  float margin;  ///< error bound of interpolated nearness, see closeness()
   std::uint32_t triangle_id;
   PixelBounds rect;  ///< of the pixels it may cover
 };
 
-/// How far nearness may differ for a surface to be in doubt, of two that are not rough: 32
-/// roundings of the nearness and of the depths that it comes from, `scale` being Nearness::factor,
-/// and what interpolation adds. The beams there are cast, so it only has to be large enough.
+/// How close the nearness of two surfaces may be for the nearer one to be uncertain: 32 roundings
+/// of the nearness and of the depths behind it (`scale`: Nearness::factor), and the interpolation
+/// error. These beams are cast, so any upper bound is correct.
 [[gnu::always_inline]] inline float closeness(float nearness, float scale, float margin) {
   return 0x1p-19F * (nearness + scale) + margin;
 }
 
-/// True where interpolation adds much: then the beam is cast in any case.
+/// True where the interpolation error is large: then the beam is cast in any case.
 [[gnu::always_inline]] inline bool is_rough(float nearness, float scale, float margin) {
   return margin > 0x1p-21F * (nearness + scale);
 }
 
-/// A part of a picture while it is drawn: per pixel the nearest triangle's number. Where another
-/// triangle is too close to decide which is nearer, or where interpolation is rough, the number has
-/// kContestedFlag set, also when something nearer was drawn over both later. What is drawn does not
-/// depend on the order in which it comes: of two that are equally near the lower number stays.
-/// Pixels lie in memory in blocks of 4x4.
+/// The visibility buffer of a tile while it is drawn: the nearest triangle's id per pixel. Where
+/// another triangle is too close to decide which is nearer, or where interpolation is rough, the id
+/// has kContestedFlag set, also when both are occluded later. The result does not depend on the
+/// drawing order: of two equally near triangles the one with the lower id stays. Pixels are stored
+/// in blocks of 4x4.
 class TileBuffer {
  public:
-  static constexpr int kSide = 128;  ///< most columns and rows
+  static constexpr int kSide = 128;  ///< maximum number of columns and rows
 
-  /// Makes it empty, of this size; scale: Nearness::factor of what will be drawn.
+  /// Resizes and clears it; scale: Nearness::factor of the triangles to come.
   void clear(int cols, int rows, float scale);
 
   [[nodiscard]] int cols() const { return cols_; }
   [[nodiscard]] int rows() const { return rows_; }
 
-  /// True when everything in the rectangle is clearly nearer already than `at_most`.
+  /// True when everything in the rectangle is already clearly nearer than `max_nearness`.
   [[nodiscard]] bool is_occluded(const PixelBounds& rect, float max_nearness);
 
-  /// To be called when something was drawn there.
+  /// Must be called after drawing in the rectangle.
   void mark_stale(const PixelBounds& rect);
 
-  /// Draws one pixel if it is nearer than what is there. The number may have kCertainFlag set;
-  /// `room` is that of a shape.
+  /// Draws one pixel if it passes the depth test. The id may have kCertainFlag set; `margin`: see
+  /// TriangleSetup.
   void depth_test(int col, int row, float nearness, float margin, std::uint32_t triangle_id) {
     const std::size_t at = centroid(col, row);
     const float before = nearness_[at];
@@ -87,10 +87,10 @@ class TileBuffer {
     triangle_ids_[at] = (draws ? triangle_id : old) | contested;
   }
 
-  /// Draws all pixels of a shape, and perhaps some in the blocks around its rectangle.
+  /// Draws all pixels of a triangle, and perhaps some in the blocks around its rectangle.
   void draw(const TriangleSetup& setup);
 
-  /// Writes the numbers row by row.
+  /// Writes the ids row by row.
   void copy_triangle_ids(std::vector<std::uint32_t>& triangle_ids) const;
 
  private:
@@ -116,11 +116,10 @@ class TileBuffer {
   int cols_ = 0;
   int rows_ = 0;
   float scale_ = 1.0F;
-  alignas(64) std::array<float, kPixels> nearness_;  ///< of what is drawn; below all: nothing
+  alignas(64) std::array<float, kPixels> nearness_;  ///< kEmptyNearness where nothing is drawn
   alignas(64) std::array<std::uint32_t, kPixels> triangle_ids_;
   std::array<float, std::size_t{kCells} * kCells> min_nearness_;  ///< per cell, of its pixels
-  std::array<bool, std::size_t{kCells} * kCells>
-      is_stale_;  ///< min_nearness_ there is to be found anew
+  std::array<bool, std::size_t{kCells} * kCells> is_stale_;  ///< min_nearness_ must be recomputed
 };
 
 }  // namespace glidar::raster

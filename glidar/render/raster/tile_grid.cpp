@@ -9,7 +9,7 @@
 namespace glidar::raster {
 namespace {
 
-// Enough parts that threads end together; where they are small, many clusters lie in several.
+// Enough tiles for balanced threads; with smaller ones, many clusters would be in several tiles.
 constexpr double kTargetTiles = 24.0;
 constexpr double kMinSide = 24.0;
 constexpr double kMaxSide = TileBuffer::kSide - 2.0;
@@ -18,7 +18,7 @@ std::uint32_t pieces(std::uint32_t length, double side) {
   return static_cast<std::uint32_t>(std::ceil(length / side));
 }
 
-/// Pixels [first - 1, end + 1), as far as there are any.
+/// Pixels [first - 1, end + 1), within [0, all).
 void widen(std::uint32_t& first, std::uint32_t& count, std::uint32_t all) {
   const std::uint32_t end = std::min(first + count + 1, all);
   first = first == 0 ? 0 : first - 1;
@@ -58,7 +58,7 @@ Tile TileGrid::tile(std::size_t index) const {
   return tile;
 }
 
-/// Calls body(part) for those whose drawn pixels the cluster meets.
+/// Calls body(tile) for the tiles whose drawn pixels overlap the cluster.
 template <class Body>
 void TileGrid::for_tiles_of(const VisibleCluster& cluster, const Body& body) const {
   const auto centroid = [](std::int64_t pixel, std::uint32_t first, std::uint32_t side,
@@ -82,7 +82,7 @@ void TileGrid::for_tiles_of(const VisibleCluster& cluster, const Body& body) con
 }
 
 void TileGrid::bin_clusters(std::span<const VisibleCluster> clusters) {
-  first_.assign(size() + 2, 0);  // shifted by one while the parts are filled
+  first_.assign(size() + 2, 0);  // shifted by one while the tiles are filled
   for (const VisibleCluster& cluster : clusters) {
     for_tiles_of(cluster, [&](std::size_t tile) { ++first_[tile + 2]; });
   }

@@ -13,27 +13,27 @@
 
 namespace glidar::raster {
 
-/// A part of a picture that fits a canvas. A pixel more is drawn on each side than is written: a
-/// beam in doubt looks at the pixels around it.
+/// A tile of the image. One pixel more is drawn on each side than is written, because uncertain
+/// beams use the pixels around them.
 struct Tile {
   PixelRect drawn;
   PixelRect written;
 };
 
-/// The part of a picture that is of interest, cut into parts, and the clusters seen in each. It
-/// depends on the picture alone and not on who draws it.
+/// The tiles of the visible part of an image, and the clusters in each. They depend on the image
+/// alone, not on threads.
 class TileGrid {
  public:
-  /// Cuts the window, which is not empty, out of a picture of so many rows and columns.
+  /// Divides the window, which is not empty, of an image of this size.
   void build(const GridWindow& window, std::uint32_t rows, std::uint32_t cols);
 
-  /// Shares the clusters out among the parts.
+  /// Lists the clusters of each tile.
   void bin_clusters(std::span<const VisibleCluster> clusters);
 
   [[nodiscard]] std::size_t size() const { return std::size_t{across_} * down_; }
   [[nodiscard]] Tile tile(std::size_t index) const;
 
-  /// Which of the clusters the part sees.
+  /// Indices of the clusters in the tile.
   [[nodiscard]] std::span<const std::uint32_t> clusters_in(std::size_t index) const {
     return {seen_.data() + first_[index], first_[index + 1] - first_[index]};
   }
@@ -43,14 +43,14 @@ class TileGrid {
   void for_tiles_of(const VisibleCluster& cluster, const Body& body) const;
 
   GridWindow window_;
-  std::uint32_t rows_ = 0;  ///< of the picture
+  std::uint32_t rows_ = 0;  ///< of the image
   std::uint32_t cols_ = 0;
-  std::uint32_t width_ = 1;  ///< of a part
+  std::uint32_t width_ = 1;  ///< of a tile
   std::uint32_t height_ = 1;
-  std::uint32_t across_ = 0;  ///< parts
+  std::uint32_t across_ = 0;  ///< tiles
   std::uint32_t down_ = 0;
-  std::vector<std::size_t> first_;   ///< per part and one more, into seen_
-  std::vector<std::uint32_t> seen_;  ///< clusters, part by part
+  std::vector<std::size_t> first_;   ///< per tile and one more, into seen_
+  std::vector<std::uint32_t> seen_;  ///< clusters, tile by tile
 };
 
 }  // namespace glidar::raster

@@ -12,14 +12,14 @@
 namespace glidar::raster {
 namespace {
 
-// Columns and rows of corners from this to that are known well enough in single precision.
+// Columns and rows of corners in this range are accurate enough in single precision.
 constexpr float kMin_px = -64.0F;
 constexpr float kMax_px = 192.0F;
 
-// Eight roundings, of each term of an interpolation.
+// Eight roundings of each term of an interpolation.
 constexpr float kInterpolation = 0x1p-21F;
 
-/// A corner of each triangle on the canvas.
+/// One corner of each triangle, projected into the tile.
 struct CornerProjection {
   Lanes<float> col;
   Lanes<float> row;
@@ -57,7 +57,7 @@ struct CornerProjection {
   return ab > c ? ab : c;
 }
 [[gnu::always_inline]] inline float clamped(float value, float low, float high) {
-  const float above = value > low ? value : low;  // low where it is not a number
+  const float above = value > low ? value : low;  // low for NaN
   return above < high ? above : high;
 }
 [[gnu::always_inline]] inline std::int32_t rounded_up(float value) {
@@ -75,7 +75,7 @@ struct CornerProjection {
   return max_of;
 }
 
-/// The pixels that a triangle may cover, and what is to be done about it.
+/// Finds pixel bounds and size classes.
 [[gnu::always_inline]] inline void bound(const TileTransform& transform,
                                          const std::array<CornerProjection, 3>& projections,
                                          TriangleSetups& f) {
@@ -100,13 +100,13 @@ struct CornerProjection {
         static_cast<int>(f.left[i] > f.right[i]) | static_cast<int>(f.top[i] > f.bottom[i]);
     const int is_small = static_cast<int>(f.right[i] - f.left[i] < kSmall) &
                          static_cast<int>(f.bottom[i] - f.top[i] < kSmall);
-    // As numbers, so that the loop stays one of vectors: small 1, medium 2, large 3.
+    // As integers, so that the loop vectorises: small 1, medium 2, large 3.
     const int fitting = 2 - is_small;
     f.size[i] = (is_clear & is_empty) != 0 ? 0 : ((is_clear & is_near) != 0 ? fitting : 3);
   }
 }
 
-/// A border from corner a to b of all triangles, positive on the side of `sign`.
+/// The edge function from corner a to b of all triangles, positive on the side of `sign`.
 [[gnu::always_inline]] inline void find_edge(const CornerProjection& a, const CornerProjection& b,
                                              const Lanes<float>& sign, std::size_t k,
                                              TriangleSetups& f) {
@@ -124,7 +124,7 @@ struct CornerProjection {
   }
 }
 
-/// Signs of the triangles' areas, and nearness; what has no area or is culled is dropped.
+/// Finds signs of areas and nearness; triangles that are degenerate or culled are dropped.
 [[gnu::always_inline]] inline void find_nearness(const TileTransform& transform,
                                                  const std::array<CornerProjection, 3>& projections,
                                                  Lanes<float>& sign, TriangleSetups& f) {
@@ -147,8 +147,7 @@ struct CornerProjection {
                               f.nearness_per_row[i] * (static_cast<float>(f.top[i]) - row);
     f.farthest[i] = min_of_three(near, projections[1].nearness[i], projections[2].nearness[i]);
     f.nearest[i] = max_of(near, projections[1].nearness[i], projections[2].nearness[i]);
-    // Sizes of the terms of the area and of the gradient: their roundings count as many times more
-    // as the terms cancel out.
+    // Sizes of the terms of the area and of the gradient: cancellation amplifies their rounding.
     const float area_terms = size_of(col_1 * row_2) + size_of(col_2 * row_1);
     const float across = size_of(near_1 * row_2) + size_of(near_2 * row_1);
     const float down = size_of(near_2 * col_1) + size_of(near_1 * col_2);
@@ -158,7 +157,7 @@ struct CornerProjection {
         static_cast<float>(f.bottom[i] - f.top[i]) + size_of(static_cast<float>(f.top[i]) - row);
     const float steepness = (across * farther_col + down * farther_row) * size_of(inverse);
     const float margin = kInterpolation * (1.0F + area_terms * size_of(inverse)) * steepness;
-    const float whole = f.nearest[i] - f.farthest[i];  // nearness is held within it
+    const float whole = f.nearest[i] - f.farthest[i];  // nearness is clamped to it
     f.margin[i] = margin < whole ? margin : whole;
     const int is_culled =
         static_cast<int>(transform.cull_back_faces) & static_cast<int>(area > 0.0F);
@@ -168,13 +167,13 @@ struct CornerProjection {
   }
 }
 
-/// Sizes of small triangles' rectangles; nothing for all others.
+/// Sizes of small triangles' rectangles; zero for all others.
 struct SmallRects {
   Lanes<std::int32_t> cols;
   Lanes<std::int32_t> rows;
 };
 
-/// Looks at one pixel of each small triangle's rectangle.
+/// Tests one pixel of each small triangle's rectangle.
 [[gnu::always_inline]] inline void test_pixel(const TriangleSetups& f, const SmallRects& rects,
                                               std::int32_t col, std::int32_t row,
                                               Lanes<std::uint32_t>& coverage) {
@@ -254,13 +253,13 @@ GLIDAR_SIMD std::uint32_t coverage_masks(const TriangleSetups& f, Lanes<std::uin
 
 namespace {
 
-/// Six times the volume that the corners and the sensor span: positive where the triangle is seen
-/// from behind, and 0 where the sensor lies in its plane as far as double tells.
+/// Six times the volume of the tetrahedron of corners and sensor: positive where the triangle is
+/// seen from behind, and 0 where the sensor is in its plane within the rounding of double.
 double volume_of(const Eigen::Matrix3d& corners) {
-  // By differences, which keep the digits of small triangles far away.
+  // Differences keep the precision of small, distant triangles.
   const Eigen::Vector3d first = corners.col(0);
   const double volume = first.dot((corners.col(1) - first).cross(corners.col(2) - first));
-  // What it changes by when each corner is moved by its own rounding, and some more.
+  // Its change when each corner is moved by its rounding, with a margin.
   constexpr double kRounding = 0x1p-49;
   double change = 0.0;
   for (int k = 0; k < 3; ++k) {
@@ -271,7 +270,7 @@ double volume_of(const Eigen::Matrix3d& corners) {
   return std::abs(volume) > kRounding * change ? volume : 0.0;
 }
 
-/// The part of the canvas that a triangle in front of the sensor may cover; all of it for others.
+/// Bounds of a triangle in front of the sensor, within the tile; the whole tile for others.
 PixelBounds around(const Eigen::Matrix3d& corners, const PixelBounds& tile) {
   constexpr double kRectMargin_px = 1e-3;
   if (!(corners.row(2).minCoeff() > 0.0)) return tile;
@@ -317,7 +316,7 @@ std::optional<TriangleSetup> set_up_triangle(const Eigen::Matrix3d& corners,
     setup.per_row[at] = static_cast<float>(sign * edge.y() / width);
     setup.at_corner[at] = static_cast<float>(sign * edge.dot(first_pixel) / width) + kEdgeMargin_px;
     setup.certain[at] = 2.0F * kEdgeMargin_px;
-    // All pixels beyond one border: nothing is covered.
+    // All pixels are outside of one edge: nothing is covered.
     const float across =
         std::max(0.0F, setup.per_col[at]) * static_cast<float>(setup.rect.right - setup.rect.left);
     const float down =

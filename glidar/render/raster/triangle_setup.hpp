@@ -12,33 +12,33 @@
 
 namespace glidar::raster {
 
-/// How one cluster's corners come onto one canvas, in single precision: the large numbers are gone,
-/// as corners are relative to the cluster's middle and pixels to the canvas.
+/// Projects the corners of one cluster into one tile in single precision. Corners are relative to
+/// the cluster's middle and pixels to the tile, so no large numbers occur.
 struct TileTransform {
   std::array<float, 9> matrix;        ///< column by column: to (column, row, 1) times depth
   float column_at_depth, row, depth;  ///< of the middle, the first two times its depth
   float before_far;                   ///< from the middle to the far plane, m
   float factor;                       ///< Nearness::factor
-  float min_depth;                    ///< of corners that single precision suits
-  float last_col, last_row;           ///< of the canvas
+  float min_depth;                    ///< of corners in single precision
+  float last_col, last_row;           ///< of the tile
   bool cull_back_faces;
 };
 
-/// Borders are drawn this far outside of where they are, pixels: more than rounding moves them, so
-/// that no beam falls between two triangles. Who gets one falsely is found out afterwards.
+/// Edges are moved outwards by this many pixels: more than rounding moves them, so that no beam
+/// falls between two triangles. Pixels that are covered by mistake are re-tested exactly.
 inline constexpr float kEdgeMargin_px = 0x1p-13F;
 
-/// What there is to do about a triangle.
+/// How a triangle is drawn.
 enum class SizeClass : std::int32_t {
-  none,   ///< it covers no pixel of the canvas
-  small,  ///< it covers some of kSmall x kSmall pixels
+  none,   ///< it covers no pixel of the tile
+  small,  ///< within kSmall x kSmall pixels
   medium,
-  large  ///< for double precision, perhaps of no pixel
+  large  ///< set up in double precision; it may cover no pixel
 };
 
 inline constexpr int kSmall = 4;
 
-/// The triangles of a pack on a canvas, see Shape.
+/// Setups of the triangles of a packet, lane by lane; see TriangleSetup.
 struct TriangleSetups {
   std::array<Lanes<float>, 3> per_col;
   std::array<Lanes<float>, 3> per_row;
@@ -54,24 +54,24 @@ struct TriangleSetups {
   Lanes<std::int32_t> right;
   Lanes<std::int32_t> top;
   Lanes<std::int32_t> bottom;
-  Lanes<std::int32_t> size;  ///< a Size
+  Lanes<std::int32_t> size;  ///< a SizeClass
 
-  /// One of the triangles; of a size other than large.
+  /// The setup of one triangle, whose size class is not `large`.
   [[nodiscard]] TriangleSetup setup(unsigned lane, std::uint32_t triangle_id) const;
 };
 
 void set_up_triangles(const TileTransform& transform, const CornerBlock& corners,
                       TriangleSetups& footprints);
 
-/// Per small triangle, bits for pixels of its rectangle: bit kSmall * row + column where it covers
-/// one, and kCertainShift bits further up where that is certain. Returns a bit for every lane where
-/// there is something to draw.
+/// Coverage masks of small triangles: bit kSmall * row + column of the rectangle for each covered
+/// pixel, and kCertainShift bits higher where that is certain. Returns a bit for every lane that
+/// has something to draw.
 inline constexpr int kCertainShift = kSmall * kSmall;
 std::uint32_t coverage_masks(const TriangleSetups& footprints, Lanes<std::uint32_t>& coverage);
 
-/// The shape of any triangle, worked out in double from its corners as (column, row, 1) times depth
-/// on the canvas; none when it covers nothing there. Corners behind the sensor are welcome: M.
-/// Olano and T. Greer, "Triangle scan conversion using 2D homogeneous coordinates" (1997).
+/// Sets up any triangle in double from its corners as (column, row, 1) times depth in the tile;
+/// none when it covers nothing there. Corners may be behind the sensor: M. Olano and T. Greer,
+/// "Triangle scan conversion using 2D homogeneous coordinates" (1997).
 std::optional<TriangleSetup> set_up_triangle(const Eigen::Matrix3d& corners,
                                              const Nearness& nearness, const PixelBounds& tile,
                                              bool cull_back_faces);

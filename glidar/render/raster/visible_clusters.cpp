@@ -11,7 +11,7 @@
 namespace glidar::raster {
 namespace {
 
-// Room for rounding, above that of all single precision here: part of a length, and pixels.
+// Rounding margins, larger than all errors of single precision here: relative, and in pixels.
 constexpr double kBoundMargin = 1e-5;
 constexpr double kPixelMargin_px = 0.01;
 
@@ -44,7 +44,7 @@ struct Corners {
   }
 }
 
-/// What the corners span.
+/// Bounds of the projected corners.
 struct Span {
   Lanes<double> left;
   Lanes<double> right;
@@ -74,7 +74,7 @@ struct Span {
   }
 }
 
-/// The first whole number that is not below, and the last that is not above, within borders.
+/// The smallest integer from `low` on, and the largest up to `high`, clamped.
 [[gnu::always_inline]] inline std::int32_t first_from(double low, double first, double last) {
   const double clamped = low < first ? first : (low > last + 1.0 ? last + 1.0 : low);
   const auto whole = static_cast<std::int32_t>(clamped);
@@ -91,7 +91,7 @@ struct Span {
 PixelView pixel_view(const InstanceView& view, const PinholeIntrinsics& k) {
   const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(view);
   PixelView result{.pixel_from_object = seen};
-  // Whole numbers are where the beams go.
+  // Beams have integer pixel coordinates.
   result.pixel_from_object.row(0) = k.fx * seen.row(0) + (k.cx - k.pixel_centre) * seen.row(2);
   result.pixel_from_object.row(1) = k.fy * seen.row(1) + (k.cy - k.pixel_centre) * seen.row(2);
   return result;
@@ -120,7 +120,8 @@ GLIDAR_SIMD void bound_clusters(const PixelView& view, const Nearness& nearness,
   for (unsigned i = 0; i < kLanes; ++i) {
     const double near = span.near[i];
     const bool is_ahead = span.far[i] > 0.0;
-    const bool is_around = near <= kBoundMargin * span.far[i];  // or behind: then it may cover all
+    const bool is_around =
+        near <= kBoundMargin * span.far[i];  // or behind: then it may cover everything
     const double left = is_around ? first_col : span.left[i] - kPixelMargin_px;
     const double right = is_around ? last_col : span.right[i] + kPixelMargin_px;
     const double top = is_around ? first_row : span.top[i] - kPixelMargin_px;
@@ -142,7 +143,7 @@ bool is_outside(const PixelView& view, const BoxPacket& boxes, unsigned lane,
   const Eigen::Matrix<double, 3, 4>& pixel = view.pixel_from_object;
   const Eigen::Vector3d middle = boxes.middle.get(lane).cast<double>();
   const Eigen::Vector3d half = boxes.half.get(lane).cast<double>();
-  // Linear, and not negative in what is seen: so it must be for some point of the box.
+  // Linear, and not negative where visible, so some point of the box must reach 0.
   const auto is_beyond = [&](const Row& inside) {
     const double size = inside.head<3>().cwiseAbs().dot(half);
     const double max_of = inside.head<3>().dot(middle) + inside[3] + size;

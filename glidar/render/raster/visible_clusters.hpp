@@ -15,7 +15,7 @@
 
 namespace glidar::raster {
 
-/// An instance as a pinhole sees it.
+/// An instance as seen by a pinhole camera.
 struct PixelView {
   /// From a point relative to the mesh's origin to (column, row, 1) times its depth, m.
   Eigen::Matrix<double, 3, 4> pixel_from_object;
@@ -23,8 +23,8 @@ struct PixelView {
 
 PixelView pixel_view(const InstanceView& view, const PinholeIntrinsics& pinhole);
 
-/// What a depth is called where nearness is compared: near (far - z) / (z (far - near)), 1 at the
-/// near plane and 0 at the far one; what is nearer still has more. It is linear in the picture.
+/// Reversed depth: near (far - z) / (z (far - near)), 1 at the near plane, 0 at the far one, and
+/// larger for points nearer than the near plane. It is linear in column and row.
 struct Nearness {
   explicit Nearness(const DepthRange& depths)
       : far_m(depths.far_m), factor(depths.near_m / (depths.far_m - depths.near_m)) {}
@@ -34,8 +34,8 @@ struct Nearness {
   [[nodiscard]] double at(double depth_m) const { return factor * (far_m - depth_m) / depth_m; }
 };
 
-/// Where kLanes clusters may be seen: columns and rows, both ends included, and how near they may
-/// come. An empty range of columns: nowhere.
+/// Bounds of kLanes clusters in the image: columns and rows, both ends included, and the maximum
+/// nearness. An empty range of columns: not visible.
 struct ClusterBounds {
   Lanes<std::int32_t> left;
   Lanes<std::int32_t> right;
@@ -44,18 +44,18 @@ struct ClusterBounds {
   Lanes<float> nearness;
 };
 
-/// Of boxes around clusters, in the part of a picture that is of interest.
+/// Finds them from the boxes of clusters, within a window of the image.
 void bound_clusters(const PixelView& view, const Nearness& nearness, const GridWindow& window,
                     const BoxPacket& boxes, ClusterBounds& bounds);
 
-/// Some clusters of an instance.
+/// A range of an instance's clusters.
 struct ClusterRange {
   std::uint32_t instance;
   std::uint32_t first;
   std::uint32_t end;
 };
 
-/// A cluster that may be seen, and where: columns and rows of the picture, both ends included.
+/// A cluster that may be visible, with its columns and rows in the image, both ends included.
 struct VisibleCluster {
   std::uint32_t instance;
   std::uint32_t cluster;
@@ -63,15 +63,15 @@ struct VisibleCluster {
   std::int32_t right;
   std::int32_t top;
   std::int32_t bottom;
-  float nearness;  ///< at most; infinite where the cluster reaches to the sensor's plane
+  float nearness;  ///< maximum; infinite where the cluster reaches the sensor's plane
 };
 
-/// True when nothing of a cluster's box, which may reach behind the sensor, is seen in the
-/// rectangle of pixels, both ends included.
+/// True when nothing of a cluster's box, which may reach behind the sensor, is in the rectangle of
+/// pixels, both ends included.
 bool is_outside(const PixelView& view, const BoxPacket& boxes, unsigned lane,
                 const PixelBounds& pixels);
 
-/// Adds those of the range that may be seen; its first is a multiple of kLanes.
+/// Adds the clusters of the range that may be visible; its first index is a multiple of kLanes.
 void add_visible_clusters(const PixelView& view, const Nearness& nearness, const GridWindow& window,
                           const PackedMesh& mesh, const ClusterRange& range,
                           std::vector<VisibleCluster>& clusters);

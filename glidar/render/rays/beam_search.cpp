@@ -21,7 +21,7 @@ void set_rays(const Lanes3<double>& origin, const Lanes3<double>& direction, Ray
   std::memcpy(packet.exact_direction, &direction, sizeof(direction));
 }
 
-/// Lanes whose directions are numbers and whose origins are within reach.
+/// Lanes with finite directions and with origins within range.
 std::uint32_t usable_lanes(const BeamBlock& beams) {
   const Lanes3<double>& d = beams.direction;
   const Lanes3<double>& o = beams.origin_m;
@@ -38,7 +38,7 @@ std::uint32_t usable_lanes(const BeamBlock& beams) {
   return lanes;
 }
 
-/// What a triangle's filter functions need to know, see RayPacket::accepts_hit.
+/// Data for the filter of a triangle's hits, see RayPacket::accepts_hit.
 struct HitFilterContext {
   const CastView& cast;
   const HitBlock& block;
@@ -51,7 +51,7 @@ struct HitFilterContext {
   }
 };
 
-/// Up to sixteen beams through one instance.
+/// Casts up to sixteen beams through one instance.
 class InstanceTrace {
  public:
   InstanceTrace(const CastView& cast, const Kernel& kernel, const HitBlock& block)
@@ -59,7 +59,7 @@ class InstanceTrace {
 
   RayPacket packet;
 
-  /// Sets the rays. Without lanes there is nothing to trace.
+  /// Sets the rays of these lanes, at least one.
   void start(std::uint32_t instance, const BeamBlock& beams, std::uint32_t lanes) {
     const InstanceView& view = cast_.resolver.view(instance);
     Lanes3<double> origin;
@@ -88,25 +88,25 @@ class InstanceTrace {
   HitFilterContext stop_;
 };
 
-/// What a lane has found in all instances so far.
+/// The nearest hit of a lane in all instances so far.
 struct Nearest {
   PrimitiveRef primitive;
   double low_m = kInfinity;  ///< bounds of the distance
   double high_m = kInfinity;
 };
 
-/// Up to sixteen beams through all instances.
+/// Casts up to sixteen beams through all instances.
 class SceneTrace {
  public:
   SceneTrace(const CastView& cast, const Kernel& kernel, const BeamBlock& beams,
              const HitBlock& block)
       : cast_(cast), kernel_(kernel), beams_(beams), block_(block), inner_(cast, kernel, block) {}
 
-  /// Returns the lanes of which some distances tie.
+  /// Returns the lanes for which some distances tie.
   std::uint32_t trace(std::uint32_t lanes) {
     Lanes3<double> origin;
     Lanes3<double> direction;
-    // The tree's frame is like that of an instance.
+    // The tree's frame is treated as that of an instance.
     rays_in({cast_.trees.tree_from_sensor(), cast_.trees.sensor_in_tree(), 1.0}, beams_, origin,
             direction);
     RayPacket packet;
@@ -144,7 +144,7 @@ class SceneTrace {
     });
   }
 
-  /// Keeps the nearer of what a lane has found and what the inner packet found.
+  /// Keeps the nearer of the lane's hit and that of the inner packet.
   void update_nearest(unsigned lane, const PrimitiveRef& found, double scale) {
     const RayPacket& p = inner_.packet;
     const double margin = 0x1p-50 * p.shift[lane];
@@ -156,7 +156,7 @@ class SceneTrace {
     if (is_first || other.high_m < nearest.low_m || retest_exactly(lane, found)) nearest = other;
   }
 
-  /// True when the beam meets this one before the nearest so far.
+  /// True when the beam hits this triangle before the nearest so far.
   bool retest_exactly(unsigned lane, const PrimitiveRef& found) {
     const HitOrder order = order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].primitive);
     if (order.ties) tied_ |= 1U << lane;

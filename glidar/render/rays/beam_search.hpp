@@ -9,12 +9,12 @@
 
 namespace glidar::rays {
 
-/// Finds what the beams of one cast hit first, by the hit rule: the least distance, of those that
-/// tie the lowest instance and triangle (see lowest_of_ties()). The result does not depend on how
+/// Finds the first hits of the beams of one cast by the hit rule: the smallest distance, and among
+/// ties the lowest instance and triangle (see lowest_of_ties()). The result does not depend on how
 /// beams are grouped.
 class BeamSearch {
  public:
-  /// What the view refers to must outlive the search. The trees and the resolver have the cast's
+  /// References in the view must outlive the search. The trees and the resolver have the cast's
   /// poses.
   BeamSearch(const CastView& cast, const Kernel& kernel) : cast_(cast), kernel_(kernel) {}
 
@@ -22,7 +22,7 @@ class BeamSearch {
   /// primitive; clears the bits of those that hit nothing.
   void find(const BeamBlock& beams, HitBlock& block) const;
 
-  /// What one beam hits; instance kInvalidId: nothing.
+  /// The first hit of one beam; instance kInvalidId: none.
   [[nodiscard]] PrimitiveRef find(std::size_t beam) const;
 
  private:

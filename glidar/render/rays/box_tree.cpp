@@ -9,7 +9,7 @@
 namespace glidar::rays {
 namespace {
 
-/// The box around a node's children; those that are not there have empty ones.
+/// The box around a node's children; missing ones have empty boxes.
 SplitNode box_around(const TreeNode& node) {
   SplitNode box{};
   for (int axis = 0; axis < 3; ++axis) {

@@ -19,17 +19,17 @@ class BoxTree {
   /// At least one box. Their indices are less than `count` and differ.
   void build(std::span<BoxReference> boxes, std::size_t count, ThreadPool& thread_pool);
 
-  /// Moves the box of this index, and fits those above to it.
+  /// Moves the box of this index, and refits the boxes above it.
   void move(const BoxReference& box);
 
-  /// True when boxes have moved so that the tree should be built again: the areas of its nodes'
-  /// boxes, by which the time of a search grows, have doubled.
+  /// True when the tree should be rebuilt because boxes moved: the areas of its nodes, and with
+  /// them the expected search time, have doubled.
   [[nodiscard]] bool needs_rebuild() const { return area_ > 2.0 * built_area_; }
 
   [[nodiscard]] const std::vector<TreeNode>& nodes() const { return nodes_; }
   /// The index of the box in a leaf.
   [[nodiscard]] std::uint32_t index_in(std::uint32_t leaf) const { return index_of_leaf_[leaf]; }
-  /// Around all boxes.
+  /// A sphere around all boxes.
   [[nodiscard]] const MeshSphere& sphere() const { return sphere_; }
 
  private:
@@ -42,11 +42,11 @@ class BoxTree {
   void find_slots(std::size_t count);
 
   std::vector<TreeNode> nodes_;
-  std::vector<ChildSlot> slot_of_node_;  ///< of the root: not used
-  std::vector<ChildSlot> slot_of_box_;   ///< by index
+  std::vector<ChildSlot> slot_of_node_;  ///< unused for the root
+  std::vector<ChildSlot> slot_of_box_;   ///< per index
   std::vector<std::uint32_t> index_of_leaf_;
   MeshSphere sphere_;
-  double area_ = 0.0;  ///< of the boxes around the nodes, added up
+  double area_ = 0.0;  ///< of the boxes around the nodes, summed
   double built_area_ = 0.0;
 };
 

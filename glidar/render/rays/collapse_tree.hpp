@@ -17,8 +17,8 @@ struct LeafRange {
   std::uint32_t count;
 };
 
-/// Turns a binary tree, of which there is at least the root, into one of eight children per node.
-/// Leaf i, named ~i by the nodes, is leaves[i].
+/// Collapses a binary tree with at least a root into one of eight children per node. Nodes refer to
+/// leaves[i] as ~i.
 void collapse_tree(const SplitNode* split, std::vector<TreeNode>& nodes,
                    std::vector<LeafRange>& leaves);
 

@@ -27,7 +27,7 @@ double distance_to(const TriangleBlock* blocks, RayPacket& packet, unsigned lane
   return hit_distance(rule_of(packet, lane), triangle_at(blocks, slot));
 }
 
-/// The rule's distance to the nearest triangle so far, which the filter was sure of.
+/// The rule's distance to the nearest triangle so far, which the filter had accepted.
 void complete_distance(const TriangleBlock* blocks, RayPacket& packet, unsigned lane) {
   if ((packet.known >> lane & 1U) != 0) return;
   packet.distance[lane] = distance_to(blocks, packet, lane, packet.slot[lane]);
@@ -53,15 +53,15 @@ double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// How much farther a triangle may be that ties with this one.
+/// Distance by which a triangle may be farther and still tie with this one.
 double tie_margin(const RayPacket& packet, unsigned lane, const HitTriangle& triangle) {
   if (packet.tie_reach == 0.0) return 0.0;
   const auto& d = packet.exact_direction;
   return tie_window(packet.tie_reach, triangle, {d[0][lane], d[1][lane], d[2][lane]});
 }
 
-/// True where the triangle has the corners of the ray's nearest one, in any order: by the rule
-/// their distances are equal, so that the lower one is kept.
+/// True where the triangle has the same corners as the ray's nearest one, in any order: by the
+/// rule, their distances are equal, so the lower one is kept.
 bool keep_lower_duplicate(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
                           std::uint32_t slot) {
   const std::uint32_t before = packet.slot[lane];

@@ -10,8 +10,8 @@
 
 namespace glidar::rays {
 
-/// Applies the hit rule to a triangle that single precision left in doubt, and to the ray's nearest
-/// one if its distance is not known yet; keeps the nearer.
+/// Applies the hit rule to a triangle that single precision cannot decide, and to the ray's nearest
+/// one if its distance is still unknown; keeps the nearer.
 void retest_exactly(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
                     std::uint32_t slot);
 
@@ -19,15 +19,15 @@ void retest_exactly(const TriangleBlock* blocks, RayPacket& packet, unsigned lan
 /// equal.
 bool have_same_corners(const TriangleBlock* blocks, std::uint32_t slot, std::uint32_t other);
 
-/// How much farther a triangle may be that ties with this one, see RayPacket::tie_reach; the ray's
-/// direction is a unit vector.
+/// Distance by which a triangle may be farther and still tie with this one, see
+/// RayPacket::tie_reach; the ray's direction is a unit vector.
 double tie_window(double reach, const HitTriangle& triangle,
                   const std::array<double, 3>& direction);
 
 /// Computes packet.distance of every active ray that hits, by the rule.
 void complete_distances(const TriangleBlock* blocks, RayPacket& packet);
 
-/// The mesh's index of the triangle that a ray hits; kNoTriangle: none.
+/// Index in the mesh of the triangle that a ray hits; kNoTriangle: none.
 inline std::uint32_t primitive_of(const TriangleBlock* blocks, const RayPacket& packet,
                                   unsigned lane) {
   const std::uint32_t slot = packet.slot[lane];

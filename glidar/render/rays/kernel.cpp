@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled once for every instruction set (glidar/CMakeLists.txt). It must not use functions that
-// another file could share, such as those of the standard library: the linker keeps one of them,
-// for whichever instruction set.
+// other files could share, such as those of the standard library: the linker keeps one instance of
+// them, for an arbitrary instruction set.
 #include <glidar/render/rays/kernel.hpp>
 
 #ifndef GLIDAR_KERNEL

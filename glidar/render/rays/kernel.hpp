@@ -7,7 +7,7 @@
 
 namespace glidar::rays {
 
-/// What is done with the rays of `lanes` in a leaf. It may lower packet.high of them.
+/// Processes the rays of `lanes` in a leaf. May lower packet.high of these.
 using VisitLeaf = void (*)(void* context, std::uint32_t leaf, RayPacket& packet,
                            std::uint32_t lanes);
 
@@ -15,8 +15,8 @@ using VisitLeaf = void (*)(void* context, std::uint32_t leaf, RayPacket& packet,
 /// GLIDAR_KERNEL as its name.
 struct Kernel {
   const char* name;  ///< "baseline", "avx2", "avx512"
-  /// Completes a packet whose rays are set, for a mesh and the rays of the mask `active`, at least
-  /// one: nothing is hit yet.
+  /// Completes a packet whose rays are set, for a mesh and the rays of the mask `active` (at least
+  /// one), without hits.
   void (*start)(RayPacket& packet, const MeshSphere& sphere, std::uint32_t active);
   /// Tests the rays of `lanes` with the triangles of a cluster.
   void (*test_leaf)(const TreeView& tree, std::uint32_t cluster, RayPacket& packet,
@@ -25,8 +25,8 @@ struct Kernel {
   void (*trace)(const TreeView& tree, RayPacket& packet);
   /// The same for one ray at a time: for rays in unrelated directions.
   void (*trace_single)(const TreeView& tree, RayPacket& packet);
-  /// Calls visit() for the leaves that rays of a started packet enter before packet.high, about the
-  /// nearest first. The tree needs no clusters and blocks.
+  /// Calls visit() for the leaves that rays of a started packet enter before packet.high, in about
+  /// the order of distance. The tree needs no clusters and blocks.
   void (*visit_leaves)(const TreeView& tree, RayPacket& packet, VisitLeaf visit, void* context);
 };
 

@@ -12,8 +12,8 @@ namespace glidar::rays {
 /// The kernels that this processor can run, the fastest last.
 std::vector<const Kernel*> usable_kernels();
 
-/// The fastest kernel that this processor can run, or the one that the environment variable
-/// GLIDAR_ISA names. All give the same bits. Throws Error if the processor cannot run that one.
+/// The fastest kernel that this processor can run, or the one named by the environment variable
+/// GLIDAR_ISA. All give the same bits. Throws Error if the processor cannot run that one.
 const Kernel& select_kernel();
 
 /// The same for a name; empty: the fastest.

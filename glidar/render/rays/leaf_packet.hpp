@@ -4,8 +4,8 @@
 
 #include <glidar/render/rays/leaf_test.hpp>
 
-// Many rays of a packet against the triangles of a cluster: eight triangles at once against all
-// directions of the packet, then what remains against the rays.
+// Tests many rays of a packet with the triangles of a cluster: first eight triangles at once with
+// the bounds of all directions, then the remaining triangles with single rays.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 /// The directions of a packet, as one box.
@@ -23,14 +23,14 @@ struct DirectionBox {
   }
 };
 
-/// The edge functions' largest values for a packet: the lowest of the three, turned so that those
-/// of a triangle that is hit are positive.
+/// Upper bound of the smallest edge function for a packet; signs are flipped so that edge functions
+/// of a hit are positive.
 GLIDAR_INLINE Float8 largest_edge(const DirectionBox& box, const Vector<Float8>& q1,
                                   const Vector<Float8>& q2, const Vector<Float8>& n) {
   return min(min(box.largest(q1), box.largest(q2)), box.largest(n - q1 - q2));
 }
 
-/// Numbers of eight triangles, to be read one triangle at a time.
+/// Values of eight triangles, to be read one triangle at a time.
 template <unsigned kRows>
 struct Rows {
   alignas(32) float at[kRows][kBlockSize];
@@ -70,8 +70,8 @@ struct LaneGroup {
   std::uint32_t slot;
 };
 
-/// Weighs one triangle for some rays, keeps it where it is surely nearer, and applies the rule
-/// where that is in doubt.
+/// Classifies one triangle for some rays, keeps it where it is surely nearer, and re-tests it
+/// exactly where that is uncertain.
 GLIDAR_INLINE void update_nearest(const TreeView& tree, RayPacket& p, const LaneGroup& group,
                                   const EdgeTest<LaneFloat>& edges, LaneFloat det,
                                   const ErrorBounds<LaneFloat>& bounds) {
@@ -92,7 +92,7 @@ GLIDAR_INLINE void update_nearest(const TreeView& tree, RayPacket& p, const Lane
            [&](unsigned i) { retest_exactly(tree.blocks, p, first + i, group.slot); });
 }
 
-/// Some rays with a common origin against one triangle. Rows: q1, q2, n, det, bounds, all turned so
+/// Tests rays with a common origin with one triangle. Rows: q1, q2, n, det, bounds, all turned so
 /// that det is positive; then the edge functions of a hit are not negative.
 GLIDAR_INLINE void test_common_triangle(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
                                         const Rows<13>& rows, std::uint32_t slot) {
@@ -110,7 +110,7 @@ GLIDAR_INLINE void test_common_triangle(const TreeView& tree, RayPacket& p, std:
   }
 }
 
-/// Some rays with a common origin against the triangles of a cluster.
+/// Tests rays with a common origin with the triangles of a cluster.
 inline void test_common(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
                         std::uint32_t lanes, const LocalOrigin& origin) {
   const float scaled = scaled_reach(origin.reach);
@@ -122,7 +122,7 @@ inline void test_common(const TreeView& tree, const TriangleCluster& cluster, Ra
     const Vector<Float8> q2 = flip_sign(s.q2, s.det);
     const Vector<Float8> n = flip_sign(s.n, s.det);
     const Float8 det = magnitude(s.det);
-    const Mask8 faces = det > s.bounds.det;  // its sign is sure
+    const Mask8 faces = det > s.bounds.det;  // its sign is certain
     const Mask8 outside = largest_edge(box, q1, q2, n) < s.bounds.edge * Float8::all(-2.0F);
     const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
     if (left == 0) continue;
@@ -141,7 +141,7 @@ inline void test_common(const TreeView& tree, const TriangleCluster& cluster, Ra
   }
 }
 
-/// Some rays, each with its own origin, against one triangle. Rows: q1, q2, n, det about the middle
+/// Tests rays with separate origins with one triangle. Rows: q1, q2, n, det about the middle
 /// of the origins; e1, e2, bounds. From an origin s beside the middle, the edge functions of a
 /// direction d are d.q1 - e1.(d x s) and d.q2 + e2.(d x s), and det is less by s.n.
 GLIDAR_INLINE void test_spread_triangle(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
@@ -166,7 +166,7 @@ GLIDAR_INLINE void test_spread_triangle(const TreeView& tree, RayPacket& p, std:
   }
 }
 
-/// Some rays, each with its own origin, against the triangles of a cluster. The setup about the
+/// Tests rays with separate origins with the triangles of a cluster. The setup about the
 /// middle of the origins rejects for all rays: moved by the spread, an edge function changes by at
 /// most 1.8 spread (s1 + s2), and det by spread s1 s2.
 inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
@@ -200,7 +200,7 @@ inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, Ra
   }
 }
 
-/// The rays of `lanes` against the triangles of a cluster.
+/// Tests the rays of `lanes` with the triangles of a cluster.
 inline void test_leaf(const TreeView& tree, std::uint32_t index, RayPacket& p,
                       std::uint32_t lanes) {
   constexpr int kFewLanes = 2;

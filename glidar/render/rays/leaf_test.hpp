@@ -7,10 +7,10 @@
 #include <glidar/render/rays/ray_tree.hpp>
 #include <glidar/render/rays/triangle_filter.hpp>
 
-// The rays of a packet against the triangles of a cluster.
+// Tests rays of a packet with the triangles of a cluster.
 namespace glidar::rays::GLIDAR_KERNEL {
 
-/// Bits of the triangles that a block of a cluster really has.
+/// Bits of the triangles in a block of a cluster, without repeated ones.
 GLIDAR_INLINE std::uint32_t present(const TriangleCluster& cluster, std::uint32_t block) {
   const std::uint32_t left = cluster.count - block * kBlockSize;
   return left < kBlockSize ? (1U << left) - 1U : 0xFFU;
@@ -41,7 +41,7 @@ GLIDAR_INLINE LocalOrigin local_origin(const double (&of_rays)[3], const Triangl
   return origin;
 }
 
-/// The origin of one ray, moved.
+/// The shifted origin of one ray.
 GLIDAR_INLINE LocalOrigin local_origin(const RayPacket& p, unsigned lane,
                                        const TriangleCluster& cluster) {
   double moved[3];
@@ -51,20 +51,20 @@ GLIDAR_INLINE LocalOrigin local_origin(const RayPacket& p, unsigned lane,
   return local_origin(moved, cluster, p.rounding);
 }
 
-/// The rule for one triangle and some rays.
+/// Applies the rule to one triangle and some rays.
 inline void retest_lanes(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
                          std::uint32_t slot) {
   for_bits(lanes, [&](unsigned lane) { retest_exactly(tree.blocks, p, lane, slot); });
 }
 
-/// The rule for all triangles, where single precision has no bounds.
+/// Applies the rule to all triangles, where single precision has no error bounds.
 inline void retest_all(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
                        std::uint32_t lanes) {
   const std::uint32_t first = cluster.first_block * kBlockSize;
   for (std::uint32_t i = 0; i < cluster.count; ++i) retest_lanes(tree, p, lanes, first + i);
 }
 
-/// Takes the triangle as a ray's nearest.
+/// Sets the triangle as a ray's nearest.
 GLIDAR_INLINE void accept(RayPacket& p, unsigned lane, std::uint32_t slot, float low, float high) {
   p.low[lane] = low;
   p.high[lane] = high;
@@ -79,7 +79,7 @@ GLIDAR_INLINE EdgeTest<Float8> edges_of(const RayPacket& p, unsigned lane, const
   return {dot(d, s.q2), dot(d, s.q1), dot(d, s.n)};
 }
 
-/// One ray against the triangles of a cluster, eight at a time.
+/// Tests one ray with the triangles of a cluster, eight at a time.
 inline void test_ray(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
                      unsigned lane) {
   const LocalOrigin origin = local_origin(p, lane, cluster);
@@ -105,7 +105,7 @@ inline void test_ray(const TreeView& tree, const TriangleCluster& cluster, RayPa
       const std::uint32_t slot = block * kBlockSize + i;
       const bool is_sure = (accepted >> i & 1U) != 0;
       if (is_sure && high[i] < p.low[lane]) return accept(p, lane, slot, low[i], high[i]);
-      if (is_sure && low[i] > p.high[lane]) return;  // a triangle before it is nearer
+      if (is_sure && low[i] > p.high[lane]) return;  // an earlier triangle is nearer
       retest_exactly(tree.blocks, p, lane, slot);
     });
   }

@@ -53,7 +53,7 @@ std::vector<BoxReference> make_references(const MeshTriangles& mesh, ThreadPool&
   return references;
 }
 
-/// What is copied into blocks.
+/// Inputs for copying triangles into blocks.
 struct Packing {
   const MeshTriangles& mesh;
   const std::vector<LeafRange>& leaves;

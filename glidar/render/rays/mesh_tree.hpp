@@ -11,10 +11,10 @@
 
 namespace glidar::rays {
 
-/// The largest coordinate of a vertex that a tree holds, 7.9e28: boxes are in single precision.
+/// The largest coordinate of a vertex in a tree, 7.9e28: boxes are in single precision.
 inline constexpr float kMaxTreeCoordinate = 0x1p96F;
 
-/// A tree over the triangles of a mesh. What rays hit does not depend on how it is built.
+/// A tree over the triangles of a mesh. Results do not depend on how it is built.
 struct MeshTree {
   std::vector<TreeNode> nodes;
   std::vector<TriangleCluster> clusters;
@@ -22,7 +22,7 @@ struct MeshTree {
   MeshSphere sphere;
 
   [[nodiscard]] TreeView view() const { return {nodes.data(), clusters.data(), blocks.data()}; }
-  /// Memory, without what vectors hold in reserve.
+  /// Memory of its arrays, without reserved capacity.
   [[nodiscard]] std::size_t bytes() const;
 };
 
@@ -33,8 +33,8 @@ Eigen::AlignedBox3d box_of(const MeshTree& tree);
 bool has_triangle_near(const MeshTree& tree, const Eigen::AlignedBox3d& box, double margin);
 
 struct TreeOptions {
-  std::uint32_t cluster_size = 8;  ///< most triangles of a leaf, 1 to 64
-  std::uint32_t bins = 16;         ///< places to cut per axis, 2 to 16
+  std::uint32_t cluster_size = 8;  ///< maximum triangles per leaf, 1 to 64
+  std::uint32_t bins = 16;         ///< of the surface area heuristic per axis, 2 to 16
 };
 
 /// Builds the tree. Throws Error on a vertex beyond kMaxTreeCoordinate.

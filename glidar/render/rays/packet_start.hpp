@@ -4,7 +4,7 @@
 
 #include <glidar/render/rays/ray_packet.hpp>
 
-// Completes a packet of which the exact rays are set.
+// Completes a packet whose exact rays are set.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 inline constexpr float kFloatInfinity = __builtin_huge_valf();
@@ -13,7 +13,7 @@ GLIDAR_INLINE double larger(double a, double b) {
   return a > b ? a : b;
 }
 
-/// The lowest of sixteen numbers.
+/// The minimum of sixteen values.
 GLIDAR_INLINE float min_lane(const float* of_lane) {
   LaneFloat lowest = LaneFloat::load(of_lane);
   for (unsigned i = LaneFloat::kWidth; i < kPacketSize; i += LaneFloat::kWidth) {
@@ -30,7 +30,7 @@ GLIDAR_INLINE float max_lane(const float* of_lane) {
   return -min_of(-highest);
 }
 
-/// How far along each ray the mesh's sphere begins, for rays that start far from it; otherwise 0.
+/// Distance along each ray to the mesh's sphere, for rays that start far from it; otherwise 0.
 GLIDAR_INLINE void set_shifts(RayPacket& p, const MeshSphere& sphere) {
   const double near = 1.001 * sphere.radius;
   const double limit = kUnmovedRadii * sphere.radius * kUnmovedRadii * sphere.radius;
@@ -45,9 +45,9 @@ GLIDAR_INLINE void set_shifts(RayPacket& p, const MeshSphere& sphere) {
   }
 }
 
-/// How far, along each axis, a ray in single precision may be from the true one within the mesh.
-/// Rounding the origin moves it by u |o|, rounding the direction by t u |d| at distance t, where
-/// u = 2^-24, |o| <= |c| + |o - c| and t <= |o - c| + R. Computing o + shift d in double adds
+/// Bounds, per axis, the distance between a ray in single precision and the true one within the
+/// mesh. Rounding the origin moves it by u |o|, rounding the direction by t u |d| at distance t,
+/// where u = 2^-24, |o| <= |c| + |o - c| and t <= |o - c| + R. Computing o + shift d in double adds
 /// 2^-53 of the numbers in it, and rounding o +- padding to single precision another u |o|.
 GLIDAR_INLINE void find_padding(const RayPacket& p, const MeshSphere& sphere, double* padding,
                                 double* rounding) {
@@ -65,7 +65,7 @@ GLIDAR_INLINE void find_padding(const RayPacket& p, const MeshSphere& sphere, do
     }
     rounding[i] = 2.0 * p.shift[i] + size;
     padding[i] = 0x1p-22 * (2.0 * distance + reach) + 0x1p-50 * rounding[i];
-    // Bounds of distances hold what ties: 12 u 2^-26 of it is at least kTiePart tie_reach.
+    // Bounds of distances include ties: 12 u 2^-26 of it is at least kTiePart tie_reach.
     rounding[i] += 0x1p4 * p.tie_reach;
   }
 }
@@ -87,7 +87,7 @@ GLIDAR_INLINE void round_rays(RayPacket& p, const double* padding) {
   }
 }
 
-/// The middle and half width of the directions, with room for their rounding and its own.
+/// The middle and half width of the directions, including all rounding errors.
 GLIDAR_INLINE void bound_directions(RayPacket& p) {
   for (unsigned axis = 0; axis < 3; ++axis) {
     const float low = min_lane(p.direction[axis]);
@@ -108,7 +108,7 @@ GLIDAR_INLINE bool have_common_origin(const RayPacket& p) {
   return others == 0;
 }
 
-/// The moved origins relative to their middle.
+/// The shifted origins relative to their middle.
 GLIDAR_INLINE void find_offsets(RayPacket& p) {
   p.spread = 0.0;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -140,8 +140,8 @@ GLIDAR_INLINE void find_offsets(RayPacket& p) {
   }
 }
 
-/// Rays that are not active repeat the first active one, so that bounds of all are those of the
-/// active; they are never tested.
+/// Inactive rays repeat the first active one, so that bounds of all rays are those of the active
+/// ones. They are never tested.
 GLIDAR_INLINE void repeat_ray(RayPacket& p, std::uint32_t active) {
   const auto first = static_cast<unsigned>(__builtin_ctz(active));
   for (unsigned i = 0; i < kPacketSize; ++i) {

@@ -9,21 +9,21 @@
 
 namespace glidar::rays {
 
-/// A child of a node that is not there.
+/// A missing child of a node.
 inline constexpr std::int32_t kNoChild = std::numeric_limits<std::int32_t>::min();
 
-/// A node with up to eight children and their boxes. Boxes hold the triangles; the rays' padding
-/// makes up for rounding.
+/// A node with up to eight children and their boxes. Boxes contain the triangles; the rays' padding
+/// accounts for rounding.
 struct alignas(64) TreeNode {
   float low[3][8];
   float high[3][8];
   std::int32_t child[8];  ///< a node's index; ~index of a cluster; kNoChild, with an empty box
 };
 
-/// The largest number of nodes from the root to a leaf.
+/// The maximum number of nodes from the root to a leaf.
 inline constexpr unsigned kMaxTreeDepth = 72;
 
-/// What the kernels read of a tree over a mesh's triangles. Node 0 is the root.
+/// The kernels' view of a tree over a mesh's triangles. Node 0 is the root.
 struct TreeView {
   const TreeNode* nodes;
   const TriangleCluster* clusters;

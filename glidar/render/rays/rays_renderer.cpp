@@ -15,7 +15,7 @@
 namespace glidar {
 namespace {
 
-/// What one cast hands to every tile.
+/// Inputs that all tiles of a cast share.
 struct Job {
   const Beams& beams;
   const PlanePoints& points;
@@ -27,14 +27,14 @@ struct Job {
   Hits& hits;
 };
 
-/// All that is worked out for one tile.
+/// Workspace of one tile.
 struct TileWork {
   HitBlock block;
   BeamBlock beams;
   ExactHits exact;
 };
 
-/// Collects the beams of a tile that lies wholly in a pinhole's grid.
+/// Collects the beams of a tile that is completely in a pinhole's grid.
 void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, TileWork& work) {
   const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
   Lanes<double> x;
@@ -72,7 +72,7 @@ void gather_beams(const Beams& beams, const rays::Tile& tile, TileWork& work) {
   }
 }
 
-/// Asks the memory for a tile's beams ahead of time.
+/// Prefetches a tile's beams.
 void prefetch(const Beams& beams, const rays::Tile& tile) {
   for (unsigned lane = 0; lane < kLanes; lane += 2) {  // two directions and a half per cache line
     const std::size_t beam = tile.beam(lane);
@@ -82,7 +82,7 @@ void prefetch(const Beams& beams, const rays::Tile& tile) {
   }
 }
 
-/// Writes the hits of a traced tile over the misses that stand there.
+/// Writes the hits of a traced tile over the misses written before.
 void finish(const Job& job, TileWork& work) {
   if (work.block.mask == 0) return;
   job.resolver.intersect(work.beams, work.block, work.exact);
@@ -108,8 +108,8 @@ void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_
             [&](unsigned lane) { job.resolver.prefetch(work.block, lane, job.with_corners); });
 }
 
-/// Casts tiles [begin, end). Three are under way at a time, so that what the later steps of one
-/// read from memory (planes and corners of its triangles) comes while the next is traced.
+/// Casts tiles [begin, end). Three are in progress at a time: data that later steps of one need
+/// (planes and corners of its triangles) are prefetched while the next is traced.
 void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, std::size_t end) {
   std::array<TileWork, 3> ring;
   tiling.for_beam_rows(begin, end, [&](BeamRange row) {
@@ -170,7 +170,7 @@ class RaysRenderer final : public Renderer {
   }
 
  private:
-  // About 50 microseconds of work, and its hits fit into a core's own cache.
+  // About 50 microseconds of work, and its hits fit into a core's private cache.
   static constexpr std::size_t kTilesPerTask = 64;
 
   std::shared_ptr<CpuBase> base_;

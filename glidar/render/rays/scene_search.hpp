@@ -10,18 +10,17 @@
 
 namespace glidar::rays {
 
-/// Searches what beams hit, cast after cast. Renderers over the same scene may share it.
+/// Finds hits of beams, cast after cast. Renderers over the same scene may share it.
 class SceneSearch {
  public:
   /// Builds the trees of the meshes. Both must outlive the search.
   SceneSearch(const Resolver& resolver, ThreadPool& thread_pool)
       : resolver_(resolver), thread_pool_(thread_pool), trees_(resolver, thread_pool) {}
 
-  /// Takes the poses of the next cast, whose request must outlive its queries; the resolver has
-  /// them too.
+  /// Prepares the next cast, whose request must outlive its queries; the resolver has its poses.
   void prepare(const CastRequest& request);
 
-  /// The search of the cast prepared last.
+  /// The search of the cast that was prepared last.
   [[nodiscard]] const BeamSearch& beams() const { return *beams_; }
   [[nodiscard]] const SceneTrees& trees() const { return trees_; }
 

@@ -11,12 +11,12 @@
 namespace glidar::rays {
 namespace {
 
-/// Sizes of coordinates times this bound what double precision may be wrong by, some 256 roundings.
+/// Bounds rounding errors in double relative to coordinates: some 256 roundings.
 constexpr double kMargin = 0x1p-44;
-/// The tree is rebuilt when the sensor moves by this part of its size: then boxes near the
+/// The tree is rebuilt when the sensor moves by this fraction of its size: then boxes near the
 /// sensor, which single precision rounds by 2^-24 of their distance from the origin, stay small.
 constexpr double kMoved = 0x1p-8;
-/// It is rebuilt when more than this part of the instances moved in one step.
+/// It is rebuilt when more than 1 / kMovedDivisor of the instances moved in one step.
 constexpr std::size_t kMovedDivisor = 8;
 
 const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t instance) {

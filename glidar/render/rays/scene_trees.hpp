@@ -13,16 +13,16 @@
 namespace glidar::rays {
 
 /// The trees of a scene: one over the triangles of each mesh, in the mesh's frame, and above them
-/// one over the boxes of the instances. The latter has a frame of its own, in metres: its origin is
-/// where the sensor was when it was built, and its axes are those of the largest instance, so that
-/// boxes on a ground stay small however the ground is turned.
+/// one over the boxes of the instances. The latter has its own frame, in metres: its origin is
+/// where the sensor was when it was built, and its axes are those of the largest instance. Boxes of
+/// objects that are aligned with it therefore stay small.
 class SceneTrees {
  public:
   /// The resolver's scene must outlive the trees.
   SceneTrees(const Resolver& resolver, ThreadPool& thread_pool);
 
-  /// Takes the poses of the next cast; the resolver has them too. The tree over the instances is
-  /// fitted to the few that moved, and rebuilt when many moved or the sensor moved far.
+  /// Sets the poses of the next cast; the resolver has them too. The tree over the instances is
+  /// refitted when few moved, and rebuilt when many moved or the sensor moved far.
   void place(const CastRequest& request, const Resolver& resolver, ThreadPool& thread_pool);
 
   [[nodiscard]] const MeshTree& of_mesh(std::uint32_t mesh) const { return mesh_trees_[mesh]; }
@@ -35,10 +35,10 @@ class SceneTrees {
     return mesh_reach_[scene_.instances[instance].mesh];
   }
 
-  /// Instances that are there and have triangles.
+  /// Enabled instances with triangles.
   [[nodiscard]] const std::vector<std::uint32_t>& instances() const { return instances_; }
 
-  /// The tree over instances(), for two of them or more; without clusters and blocks.
+  /// The tree over instances(), if there are at least two; without clusters and blocks.
   [[nodiscard]] TreeView instance_tree() const {
     return {instance_nodes().data(), nullptr, nullptr};
   }
@@ -54,12 +54,12 @@ class SceneTrees {
   /// From an instance's origin to its farthest vertex and to the sensor, metres: its coordinates
   /// are rounded by 2^-53 of it.
   [[nodiscard]] double reach_m(std::uint32_t instance) const { return reach_m_[instance]; }
-  /// The largest of them.
+  /// The maximum over instances().
   [[nodiscard]] double largest_reach_m() const { return largest_reach_m_; }
 
  private:
   void find_reaches(const Resolver& resolver);
-  /// Follows the instances that moved; false: the tree has to be rebuilt.
+  /// Refits the tree to the instances that moved; false: it must be rebuilt.
   [[nodiscard]] bool refit(const CastRequest& request);
   [[nodiscard]] bool has_same_instances(const CastRequest& request) const;
   [[nodiscard]] bool is_sensor_near(const CastRequest& request) const;
@@ -75,12 +75,12 @@ class SceneTrees {
   double largest_reach_m_ = 0.0;
 
   std::vector<Pose> poses_;                             ///< per instance, as the tree has them
-  std::vector<std::uint8_t> enabled_;                   ///< likewise
+  std::vector<std::uint8_t> enabled_;                   ///< per instance
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the tree's frame, in the world
   Eigen::Matrix3d tree_from_world_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d sensor_in_tree_ = Eigen::Vector3d::Zero();
-  BoxTree boxes_;                     ///< of instances_, for two of them or more
+  BoxTree boxes_;                     ///< of instances_, if there are at least two
   std::vector<std::uint32_t> moved_;  ///< since the last cast
 };
 

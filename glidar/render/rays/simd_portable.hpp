@@ -122,7 +122,7 @@ GLIDAR_INLINE Float8 magnitude(Float8 a) {
   const QuadMask keep = QuadMask{} + INT32_MAX;
   return {from_bits(bits_of(a.low) & keep), from_bits(bits_of(a.high) & keep)};
 }
-/// a, turned over where b is negative.
+/// a, negated where b is negative.
 GLIDAR_INLINE Float8 flip_sign(Float8 a, Float8 b) {
   const QuadMask sign = QuadMask{} + INT32_MIN;
   return {from_bits(bits_of(a.low) ^ (bits_of(b.low) & sign)),

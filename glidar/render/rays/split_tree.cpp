@@ -19,11 +19,11 @@ using Quad = float __attribute__((vector_size(16), may_alias));
 using Indices = std::int32_t __attribute__((vector_size(16)));
 
 constexpr std::uint32_t kMaxBins = 16;
-constexpr std::uint32_t kFewReferences = 64;           ///< of which half the bins suffice
-constexpr std::uint32_t kParallelReferences = 4096;    ///< worth a task
-constexpr std::uint32_t kParallelBinning = 64 * 1024;  ///< worth several for one node
+constexpr std::uint32_t kFewReferences = 64;           ///< half the bins suffice for as many
+constexpr std::uint32_t kParallelReferences = 4096;    ///< minimum for a task
+constexpr std::uint32_t kParallelBinning = 64 * 1024;  ///< minimum for parallel binning of one node
 constexpr unsigned kBalancedDepth = 40;                ///< deeper nodes are halved
-constexpr float kMinExtent = 0x1p-100F;  ///< of middles that are cut: 16 / it is finite
+constexpr float kMinExtent = 0x1p-100F;  ///< of middles that are split: 16 / it is finite
 
 Quad low_of(const BoxReference& r) {
   return *reinterpret_cast<const Quad*>(r.low);
@@ -41,7 +41,7 @@ Quad max(Quad a, Quad b) {
   return a > b ? a : b;
 }
 
-/// x, y, z; the fourth number has no meaning.
+/// x, y, z; the fourth component is unused.
 struct Box {
   Quad low = all(kInfinityf);
   Quad high = all(-kInfinityf);
@@ -58,7 +58,7 @@ struct Box {
   }
 };
 
-/// The boxes of some references, and of twice their middles.
+/// The boxes of some references, and of their doubled middles.
 struct Extent {
   Box boxes;
   Box middles;
@@ -74,7 +74,7 @@ struct Extent {
   }
 };
 
-/// Where a middle falls among the bins, along all axes.
+/// Maps doubled middles to bins, along all axes.
 struct Binning {
   Quad low;
   Quad scale;
@@ -114,12 +114,12 @@ struct Bins {
 };
 
 struct Split {
-  float cost = kInfinityf;  ///< infinite: there is none
+  float cost = kInfinityf;  ///< infinite: no split
   std::size_t axis = 0;
   std::int32_t bin = 0;  ///< first of the second side
 };
 
-/// Tests are made in blocks of eight, but half a block is a saving too: it leaves room to merge.
+/// Blocks have eight triangles, but half a block also counts as a saving, since it allows merging.
 float test_cost(const Box& box, std::uint32_t count) {
   const std::uint32_t half_blocks = (count + 3) / 4;
   return box.area() * static_cast<float>(half_blocks);
@@ -146,7 +146,7 @@ void find_split_along(const Bins& bins, std::uint32_t bin_count, std::size_t axi
 }
 
 /// Builds the nodes of the subtrees. The subtree of n references has up to 2 n - 1 nodes, which
-/// refit its root; so every place is known beforehand, and threads need not agree on any.
+/// follow its root. All positions are therefore known in advance, and threads need no coordination.
 class Builder {
  public:
   Builder(std::span<BoxReference> references, const SplitOptions& options, SplitNode* nodes)
@@ -198,7 +198,7 @@ class Builder {
     }
   }
 
-  /// Sorts references into two sides; returns where the second one begins.
+  /// Partitions references into two sides; returns where the second one begins.
   std::uint32_t cut(Range range, const Extent& extent, unsigned depth,
                     std::array<Extent, 2>& sides) const {
     const std::uint32_t bins =

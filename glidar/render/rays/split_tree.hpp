@@ -36,9 +36,9 @@ inline double half_area(const SplitNode& node) {
 }
 
 struct SplitOptions {
-  std::uint32_t leaf_size = 8;  ///< largest
-  std::uint32_t bins = 16;      ///< places to cut per axis, up to 16
-  unsigned max_depth = 70;      ///< of leaves
+  std::uint32_t leaf_size = 8;  ///< maximum
+  std::uint32_t bins = 16;      ///< per axis, up to 16
+  unsigned max_depth = 70;      ///< maximum, of leaves
 };
 
 /// Sorts the references into leaves by binned surface area heuristic (I. Wald, "On fast

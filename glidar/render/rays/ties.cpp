@@ -11,7 +11,7 @@
 namespace glidar::rays {
 namespace {
 
-/// A ray up to a distance, in the frame of a tree.
+/// A ray up to a maximum distance, in the frame of a tree.
 struct Segment {
   ObjectRay ray;
   double margin;  ///< boxes are grown by it
@@ -52,13 +52,13 @@ void for_leaves_on(const TreeNode* nodes, std::uint32_t index, const Segment& se
   }
 }
 
-/// Finds triangles of a scene that a beam meets up to a distance.
+/// Finds the triangles of a scene that a beam hits up to a maximum distance.
 class Candidates {
  public:
   Candidates(const CastView& cast, std::size_t beam, double end_m)
       : cast_(cast), beam_(beam), end_m_(end_m) {}
 
-  /// Calls visit(triangle, distance in metres) for every triangle that stops the beam.
+  /// Calls visit(triangle, distance in metres) for every triangle that blocks the beam.
   template <class Visit>
   void visit_all(const Visit& visit) const {
     const std::vector<std::uint32_t>& instances = cast_.trees.instances();

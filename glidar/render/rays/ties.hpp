@@ -9,7 +9,7 @@
 
 namespace glidar::rays {
 
-/// One cast, as every part of the search needs it.
+/// One cast, as all parts of the search need it.
 struct CastView {
   const SceneTrees& trees;
   const Resolver& resolver;
@@ -19,14 +19,14 @@ struct CastView {
 /// The distance at which a beam meets a triangle by the hit rule, metres; 0: it does not.
 double hit_distance_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle);
 
-/// How much farther a triangle may be that ties with this one, metres: surfaces of two instances
-/// that lie on each other are apart by the rounding of their coordinates, kTiePart / 2 of each
-/// reach, measured across the one that the beam meets more steeply. `reach_m`: the sum of both
-/// reaches, halved, or a bound of it.
+/// Distance by which a triangle may be farther and still tie with this one, metres. Coincident
+/// surfaces of two instances differ by the rounding of their coordinates, kTiePart / 2 of each
+/// reach, measured across the one with the smaller angle of incidence. `reach_m`: half the sum of
+/// both reaches, or an upper bound.
 double tie_window_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle,
                     double reach_m);
 
-/// How a triangle compares with another that the same beam hits, of another instance.
+/// Order of a triangle and another one, of another instance, that the same beam hits.
 struct HitOrder {
   bool is_nearer;  ///< it is hit first
   bool ties;       ///< their distances differ, but by no more than tie_window_m()

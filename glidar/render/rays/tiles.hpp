@@ -13,7 +13,7 @@
 
 namespace glidar::rays {
 
-/// A small rectangle of the beam grid: neighbours travel together, lane by lane, row by row.
+/// A small rectangle of the beam grid: its beams are cast together, one per lane, row by row.
 struct Tile {
   static constexpr std::size_t kOutside = std::numeric_limits<std::size_t>::max();
   std::uint32_t first_row;
@@ -39,7 +39,7 @@ struct Tile {
   }
 };
 
-/// The beam grid cut into tiles of kLanes beams: 4x4, flatter where the grid has fewer rows.
+/// The beam grid divided into tiles of kLanes beams: 4x4, flatter where the grid has fewer rows.
 class Tiling {
  public:
   explicit Tiling(const Beams& beams) : rows_(beams.rows), cols_(beams.cols) {
@@ -57,11 +57,11 @@ class Tiling {
     return {row * height_, col << width_shift_, width_shift_, rows_, cols_};
   }
 
-  /// End of the tiles from `begin` on that lie in one row of tiles, at most `most` and before
-  /// `end`.
-  [[nodiscard]] std::size_t end_of_run(std::size_t begin, std::size_t end, std::size_t most) const {
+  /// End of the tiles from `begin` on in one row of tiles: at most `max_count`, and before `end`.
+  [[nodiscard]] std::size_t end_of_run(std::size_t begin, std::size_t end,
+                                       std::size_t max_count) const {
     const std::size_t end_of_row = (begin / tile_cols_ + 1) * tile_cols_;
-    return std::min({end, begin + most, end_of_row});
+    return std::min({end, begin + max_count, end_of_row});
   }
 
   /// Calls body(BeamRange) for each row of beams in tiles [begin, end) of one row of tiles.

@@ -5,20 +5,20 @@
 #include <glidar/render/rays/kernel.hpp>
 #include <glidar/render/rays/leaf_packet.hpp>
 
-// The walk through a tree of eight children per node. It only has to be conservative: what it
-// visits in vain costs time, no result depends on it.
+// Traversal of a tree of eight children per node. It is conservative: unnecessary visits cost time,
+// but do not change results.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 /// Slabs are computed with three roundings: a box is entered where near <= far * kSlabMargin.
 inline constexpr float kSlabMargin = 1.0F + 6.0F * 0x1p-23F;
-/// An entry distance is at most this part of the computed one closer.
+/// Entry distances may be smaller than computed by this factor.
 inline constexpr float kEntryMargin = 1.0F - 0x1p-20F;
-/// Components below it are replaced: that moves a ray by less than its padding.
+/// Components below it are replaced: this changes a ray by less than its padding.
 inline constexpr float kMinComponent = 1e-18F;
 inline constexpr unsigned kStackSize = 7 * kMaxTreeDepth + 8;
 
-/// A child that is still to be visited: its index, and its box as 8 * index of its parent + its
-/// place there. One number, written and read at once.
+/// A child to visit: its index, and its box as 8 * index of its parent + its place there. One
+/// integer, so that it is loaded and stored at once.
 using Visit = std::uint64_t;
 inline constexpr std::uint32_t kNoBox = 0xFFFFFFFFU;
 
@@ -114,7 +114,7 @@ struct RaySlabs {
   }
 };
 
-/// Leaves of triangles.
+/// Tests leaves of triangles.
 struct TriangleLeaves {
   const TreeView& tree;
 
@@ -123,7 +123,7 @@ struct TriangleLeaves {
   }
 };
 
-/// Leaves that a function looks into.
+/// Calls a function for leaves.
 struct VisitedLeaves {
   VisitLeaf visit;
   void* context;
@@ -133,7 +133,7 @@ struct VisitedLeaves {
   }
 };
 
-/// One ray below a node or leaf.
+/// Traces one ray below a node or leaf.
 template <class Leaves>
 void trace_below(const TreeView& tree, RayPacket& p, const Leaves& leaves, unsigned lane,
                  std::int32_t root) {
@@ -154,14 +154,14 @@ void trace_below(const TreeView& tree, RayPacket& p, const Leaves& leaves, unsig
   }
 }
 
-/// All rays of a packet as one beam: intervals of origins and of reciprocal directions. An axis
-/// along which directions change sign rejects nothing.
+/// All rays of a packet as one interval ray: intervals of origins and of reciprocal directions. An
+/// axis along which directions change sign rejects nothing.
 struct RayInterval {
   enum class Sign { mixed, positive, negative };
   Sign sign[3];
   Float8 origin_low[3];
   Float8 origin_high[3];
-  Float8 inverse_low[3];  ///< of the components' sizes
+  Float8 inverse_low[3];  ///< of the absolute components
   Float8 inverse_high[3];
 
   explicit RayInterval(const RayPacket& p) {
@@ -203,7 +203,7 @@ struct RayInterval {
   }
 };
 
-/// The rays of a packet, one by one, and a single box.
+/// Tests the rays of a packet, one per lane, with a single box.
 struct PacketSlabs {
   alignas(64) float inverse[3][kPacketSize];
 
@@ -240,12 +240,12 @@ struct PacketSlabs {
   }
 };
 
-/// The largest distance at which some ray still looks for something nearer.
+/// The maximum distance at which some ray may still find a nearer hit.
 GLIDAR_INLINE float farthest(const RayPacket& p) {
   return max_lane(p.high);
 }
 
-/// What is left of a walk when few rays, or a leaf, are reached. True when there was something.
+/// Finishes a visit if few rays remain or the child is a leaf; false if it is to be continued.
 template <class Leaves>
 GLIDAR_INLINE bool finish(const TreeView& tree, RayPacket& p, const Leaves& leaves,
                           std::int32_t child, std::uint32_t rays) {
@@ -259,7 +259,7 @@ GLIDAR_INLINE bool finish(const TreeView& tree, RayPacket& p, const Leaves& leav
   return true;
 }
 
-/// All rays of a packet together, few of them one by one.
+/// Traverses the tree with all rays of a packet; where few remain, one by one.
 template <class Leaves>
 void traverse(const TreeView& tree, RayPacket& p, const Leaves& leaves) {
   const RayInterval beam(p);

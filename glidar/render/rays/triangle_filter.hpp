@@ -4,8 +4,8 @@
 
 #include <glidar/render/common/triangle_blocks.hpp>
 
-// The filter in single precision: it rejects and accepts triangles where its error bounds leave no
-// doubt, and bounds their distances. docs/ray-casting.md derives the bounds. u = 2^-24.
+// The filter in single precision: it rejects and accepts triangles where its error bounds allow,
+// and bounds their distances. docs/ray-casting.md derives the bounds. u = 2^-24.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 template <class F>
@@ -52,14 +52,14 @@ GLIDAR_INLINE F sum_of_sizes(const Vector<F>& a) {
   return magnitude(a.x) + magnitude(a.y) + magnitude(a.z);
 }
 
-/// Beyond this distance of a cluster, products might overflow: there the rule decides everything.
+/// For clusters beyond this distance, products might overflow: there the rule decides everything.
 inline constexpr double kMaxReach = 0x1p36;
-/// What is added to distances and areas so that their bounds also cover underflow. A triangle below
-/// some nanometres is in doubt more often.
+/// Added to distances and areas so that their bounds also cover underflow. Triangles below some
+/// nanometres are re-tested more often.
 inline constexpr double kReachMargin = 0x1p-40;
 inline constexpr float kAreaMargin = 0x1p-60F;
 
-/// 24 u L, with room for rounding; L: the largest distance of a corner, in the largest coordinate.
+/// 24 u L, rounded up; L: the largest distance of a corner, in the largest coordinate.
 GLIDAR_INLINE float scaled_reach(double reach) {
   return static_cast<float>(24.01 * 0x1p-24 * (reach + kReachMargin));
 }
@@ -98,7 +98,7 @@ struct EdgeTest {
   F highest;
   F den;
 
-  /// Of rays that surely pass inside of all edges.
+  /// For rays that certainly pass inside of all edges.
   GLIDAR_INLINE static EdgeTest inside(F d) {
     const F infinite = F::all(__builtin_huge_valf());
     EdgeTest test;
@@ -157,7 +157,7 @@ GLIDAR_INLINE BlockSetup set_up(const TriangleBlock& block, const TriangleCluste
   return set_up(corners, corners.a - from, scaled);
 }
 
-/// What is known of a ray's nearest triangle, as in RayPacket.
+/// Bounds of a ray's nearest distance, as in RayPacket.
 template <class F>
 struct Interval {
   F low;
@@ -166,11 +166,11 @@ struct Interval {
   F near_high;
 };
 
-/// What becomes of rays and triangles that are not surely outside.
+/// Classification of triangles that are not certainly outside.
 template <class F>
 struct FilterResult {
-  typename F::Mask accepted;   ///< surely hit, and surely nearer
-  typename F::Mask uncertain;  ///< for the rule
+  typename F::Mask accepted;   ///< certainly hit, and certainly nearer
+  typename F::Mask uncertain;  ///< to be re-tested by the rule
   F low;                       ///< bounds of the distance
   F high;
 };

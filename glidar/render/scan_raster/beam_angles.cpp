@@ -15,12 +15,12 @@ namespace glidar::scan_raster {
 namespace {
 
 constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
-/// Tangent of 80 degrees: the sector's frame has no room for steeper beams.
+/// Tangent of 80 degrees: steeper beams do not fit into a sector.
 constexpr double kMaxTangent = 5.67;
 /// A sector is at least eight columns wide and must be below 57 degrees.
 constexpr double kMaxStep_rad = 0.06;
 constexpr double kMinStep_rad = 1e-6;
-/// The step of a grid with one column: any will do.
+/// The step of a grid with one column, which is arbitrary.
 constexpr double kAnyStep_rad = 0.01;
 
 double wrapped(double angle_rad) {
@@ -111,7 +111,7 @@ const char* misfit_of_step(double step_rad) {
   return "";
 }
 
-/// The step between two neighbours at a place of a row; NaN where one is missing.
+/// The step between two neighbours in a row; NaN where one is missing.
 double step_at(const Beams& beams, const SensorAxes& axes, std::size_t beam) {
   return wrapped(azimuth_rad(axes, beams.directions[beam + 1]) -
                  azimuth_rad(axes, beams.directions[beam]));
@@ -128,7 +128,7 @@ bool may_form_scan(const Beams& beams) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < kAngleSamples; ++k) {
     const std::size_t row = k * beams.rows / kAngleSamples;
-    // Spread over the columns of every row, and not in step with anything.
+    // Distributed over the columns of every row, without a regular step.
     const std::size_t column = k * 7919 % (beams.cols - 1);
     const double step = step_at(beams, axes, row * beams.cols + column);
     if (!std::isnan(step)) steps[count++] = step;

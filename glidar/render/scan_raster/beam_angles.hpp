@@ -12,26 +12,26 @@
 
 namespace glidar::scan_raster {
 
-/// A row of beams as a row of the grid: column c has about the azimuth
-/// phase + (c + shift) * step of the grid. What deviates from it is measured.
+/// A row of beams as a row of the grid: column c has approximately the azimuth
+/// phase + (c + shift) * step of the grid; deviations are measured.
 struct RowAngles {
   std::uint32_t source = 0;  ///< row of the beams
   bool is_in_grid = false;   ///< otherwise its beams are cast as rays
-  double low_tangent = 0.0;  ///< of the elevations
+  double low_tangent = 0.0;  ///< minimum tangent of the elevations
   double high_tangent = 0.0;
   std::int32_t shift = 0;      ///< columns
-  double low_deviation = 0.0;  ///< of azimuths from those of their columns, columns
+  double low_deviation = 0.0;  ///< of azimuths from those of their columns, in columns
   double high_deviation = 0.0;
 };
 
-/// What is known of a row before the grid is.
+/// Measurements of a row before the grid is known.
 struct RawRow {
   std::size_t beams = 0;
   bool is_steep = false;
   double low_tangent = 0.0;
   double high_tangent = 0.0;
-  double step_rad = 0.0;   ///< mean, from column to column
-  double phase_rad = 0.0;  ///< middle azimuth, less that of the columns
+  double step_rad = 0.0;   ///< mean step between columns
+  double phase_rad = 0.0;  ///< middle of azimuth - column * step
   double spread_rad = 0.0;
 };
 
@@ -46,8 +46,8 @@ struct BeamAngles {
   std::vector<RawRow> raw;           ///< per row of the beams
 };
 
-/// False where some neighbours show at once that the beams are not those of a scanner, or most are
-/// missing.
+/// A quick test on some neighbours. False if the beams are certainly not those of a scanner, or
+/// most are missing.
 bool may_form_scan(const Beams& beams);
 
 /// Measures beams. Azimuths and elevations are those about axes_of(beams).

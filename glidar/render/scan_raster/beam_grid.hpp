@@ -14,25 +14,25 @@
 
 namespace glidar::scan_raster {
 
-/// False where some neighbours show at once that the beams form no grid, or most are missing.
+/// A quick test on some neighbours. False if the beams certainly form no grid, or most are missing.
 bool may_form_grid(const Beams& beams);
 
-/// Beams as a grid, cut into sectors: those of cameras as a picture, all others as rows of equal
-/// elevation and columns of equal azimuth.
+/// Beams as a grid of sectors: blocks of an image for cameras; otherwise rows of equal elevation
+/// and columns of equal azimuth.
 class BeamGrid {
  public:
   void measure(const Beams& beams, ThreadPool& thread_pool);
 
-  /// True where the beams are bit for bit those measured.
+  /// True if the beams are bit-identical to those measured.
   [[nodiscard]] bool has_measured(const Beams& beams, ThreadPool& thread_pool) const;
-  /// Beams measured.
+  /// Number of measured beams.
   [[nodiscard]] std::size_t size() const { return measured_.size(); }
 
   [[nodiscard]] bool is_camera() const { return looks_along_z(measured_); }
   [[nodiscard]] const CameraGrid& camera() const { return camera_; }
   [[nodiscard]] const ScannerGrid& scanner() const { return scanner_; }
 
-  /// Why the beams form no grid; empty: they do. Otherwise only that is of use.
+  /// Why the beams form no grid; empty: they do. If not empty, nothing else is valid.
   [[nodiscard]] const std::string& misfit() const {
     return is_camera() ? camera_.misfit() : scanner_.misfit();
   }
@@ -52,7 +52,7 @@ class BeamGrid {
   }
 
  private:
-  Beams measured_;  ///< directions, origins, returns and what their axes depend on
+  Beams measured_;  ///< directions, origins, returns and boresight
   CameraGrid camera_;
   ScannerGrid scanner_;
   std::vector<std::uint32_t> no_rows_;

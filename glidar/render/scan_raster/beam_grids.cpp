@@ -8,7 +8,7 @@
 namespace glidar::scan_raster {
 namespace {
 
-/// Grids that are kept, and their beams together: some 100 bytes each.
+/// Limits of the cache: grids, and beams of all grids (some 100 bytes each).
 constexpr std::size_t kMaxGrids = 4;
 constexpr std::size_t kMaxBeams = std::size_t{1} << 21U;
 
@@ -24,7 +24,7 @@ const BeamGrid& BeamGrids::of(const Beams& beams, ThreadPool& thread_pool) {
     for (const auto& grid : grids_) size += grid->size();
     for (; grids_.size() > 1 && size > kMaxBeams; grids_.pop_back()) size -= grids_.back()->size();
     const bool has_room = grids_.size() < kMaxGrids && size <= kMaxBeams;
-    // Otherwise the memory of the oldest grid is used again.
+    // Otherwise the memory of the oldest grid is reused.
     if (grids_.empty() || has_room) grids_.push_back(std::make_unique<BeamGrid>());
     found = grids_.end() - 1;
     (*found)->measure(beams, thread_pool);

@@ -9,15 +9,14 @@
 
 namespace glidar::scan_raster {
 
-/// The grids of the beams measured last, so that the sensors of a rig take turns at no cost.
+/// A cache of the last measured grids, so that the sensors of a rig can alternate.
 class BeamGrids {
  public:
-  /// The grid of the beams: measured for these unless it is there already. Valid until the next
-  /// call.
+  /// The grid of the beams, which is measured unless it is cached. Valid until the next call.
   const BeamGrid& of(const Beams& beams, ThreadPool& thread_pool);
 
  private:
-  std::vector<std::unique_ptr<BeamGrid>> grids_;  ///< the one used last first
+  std::vector<std::unique_ptr<BeamGrid>> grids_;  ///< most recently used first
 };
 
 }  // namespace glidar::scan_raster

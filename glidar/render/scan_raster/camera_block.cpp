@@ -15,11 +15,11 @@ namespace {
 
 /// A map is fitted to about this many beams along each side of a block.
 constexpr std::uint32_t kFitSide = 12;
-/// Least forward / length of a beam in the frame of slopes.
+/// Minimum forward / length of a beam in the frame of slopes.
 constexpr double kMinForward = 0.05;
 /// Where beams deviate by more, columns or rows, smaller blocks are tried.
 constexpr double kMaxSmooth = 1.0;
-/// Columns by which the rows of a block may be shifted against each other.
+/// Maximum shift between rows of a block, columns.
 constexpr double kMaxShift = 16.0;
 
 struct Range {
@@ -51,7 +51,7 @@ void for_row(const Beams& beams, const BeamRect& rect, std::uint32_t row, std::u
   }
 }
 
-/// How far beams are from the cells of a map.
+/// Measures how far beams are from the cells of a map.
 class Bounds {
  public:
   explicit Bounds(const ProjectiveMap& map) : map_(map) {}
@@ -67,7 +67,7 @@ class Bounds {
     row_offsets_.extend(up * map_.rows_per_slope + map_.middle_row - beam.row);
   }
 
-  /// The deviations of the beams since the last call from their columns.
+  /// Ends a row and returns the deviations of its beams from their columns.
   Range end_row() {
     const Range offsets = column_offsets_;
     column_offsets_ = {};
@@ -76,8 +76,8 @@ class Bounds {
     return offsets;
   }
 
-  /// True where the beams of a row deviate by up to this from their columns, and all from their
-  /// rows.
+  /// True if no row's deviations from columns, nor all deviations from rows, span more than
+  /// `spread`.
   [[nodiscard]] bool are_within(double spread) const {
     return forward_.low > kMinForward && row_offsets_.width() <= spread && widest_row_ <= spread &&
            all_column_offsets_.width() <= kMaxShift;

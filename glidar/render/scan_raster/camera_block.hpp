@@ -20,12 +20,11 @@ struct BeamRect {
   std::uint32_t end_column = 0;
 };
 
-/// The point of a plane that stands for a direction, which need not be a unit vector: its
-/// stereographic projection from -z.
+/// The stereographic projection of a direction from -z. The direction need not be a unit vector.
 Eigen::Vector2d stereographic_point(const Eigen::Vector3d& direction);
 
-/// A block of a camera's picture: nearly that of a pinhole with axes of its own, and how far its
-/// beams deviate from that.
+/// A block of a camera's image: it is fitted by a pinhole with axes of its own, and the beams'
+/// deviations from that are measured.
 class CameraBlock {
  public:
   explicit CameraBlock(const BeamRect& rect) : rect_(rect) {}
@@ -39,12 +38,12 @@ class CameraBlock {
   }
   [[nodiscard]] const SectorFrame& frame() const { return map_.frame; }
   [[nodiscard]] std::size_t beams() const { return beams_; }
-  /// True where beams deviate so much that a smaller block is better.
+  /// True where beams deviate so much that the block should be divided.
   [[nodiscard]] bool is_rough() const { return is_rough_; }
   /// False where the beams deviate too much: they are cast as rays.
   [[nodiscard]] bool is_drawn() const { return is_drawn_; }
   [[nodiscard]] GridView view() const;
-  /// Around the points of a sample of the beams, see stereographic_point().
+  /// Bounds of a sample of the beams, see stereographic_point().
   [[nodiscard]] const Eigen::AlignedBox2d& points() const { return points_; }
 
  private:
@@ -60,7 +59,7 @@ class CameraBlock {
   Eigen::AlignedBox2d points_;
   std::vector<float> low_deviation_;  ///< per row of the shape
   std::vector<float> high_deviation_;
-  GridView view_{};  ///< but for the deviations
+  GridView view_{};  ///< without the deviations
 };
 
 }  // namespace glidar::scan_raster

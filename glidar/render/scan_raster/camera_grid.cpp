@@ -10,18 +10,18 @@
 namespace glidar::scan_raster {
 namespace {
 
-/// Sides of a block: enough beams to make up for its walk through the tree, few enough for buffers
-/// that fill a core's own cache, and for lenses to be nearly straight.
+/// Sides of a block: enough beams to amortise its traversal of the tree, few enough for buffers
+/// that fit a core's private cache and for a good fit of lenses.
 constexpr std::uint32_t kMaxSide = 64;
 constexpr std::uint32_t kMinSide = 16;
 
-/// The side of a picture in equal pieces, a multiple of `grain` long but for the last.
+/// Side of equal sections of an image, a multiple of `grain` except for the last.
 std::uint32_t piece_length(std::uint32_t whole, std::uint32_t grain) {
   const std::uint32_t pieces = std::max((whole + kMaxSide - 1) / kMaxSide, 1U);
   return ((whole + pieces - 1) / pieces + grain - 1) / grain * grain;
 }
 
-/// A beam and the four beside it.
+/// A beam and its four neighbours.
 struct Cross {
   const Eigen::Vector3d& middle;
   const Eigen::Vector3d& left;
@@ -40,7 +40,7 @@ struct Cross {
     return middle.allFinite() && left.allFinite() && right.allFinite() && above.allFinite() &&
            below.allFinite();
   }
-  /// True where they are about equally far apart.
+  /// True if neighbours have about equal distances.
   [[nodiscard]] bool is_even() const {
     const auto is_between = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
       return (a + b - 2.0 * middle).norm() <= 0.5 * (b - a).norm();
@@ -59,7 +59,7 @@ void add_blocks(const BeamRect& rect, std::uint32_t rows, std::uint32_t columns,
   }
 }
 
-/// No block has rows of two returns.
+/// No block contains rows of two returns.
 std::vector<CameraBlock> cut_image(const Beams& beams) {
   std::vector<CameraBlock> blocks;
   const std::uint32_t rows = std::max(beams.rows / beams.returns, 1U);
@@ -70,7 +70,7 @@ std::vector<CameraBlock> cut_image(const Beams& beams) {
   return blocks;
 }
 
-/// False for a block that is too small to be cut.
+/// False for a block that is too small to be divided.
 bool add_quarters(const BeamRect& rect, std::vector<CameraBlock>& blocks) {
   const auto half = [](std::uint32_t whole, std::uint32_t grain) {
     return whole < 2 * kMinSide ? whole : ((whole + 1) / 2 + grain - 1) / grain * grain;
@@ -97,7 +97,7 @@ bool may_form_image(const Beams& beams) {
   std::size_t even = 0;
   for (std::size_t k = 0; k < kProbes; ++k) {
     const std::size_t row = 1 + k * (beams.rows - 2) / kProbes;
-    // Spread over the columns, and not in step with anything.
+    // Distributed over the columns, without a regular step.
     const std::size_t column = 1 + k * 7919 % (beams.cols - 2);
     const Cross cross(beams, row * beams.cols + column);
     known += cross.is_known() ? 1 : 0;
@@ -124,11 +124,11 @@ void CameraGrid::find_misfit(const Beams& beams) {
   if (!beams.origins_m.empty()) {
     misfit_ = "beams with origins of their own";
   } else if (beams.rows < kMinSide || beams.cols < kMinSide) {
-    misfit_ = "a lens's picture of fewer than 16 rows or columns";
+    misfit_ = "a lens's image with fewer than 16 rows or columns";
   }
 }
 
-/// Blocks in which beams deviate much are cut again.
+/// Blocks in which beams deviate much are divided again.
 void CameraGrid::find_blocks(const Beams& beams, ThreadPool& thread_pool) {
   std::vector<CameraBlock> blocks = cut_image(beams);
   while (!blocks.empty()) {
@@ -158,7 +158,7 @@ void CameraGrid::count_drawn() {
     all += block.beams();
     drawn += block.is_drawn() ? block.beams() : 0;
   }
-  if (2 * drawn < all) misfit_ = "a picture whose directions do not vary smoothly";
+  if (2 * drawn < all) misfit_ = "an image whose directions do not vary smoothly";
 }
 
 }  // namespace glidar::scan_raster

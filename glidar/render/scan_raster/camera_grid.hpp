@@ -11,8 +11,8 @@
 
 namespace glidar::scan_raster {
 
-/// False where some neighbours show at once that the beams are not those of a picture, or most are
-/// missing.
+/// A quick test on some neighbours. False if the beams are certainly not those of a camera, or most
+/// are missing.
 bool may_form_image(const Beams& beams);
 
 /// Beams of a camera with any lens: their directions vary smoothly over rows and columns. Sectors
@@ -21,14 +21,14 @@ class CameraGrid {
  public:
   void measure(const Beams& beams, ThreadPool& thread_pool);
 
-  /// Why the beams form no grid; empty: they do. Otherwise only that is of use.
+  /// Why the beams form no grid; empty: they do. If not empty, nothing else is valid.
   [[nodiscard]] const std::string& misfit() const { return misfit_; }
 
   [[nodiscard]] const std::vector<SectorTable>& sectors() const { return sectors_; }
   /// One per sector.
   [[nodiscard]] const std::vector<CameraBlock>& blocks() const { return blocks_; }
 
-  /// Around the points of a sample of the beams, see stereographic_point().
+  /// Bounds of a sample of the beams, see stereographic_point().
   [[nodiscard]] const Eigen::AlignedBox2d& points() const { return points_; }
 
  private:

@@ -5,7 +5,7 @@
 #include <glidar/render/rays/triangle_filter.hpp>
 #include <glidar/render/scan_raster/sector.hpp>
 
-// Which cells of a sector may see something: never too few.
+// Finds the cells of a sector that may see a triangle or a box; conservative.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 using scan_raster::ElevationRows;
@@ -29,7 +29,7 @@ GLIDAR_INLINE CellRect whole_sector(const GridView& grid) {
           static_cast<std::int32_t>(grid.rows) - 1};
 }
 
-/// Where eight of something appear from a sector: side / forward and up / forward.
+/// Bounds of eight objects as seen from a sector: side / forward and up / forward.
 struct Slopes {
   Float8 side_low;
   Float8 side_high;
@@ -37,17 +37,17 @@ struct Slopes {
   Float8 up_high;
 };
 
-/// Added before a number is truncated: at most its ceiling.
+/// Added before truncation: the result is at most the ceiling.
 inline constexpr float kCeiling = 0.9999F;
 
-/// Eight rectangles of cells, before they are cut at whole columns.
+/// Rectangles of cells for eight objects, before rounding to whole columns.
 struct CellRects {
   alignas(32) float first[8];  ///< columns
   alignas(32) float last[8];
   alignas(32) float first_up[8];  ///< bins of elevations, or rows
   alignas(32) float last_up[8];
 
-  /// Columns that may see it, with these bounds of their deviations.
+  /// Columns that may see object i, with these bounds of the beams' deviations.
   GLIDAR_INLINE void cut(const GridView& grid, unsigned i, float low_deviation,
                          float high_deviation, CellRect& rect) const {
     const auto end = static_cast<std::int32_t>(grid.columns) - 1;
@@ -58,7 +58,7 @@ struct CellRects {
     rect.last_column = whole > end ? end : whole;
   }
 
-  /// All rows and columns that may see it. Cells: AngleCells or SlopeCells.
+  /// All rows and columns that may see object i. Cells: AngleCells or SlopeCells.
   template <class Cells>
   [[nodiscard]] GLIDAR_INLINE CellRect at(const GridView& grid, unsigned i) const {
     CellRect rect;
@@ -82,8 +82,8 @@ GLIDAR_INLINE Float8 arc_tangent(Float8 x) {
   return x * multiply_add(p, y, Float8::all(0.9998660F));
 }
 
-/// Bounds of the cosine 1 / sqrt(1 + x^2) of the azimuth whose tangent is x, |x| < 1: its Taylor
-/// series alternates, so an even number of terms is too low and an odd one too high.
+/// Bounds of the cosine 1 / sqrt(1 + x^2) of the azimuth with tangent x, |x| < 1. The Taylor series
+/// alternates, so an even number of terms gives a lower bound and an odd number an upper bound.
 GLIDAR_INLINE Float8 cosine_series(Float8 y, Float8 last) {
   Float8 p = multiply_add(last, y, Float8::all(-0.3125F));
   p = multiply_add(p, y, Float8::all(0.375F));
@@ -100,10 +100,10 @@ GLIDAR_INLINE Float8 high_cosine(Float8 x) {
 
 /// Columns of equal azimuth and rows of equal elevation.
 struct AngleCells {
-  /// Slopes are those of the sector's own frame.
+  /// Slopes are in the sector's own frame.
   static constexpr bool kIsTurned = true;
 
-  /// The cells of what has these slopes. Returns a bit for each that the sector may see.
+  /// Finds cells from slopes. Returns a bit for each object that the sector may see.
   GLIDAR_INLINE static std::uint32_t find(const GridView& grid, const Slopes& s, CellRects& rects) {
     const float limit = grid.max_slope;
     auto meets = (s.side_low <= Float8::all(limit)) & (Float8::all(-limit) <= s.side_high);
@@ -133,7 +133,7 @@ struct AngleCells {
     return bits(meets);
   }
 
-  /// Bins to rows.
+  /// Converts bins to rows.
   GLIDAR_INLINE static void cut_rows(const GridView& grid, float first, float last,
                                      CellRect& rect) {
     rect.first_row = grid.elevations.first_row[static_cast<std::int32_t>(first)];
@@ -164,7 +164,7 @@ struct SlopeCells {
     return bits(meets);
   }
 
-  /// Rows to whole rows.
+  /// Rounds to whole rows.
   GLIDAR_INLINE static void cut_rows(const GridView& grid, float first, float last,
                                      CellRect& rect) {
     const auto end = static_cast<std::int32_t>(grid.rows) - 1;
@@ -175,7 +175,7 @@ struct SlopeCells {
   }
 };
 
-/// From an instance's frame into the sector's, or for vectors of any unit.
+/// Linear transform from an instance's frame into that of the sector, or of its slopes.
 struct FrameTransform {
   Vector<Float8> forward;
   Vector<Float8> side;

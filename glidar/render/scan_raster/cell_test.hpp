@@ -4,14 +4,14 @@
 
 #include <glidar/render/scan_raster/cell_rect.hpp>
 
-// One triangle against the beams of eight cells side by side.
+// Tests one triangle with the beams of eight adjacent cells.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 using scan_raster::Placement;
 using scan_raster::SectorBuffer;
 using scan_raster::SectorView;
 
-/// All that drawing an instance needs.
+/// Inputs for drawing an instance into a sector.
 struct DrawContext {
   const GridView& grid;
   const SectorView& sector;
@@ -30,19 +30,18 @@ struct DrawContext {
         slopes(p.slopes_from_object) {}
 };
 
-/// Into the frame in which these cells have their slopes.
+/// The transform into the frame of these cells' slopes.
 template <class Cells>
 GLIDAR_INLINE const FrameTransform& slopes_frame(const DrawContext& context) {
   return Cells::kIsTurned ? context.turn : context.slopes;
 }
 
-/// Bounds of edge functions and of den, where their vectors were turned into the sector's frame: a
-/// product of three terms with a rounded matrix adds 4 u |q|_1 <= 8 u L s to the 20 u L s of
+/// Bounds of edge functions and of den, for vectors that were transformed into the sector's frame:
+/// a product of three terms with a rounded matrix adds 4 u |q|_1 <= 8 u L s to the 20 u L s of
 /// rays/triangle_filter.hpp, whose bounds are 24 u L s; and 4 u s1 s2 to 8.2 u s1 s2 (10).
 inline constexpr float kTransformMargin = 1.5F;
 
-/// Numbers of eight triangles, to be read one triangle at a time. Distances det / den are in
-/// metres.
+/// Values of eight triangles, to be read one triangle at a time. Distances det / den are in metres.
 struct TriangleRows {
   static constexpr unsigned kQ1 = 0;
   static constexpr unsigned kQ2 = 3;
@@ -78,7 +77,7 @@ struct RowTriangle {
   const TriangleRows& rows;
   unsigned index;      ///< of the eight
   std::uint32_t slot;  ///< in the tree
-  bool faces;          ///< the sign of det is sure, and the rows are turned so that it is positive
+  bool faces;          ///< the sign of det is certain, and flipped to positive
 };
 
 GLIDAR_INLINE Vector<Float8> load3(const float* const (&of_cell)[3], std::size_t cell) {
@@ -86,15 +85,15 @@ GLIDAR_INLINE Vector<Float8> load3(const float* const (&of_cell)[3], std::size_t
           Float8::load_unaligned(of_cell[2] + cell)};
 }
 
-/// A number as its bits, so that it can be blended with others.
+/// Reinterprets a number as a float, so that it can be blended.
 GLIDAR_INLINE float bits_of_number(std::uint32_t number) {
   float result;
   __builtin_memcpy(&result, &number, sizeof(result));
   return result;
 }
 
-/// Keeps the triangle in the cells where it is surely nearer, and applies the rule where that is in
-/// doubt.
+/// Keeps the triangle in the cells where it is surely nearer, and re-tests it exactly where that is
+/// uncertain.
 GLIDAR_INLINE void keep_nearer(const DrawContext& context, const RowTriangle& triangle,
                                std::size_t cell, const EdgeTest<Float8>& edges, Mask8 candidates,
                                Float8 det) {
@@ -123,7 +122,7 @@ GLIDAR_INLINE void keep_nearer(const DrawContext& context, const RowTriangle& tr
   }
 }
 
-/// det of the cells' beams: the origin's, less that of their offsets.
+/// det of the cells' beams: that of the sector's origin, minus the effect of their offsets.
 template <bool kOwnOrigins>
 GLIDAR_INLINE Float8 det_at(const DrawContext& context, const RowTriangle& t, std::size_t cell) {
   const Float8 det = t.rows.all(TriangleRows::kDet, t.index);
@@ -133,7 +132,7 @@ GLIDAR_INLINE Float8 det_at(const DrawContext& context, const RowTriangle& t, st
   return det;
 }
 
-/// Cells [cell, cell + 8). A beam beside the sector's last column is tested in vain.
+/// Cells [cell, cell + 8). Cells beyond the last column are tested without effect.
 template <bool kOwnOrigins>
 GLIDAR_INLINE void test_cells(const DrawContext& context, const RowTriangle& t, std::size_t cell) {
   const Vector<Float8> d = load3(context.sector.direction, cell);
@@ -154,7 +153,7 @@ GLIDAR_INLINE void test_cells(const DrawContext& context, const RowTriangle& t, 
   keep_nearer(context, t, cell, edges, candidates, det_at<kOwnOrigins>(context, t, cell));
 }
 
-/// The same where all beams surely pass inside of the edges.
+/// The same where all beams certainly pass inside of the edges.
 template <bool kOwnOrigins>
 GLIDAR_INLINE void test_inside(const DrawContext& context, const RowTriangle& t, std::size_t cell) {
   const Vector<Float8> d = load3(context.sector.direction, cell);

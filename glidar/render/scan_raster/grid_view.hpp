@@ -7,15 +7,14 @@
 #include <algorithm>
 #include <vector>
 
-// What grids of all kinds need to fill a GridView.
+// Helpers of all grids for filling a GridView.
 namespace glidar::scan_raster {
 
-/// What the kernels' rounding may do to a column or a row.
+/// Rounding error of the kernels, columns or rows.
 inline constexpr double kCellMargin = 2e-3;
 /// Added to measured deviations on each side, columns or rows.
 inline constexpr double kDeviationMargin = 1e-3;
-/// Beams of a row, or of a sector, that deviate from their cells by a wider interval are not in the
-/// grid, columns or rows.
+/// Maximum span of deviations, columns or rows: rows or sectors beyond it are not in the grid.
 inline constexpr double kMaxSpread = 4.0;
 
 inline void set_shape(const SectorShape& shape, GridView& view) {
@@ -25,7 +24,7 @@ inline void set_shape(const SectorShape& shape, GridView& view) {
   view.tile_pitch = shape.tile_pitch();
 }
 
-/// The bounds of all rows' columns, one per row.
+/// Sets the bounds of the deviations, one per row.
 inline void set_deviations(const std::vector<float>& low, const std::vector<float>& high,
                            GridView& view) {
   view.low_deviation = low.data();

@@ -15,7 +15,7 @@ namespace {
 /// Coordinates and scales for which the kernels' products neither overflow nor underflow.
 constexpr double kMaxReach = 0x1p34;
 constexpr double kMaxSlotScale = 0x1p20;
-/// What a rotation may lack, far below the kernels' rounding.
+/// Tolerance of a rotation, far below the kernels' rounding.
 constexpr double kRotationTolerance = 0x1p-30;
 /// Boxes in single precision: some 20 roundings of 2^-24.
 constexpr double kBoxMargin = 0x1p-19;
@@ -39,7 +39,7 @@ bool is_within_bounds(const InstanceView& view, const rays::MeshSphere& sphere) 
          view.scale >= 1.0 / kMaxSlotScale && size_of(sphere, view.sensor_in_object) <= kMaxReach;
 }
 
-/// From the sensor to the instance's sphere, metres; below zero inside of it.
+/// From the sensor to the instance's sphere, metres; negative inside of it.
 double distance_m(const InstanceView& view, const rays::MeshSphere& sphere) {
   const Eigen::Map<const Eigen::Vector3d> centre(sphere.centre);
   return view.scale * ((view.sensor_in_object - centre).norm() - sphere.radius);

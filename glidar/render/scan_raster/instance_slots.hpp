@@ -11,12 +11,12 @@
 
 namespace glidar::scan_raster {
 
-/// The instances of a cast in the order in which they are drawn, and numbers for the slots of all
-/// their triangles.
+/// The instances of a cast in drawing order, and consecutive numbers for the slots of all their
+/// triangles.
 class InstanceSlots {
  public:
-  /// Takes the instances that are there; the resolver and the trees have the poses of the cast.
-  /// False when single precision has no bounds for some instance: the cast is for rays.
+  /// Sets the enabled instances; the resolver and the trees have the poses of the cast. False when
+  /// single precision has no error bounds for some instance: then the cast must use rays.
   bool prepare(const rays::SceneTrees& trees, const Resolver& resolver);
 
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
@@ -33,12 +33,12 @@ class InstanceSlots {
   bool assign_slot_numbers();
 
   const rays::SceneTrees* trees_ = nullptr;
-  std::vector<std::uint32_t> order_;         ///< about the nearest first
+  std::vector<std::uint32_t> order_;         ///< approximately nearest first
   std::vector<std::uint32_t> first_number_;  ///< per instance of the scene
   std::vector<std::uint32_t> starts_;        ///< first numbers of trees_->instances(), rising
 };
 
-/// An instance as a sector sees it, but for what decides hits.
+/// An instance in the frame of a sector, without the callback for exact tests.
 Placement make_placement(const rays::SceneTrees& trees, const InstanceView& view,
                          std::uint32_t instance, const SectorTable& sector);
 

@@ -9,7 +9,7 @@ namespace glidar::scan_raster {
 /// The inner loops, compiled for one instruction set as those of the ray caster.
 struct Kernel {
   const char* name;  ///< as rays::Kernel::name
-  /// Draws an instance into a sector's picture.
+  /// Draws an instance into a sector's buffer.
   void (*draw)(const GridView& grid, const SectorView& sector, const Placement& placement,
                const SectorBuffer& buffer);
 };

@@ -4,10 +4,11 @@
 
 #include <glidar/render/scan_raster/tile_depths.hpp>
 
-// A triangle that covers many cells: eight tiles at once, then the cells of those that remain.
+// Tests a triangle that covers many cells: eight tiles at once, then the cells of the remaining
+// tiles.
 namespace glidar::rays::GLIDAR_KERNEL {
 
-/// What the edge functions and det of any beam differ by from those of one through the origin.
+/// How far edge functions and det of beams may differ from those of a beam through the origin.
 struct OriginSpread {
   Float8 v;
   Float8 u;
@@ -33,7 +34,7 @@ GLIDAR_INLINE OriginSpread spread_of(const DrawContext& context, const RowTriang
   return {v, u, u + v, det};
 }
 
-/// The products of a vector and all directions of eight tiles.
+/// Bounds of the products of a vector and all directions, for eight tiles.
 struct TileProducts {
   Float8 low;
   Float8 high;
@@ -48,7 +49,7 @@ struct TileProducts {
 
 /// Bits of eight tiles.
 struct TileTest {
-  std::uint32_t outside;  ///< no beam hits, or all have found something nearer
+  std::uint32_t outside;  ///< no beam hits, or all have a nearer hit
   std::uint32_t inside;   ///< all beams pass inside of the edges
 };
 
@@ -66,7 +67,7 @@ GLIDAR_INLINE TileTest test_tiles(const DrawContext& context, const RowTriangle&
   const Float8 highest = min(min(v.high + spread.v, u.high + spread.u), w.high + spread.w);
   const Float8 lowest = min(min(v.low - spread.v, u.low - spread.u), w.low - spread.w);
   const Float8 margin = bounds.edge * Float8::all(2.0F);
-  // The nearest distance is that of the least det and the largest den.
+  // The nearest distance is that of the smallest det and the largest den.
   const Float8 det =
       t.rows.all(TriangleRows::kDet, t.index) - spread.det - bounds.det * Float8::all(2.0F);
   const Float8 largest_den = den.high + bounds.den * Float8::all(2.0F);

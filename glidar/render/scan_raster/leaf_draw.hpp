@@ -5,17 +5,17 @@
 #include <glidar/render/rays/leaf_test.hpp>
 #include <glidar/render/scan_raster/large_triangle.hpp>
 
-// The triangles of a cluster: which cells they cover, then these cells' beams.
+// Draws the triangles of a cluster: finds the cells that they cover, and tests the cells' beams.
 namespace glidar::rays::GLIDAR_KERNEL {
 
-/// Triangles that take more vectors of cells than this are drawn by tiles.
+/// Triangles with more vectors of cells than this are drawn by tiles.
 inline constexpr std::int32_t kSmallTriangle = 16;
 
-/// The sector's origin as a cluster sees it.
+/// The sector's origin relative to a cluster.
 struct LeafOrigin {
   float at[3];
   float scaled;   ///< see scaled_reach()
-  float foot[3];  ///< Placement::foot and what positions in the sector's frame may be wrong by
+  float foot[3];  ///< Placement::foot plus the rounding of positions in the sector's frame
   float behind;
 
   GLIDAR_INLINE LeafOrigin(const Placement& placement, const TriangleCluster& cluster) {
@@ -29,7 +29,7 @@ struct LeafOrigin {
                          2.0 * static_cast<double>(placement.distance) +
                          placement.rounding * 0x1p-26;
     scaled = scaled_reach(reach);
-    // Some 24 roundings of 2^-24: of the corner, of its edges, and of turning both.
+    // Some 24 roundings of 2^-24: of the corner, of its edges, and of transforming both.
     const auto margin = static_cast<float>(0x1p-19 * (reach + kReachMargin));
     for (unsigned axis = 0; axis < 3; ++axis) foot[axis] = placement.foot[axis] + margin;
     behind = placement.behind + foot[0];
@@ -63,8 +63,8 @@ struct ProjectedBlock {
   }
 };
 
-/// Bits of the triangles that are beside the sector, above or below it: for those of which a corner
-/// is not in front.
+/// Bits of the triangles that are beside, above or below the sector. For triangles with a corner
+/// that is not in front.
 GLIDAR_INLINE std::uint32_t find_outside(const GridView& grid, const ProjectedBlock& seen,
                                          const LeafOrigin& origin) {
   using V = Vector<Float8>;
@@ -114,7 +114,7 @@ GLIDAR_INLINE Slopes slopes_of(const ProjectedBlock& seen, const LeafOrigin& ori
   return slopes;
 }
 
-/// What is left of eight triangles, and where.
+/// The remaining triangles of eight, and their cells.
 struct BlockCells {
   std::uint32_t left;
   std::uint32_t around;  ///< those that may cover any cell
@@ -141,8 +141,8 @@ struct BlockCells {
   }
 };
 
-/// The rows of the triangles, turned so that det is positive. With origins of their own, `seen` is
-/// in the sector's frame.
+/// The rows of the triangles, with signs flipped so that det is positive. With separate origins,
+/// `seen` is in the sector's frame.
 template <bool kOwnOrigins>
 GLIDAR_INLINE void fill_rows(const DrawContext& context, const BlockSetup& s,
                              const ProjectedBlock& seen, TriangleRows& rows) {
@@ -184,7 +184,7 @@ GLIDAR_INLINE std::uint32_t find_facing(const DrawContext& context, const Triang
   return bits(Float8::load(rows.at[TriangleRows::kDet]) > bound);
 }
 
-/// A triangle of few cells: eight columns at a time of each row.
+/// Draws a triangle of few cells, eight columns at a time.
 template <bool kOwnOrigins>
 GLIDAR_INLINE void draw_small(const DrawContext& context, const RowTriangle& t,
                               const CellRects& rects, CellRect rect) {

@@ -12,31 +12,31 @@ namespace {
 constexpr std::size_t kMinBeams = 16;
 /// Beams farther from the middle one than 81 degrees are not fitted.
 constexpr double kMinCosine = 0.15;
-/// Tangent of the angle between the middle beam and the axis forward: a lens that is long would
-/// have its axis anywhere.
+/// Maximum tangent of the angle between the middle beam and the forward axis, which is arbitrary
+/// for long focal lengths.
 constexpr double kMaxTilt = 12.0;
-/// Of the least to the largest pivot of the normal equations.
+/// Minimum ratio of the smallest and the largest pivot of the normal equations.
 constexpr double kMinPivot = 1e-10;
-/// Columns or rows for a slope of 1: single precision has no room for more.
+/// Columns or rows for a slope of 1: the limit of single precision.
 constexpr double kMaxPerSlope = 1e6;
 constexpr int kUnknowns = 8;
 
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using NormalMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-/// A middle direction and two more at right angles to it.
+/// The middle direction and two perpendicular axes.
 struct MiddleFrame {
   Eigen::Vector3d middle;
   Eigen::Vector3d x;
   Eigen::Vector3d y;
-  double scale = 1.0;  ///< the slopes x / middle and y / middle of beams are up to about this
+  double scale = 1.0;  ///< the slopes x / middle and y / middle of beams are at most about this
 
   [[nodiscard]] Eigen::Vector2d slopes(const Eigen::Vector3d& d) const {
     return Eigen::Vector2d(d.dot(x), d.dot(y)) / (d.dot(middle) * scale);
   }
 };
 
-/// Numbers of beams, from about -1 to 1.
+/// Scales numbers to about -1 to 1.
 struct Interval {
   double middle;
   double half;
@@ -102,7 +102,7 @@ Eigen::Matrix3d rows_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 
 ProjectiveMap map_of(const Unknowns& k, const MiddleFrame& frame, const Interval& columns,
                      const Interval& rows) {
-  // Slopes are zero in the middle, so the columns' number there is taken out.
+  // Slopes are zero in the middle, so the number of the middle column is subtracted.
   const Eigen::Vector3d forward = frame.middle + (k[6] * frame.x + k[7] * frame.y) / frame.scale;
   const Eigen::Vector3d side =
       ((k[0] - k[2] * k[6]) * frame.x + (k[1] - k[2] * k[7]) * frame.y) / frame.scale;

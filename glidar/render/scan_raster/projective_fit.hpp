@@ -10,15 +10,15 @@
 
 namespace glidar::scan_raster {
 
-/// A beam and its place in a grid.
+/// A beam and its position in a grid.
 struct PlacedBeam {
   Eigen::Vector3d direction;
   double column;
   double row;
 };
 
-/// Columns and rows as the slopes side / forward and up / forward of directions: what a pinhole
-/// camera with axes of its own has.
+/// Columns and rows as linear functions of the slopes side / forward and up / forward of
+/// directions, as for a pinhole camera with its own axes.
 struct ProjectiveMap {
   SectorFrame frame;
   double columns_per_slope = 1.0;
@@ -27,8 +27,7 @@ struct ProjectiveMap {
   double middle_row = 0.0;
 };
 
-/// The map whose columns and rows are about those of the beams, by least squares; none where there
-/// are too few beams, or they are all on a line.
+/// Least-squares fit of columns and rows; none if there are too few beams, or all are on a line.
 std::optional<ProjectiveMap> fit_projective_map(std::span<const PlacedBeam> beams);
 
 }  // namespace glidar::scan_raster

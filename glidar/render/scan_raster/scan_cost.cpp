@@ -10,13 +10,13 @@
 namespace glidar::scan_raster {
 namespace {
 
-/// Clusters that are looked at, at most, and of each instance at least.
+/// Maximum number of sampled clusters, and minimum per instance.
 constexpr std::size_t kSamples = 2048;
 constexpr std::size_t kMinSamples = 8;
 /// An instance costs a sector about as much as this many triangles.
 constexpr double kTrianglesPerInstance = 15.0;
 
-/// Where a point is in a view, each from 0 up to 1; elsewhere beside the view.
+/// Normalised position of a point in a view, from 0 to 1; outside of that, it is not in view.
 struct ViewPosition {
   double across;
   double up;
@@ -62,10 +62,10 @@ class CameraView {
   Eigen::AlignedBox2d points_;
 };
 
-/// The parts of a view in which something was seen.
+/// The cells of a view in which something is visible.
 class ViewCoverage {
  public:
-  /// True when the place is in view.
+  /// True when the position is in view.
   bool take(const ViewPosition& position) {
     if (!(position.across >= 0.0 && position.across < 1.0 && position.up >= 0.0 &&
           position.up <= 1.0)) {
@@ -77,7 +77,7 @@ class ViewCoverage {
     return true;
   }
 
-  /// Of the whole view.
+  /// Fraction of the view.
   [[nodiscard]] double share() const {
     return static_cast<double>(seen_.count()) / (kRows * kCols);
   }
@@ -88,7 +88,7 @@ class ViewCoverage {
   std::bitset<kRows * kCols> seen_;
 };
 
-/// The instance's triangles in view.
+/// Estimates the number of the instance's triangles in view.
 template <class View>
 double count_triangles(const rays::MeshTree& tree, const InstanceView& from, std::size_t samples,
                        const View& view, ViewCoverage& parts) {

@@ -7,14 +7,14 @@
 
 namespace glidar::scan_raster {
 
-/// What a grid sees.
+/// Triangles and beams of a grid's view.
 struct VisibleCounts {
   double triangles;  ///< in the grid's view
-  double beams;      ///< that may hit some
+  double beams;      ///< that may hit a triangle
 };
 
-/// About that. It follows from the scene, the beams and the poses; the resolver and the trees have
-/// those of the cast. A sample of clusters is looked at.
+/// Estimates them from a sample of clusters. The result follows from the scene, the beams and the
+/// poses alone; the resolver and the trees have those of the cast.
 VisibleCounts estimate_visible(const BeamGrid& grid, const Beams& beams, const CpuBase& base);
 
 }  // namespace glidar::scan_raster

@@ -15,7 +15,7 @@
 
 namespace glidar::scan_raster {
 
-/// What one thread draws a sector with.
+/// Workspace of one thread.
 struct SectorScratch {
   std::vector<float> low;
   std::vector<float> high;
@@ -36,7 +36,7 @@ struct SectorScratch {
 
 namespace {
 
-/// One cast, as its threads see it.
+/// Inputs that all threads of a cast share.
 struct Job {
   const CastRequest& request;
   const BeamGrid& grid;
@@ -65,7 +65,7 @@ void draw_sector(const Job& job, std::size_t index, SectorScratch& scratch) {
   writer.cast_rays(scratch.deferred_beams);
 }
 
-/// A run of beams, cast as rays.
+/// Casts a run of beams as rays.
 void cast_run(const HitTarget& target, BeamRange run, SectorScratch& scratch) {
   write_misses(target.request.fields, run.begin, run.end - run.begin, target.hits);
   scratch.deferred_beams.resize(run.end - run.begin);
@@ -88,7 +88,7 @@ void cast_sector(const Job& job, std::size_t index, SectorScratch& scratch) {
 
 }  // namespace
 
-/// Desks that threads take and give back, so that a later cast finds them ready.
+/// Workspaces that threads acquire and release; they are kept for later casts.
 class ScanRenderer::SectorScratchPool : public WorkspacePool<SectorScratch> {};
 
 ScanRenderer::ScanRenderer(std::shared_ptr<CpuBase> base)

@@ -12,8 +12,8 @@
 
 namespace glidar::scan_raster {
 
-/// Draws triangles onto the beams of scanners and of cameras with any lens, see docs/raster.md: the
-/// same bits as rays. Refuses beams that form no grid.
+/// Rasterises the beams of scanners and of cameras with any lens, see docs/scan-raster.md: the same
+/// bits as rays. Throws Error for beams that form no grid.
 class ScanRenderer final : public Renderer {
  public:
   explicit ScanRenderer(std::shared_ptr<CpuBase> base);
@@ -23,8 +23,8 @@ class ScanRenderer final : public Renderer {
   [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
   void cast(const CastRequest& request, Hits& hits) override;
 
-  /// The same where beams were just taken by grid_of() and form a grid, some instance is there, and
-  /// the resolver and the search of the base have the cast's poses.
+  /// As cast(), if grid_of() was just called for the beams and they form a grid, some instance is
+  /// enabled, and the resolver and the search of the base have the cast's poses.
   void cast_prepared(const CastRequest& request, Hits& hits);
 
   /// The grid of the beams, valid until the next call.
@@ -33,14 +33,14 @@ class ScanRenderer final : public Renderer {
  private:
   class SectorScratchPool;
 
-  /// Calls body(i, desk) for each piece, on all threads.
+  /// Calls body(i, scratch) for each piece, on all threads.
   template <class Body>
   void for_each(std::size_t pieces, const Body& body);
 
   std::shared_ptr<CpuBase> base_;
   const Kernel& kernel_ = find_kernel(rays::select_kernel().name);
   BeamGrids grids_;
-  const BeamGrid* grid_ = nullptr;  ///< of the beams taken last
+  const BeamGrid* grid_ = nullptr;  ///< of the last grid_of()
   InstanceSlots slots_;
   std::unique_ptr<SectorScratchPool> scratch_pool_;
 };

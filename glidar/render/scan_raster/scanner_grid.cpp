@@ -10,21 +10,23 @@
 namespace glidar::scan_raster {
 namespace {
 
-/// Half a sector is at most this wide, with two columns more on each side: wide enough for buffers
-/// that fill a core's own cache, narrow enough for tight rectangles.
+/// Maximum width of half a sector, with two more columns on each side: wide enough for buffers that
+/// fill a core's private cache, narrow enough for tight rectangles.
 constexpr double kMaxHalfSector_rad = 0.42;
 constexpr std::uint32_t kMaxSectorColumns = 128;
-/// Of which rows may overlap: their intervals of elevations, added up, over the whole one.
+/// Maximum overlap of rows: the sum of their intervals of elevations, relative to the whole
+/// interval.
 constexpr double kMaxCrowding = 4.0;
-/// Of cells without a beam where rows begin at different azimuths: this part of all, and some.
+/// Maximum fraction of cells without a beam because rows start at different azimuths, plus a
+/// constant.
 constexpr double kMaxShifted = 0.5;
 constexpr std::uint32_t kShiftedMargin = 64;
-/// What the kernels' tangents of elevations may be wrong by: some roundings of numbers up to 6.
+/// Error bound of the kernels' tangents of elevations: some roundings of numbers up to 6.
 constexpr double kTangentMargin = 0x1p-19;
-/// What their arc tangent may be wrong by, see arc_tangent().
+/// Error bound of their arc tangent, see arc_tangent().
 constexpr double kAzimuthMargin_rad = 2e-5;
 
-/// Padding in a sector on each side of its columns, columns.
+/// Padding on each side of a sector, columns.
 double margin_of(const std::vector<RowAngles>& rows) {
   double margin = 0.0;
   for (const RowAngles& row : rows) {
@@ -61,7 +63,7 @@ void ScannerGrid::measure(const Beams& beams, ThreadPool& thread_pool) {
   build_sectors(beams, thread_pool);
 }
 
-/// Both ends of the rows' elevations are made to rise, which only widens them.
+/// Makes both ends of the rows' elevations increase, which only widens them.
 void ScannerGrid::sort_rows() {
   rows_.clear();
   other_rows_.clear();
@@ -123,7 +125,7 @@ void ScannerGrid::find_columns(const Beams& beams) {
 }
 
 void ScannerGrid::find_bins() {
-  // Room around, so that a bin is never narrower than what tangents may be wrong by.
+  // A margin, so that a bin is never narrower than the error of tangents.
   constexpr double kAround = 1e-2;
   lowest_tangent_ = rows_.front().low_tangent - kAround;
   highest_tangent_ = rows_.back().high_tangent + kAround;

@@ -14,13 +14,13 @@
 
 namespace glidar::scan_raster {
 
-/// Tangents of the elevations of all rows.
+/// Range of the tangents of all rows' elevations.
 struct TangentRange {
   double low;
   double high;
 };
 
-/// The columns of a grid of scanner's beams.
+/// The columns of a scanner's grid.
 struct GridColumns {
   std::int32_t first = 0;   ///< the lowest column + shift of any beam
   std::uint32_t count = 0;  ///< from there to the highest
@@ -29,12 +29,12 @@ struct GridColumns {
 };
 
 /// Beams of a scanner as a grid of rows of equal elevation and columns of equal azimuth. Sectors
-/// are some columns each.
+/// are groups of columns.
 class ScannerGrid {
  public:
   void measure(const Beams& beams, ThreadPool& thread_pool);
 
-  /// Why the beams form no grid; empty: they do. Otherwise only that is of use.
+  /// Why the beams form no grid; empty: they do. If not empty, nothing else is valid.
   [[nodiscard]] const std::string& misfit() const { return angles_.misfit; }
 
   [[nodiscard]] const GridColumns& columns() const { return columns_; }

@@ -7,20 +7,20 @@
 #include <cstdint>
 #include <limits>
 
-// What the kernels of the scanner raster read and write. Plain arrays, because code for several
+// Inputs and outputs of the kernels of the scanner raster. Plain arrays, because code for several
 // instruction sets shares them.
 namespace glidar::scan_raster {
 
-/// A vector of cells that are tested together; also the width of a tile.
+/// Width of a vector of cells that are tested together, and of a tile.
 inline constexpr std::uint32_t kTileColumns = 8;
 inline constexpr std::uint32_t kTileRows = 4;
-/// The table from elevations to rows has this many bins.
+/// Number of bins of the table from elevations to rows.
 inline constexpr std::uint32_t kElevationBins = 4096;
 inline constexpr std::uint32_t kNoSlotNumber = std::numeric_limits<std::uint32_t>::max();
 
 /// Rows of equal elevation, found by a table.
 struct ElevationRows {
-  float lowest_tangent;  ///< of elevations, with room
+  float lowest_tangent;  ///< of elevations, with a margin
   float highest_tangent;
   float bins_per_tangent;
   const std::int32_t* first_row;  ///< per bin: lowest row that an elevation from it on may meet
@@ -30,38 +30,38 @@ struct ElevationRows {
 /// Rows of equal slopes up / forward.
 struct SlopeRows {
   float rows_per_slope;
-  float first_row;  ///< of slope 0, less what deviates
-  float last_row;   ///< the same, with what deviates
+  float first_row;  ///< of slope 0, minus deviations
+  float last_row;   ///< of slope 0, plus deviations
 };
 
-/// Where the cells of a sector are. A cell is a row and a column; the axis up is that of rising
-/// rows. Columns are those of equal azimuth or, with SlopeRows, of equal slopes side / forward. All
-/// is measured from the real directions, so that any beams are inside of these bounds.
+/// Positions of a sector's cells. A cell has a row and a column; the up axis points to rising rows.
+/// Columns have equal azimuth or, with SlopeRows, equal slopes side / forward. All bounds are
+/// measured from the actual directions, so they hold for any beams.
 struct GridView {
-  std::uint32_t rows;     ///< a multiple of kTileRows
-  std::uint32_t columns;  ///< a multiple of kTileColumns
-  std::uint32_t pitch;    ///< cells from row to row: unaligned vectors reach beyond the last column
+  std::uint32_t rows;        ///< a multiple of kTileRows
+  std::uint32_t columns;     ///< a multiple of kTileColumns
+  std::uint32_t pitch;       ///< cells from row to row: with padding for unaligned vectors
   std::uint32_t tile_pitch;  ///< tiles from row to row of tiles, a multiple of 8
   float columns_per_unit;    ///< of azimuth (rad) or of slope
   float middle_column;       ///< where the forward axis points
-  float column_margin;       ///< what the kernels' columns may be wrong by
-  float max_slope;           ///< of side / forward, with room
-  float lowest_slope;        ///< of up / forward, with room
+  float column_margin;       ///< error bound of the kernels' columns
+  float max_slope;           ///< of side / forward, with a margin
+  float lowest_slope;        ///< of up / forward, with a margin
   float highest_slope;
   const float* low_deviation;  ///< per row: of beams from their columns, columns
   const float* high_deviation;
   float min_deviation;  ///< of all rows
   float max_deviation;
-  bool has_slopes;  ///< columns and rows are those of slopes
+  bool has_slopes;  ///< columns and rows have equal slopes
   ElevationRows elevations;
   SlopeRows slopes;
 };
 
-/// Some columns of the grid. Vectors are in the sector's frame: forward, to the side of rising
+/// The beams of a sector. Vectors are in the sector's frame: forward, to the side of rising
 /// columns, up. Cells without a beam repeat a direction.
 struct SectorView {
   const float* direction[3];  ///< per cell
-  /// Where beams have origins of their own, metres from the sector's origin; otherwise nullptr.
+  /// For beams with separate origins, metres from the sector's origin; otherwise nullptr.
   const float* moment[3];  ///< direction x offset
   const float* offset[3];
   float max_moment[3];  ///< of all beams, per component
@@ -70,7 +70,7 @@ struct SectorView {
   const float* tile_half[3];
 };
 
-/// What the cells of a sector have found so far.
+/// The nearest hits of a sector's cells so far.
 struct SectorBuffer {
   float* low;  ///< per cell: bounds of the distance, metres; infinite: no hit; -1: no beam
   float* high;
@@ -79,25 +79,25 @@ struct SectorBuffer {
   std::uint32_t* is_stale;  ///< per tile: `farthest` may be larger than that
 };
 
-/// One instance, seen from a sector.
+/// One instance in the frame of a sector.
 struct Placement {
   rays::TreeView tree;
   double origin[3];                ///< of the sector, object units
   float sector_from_object[3][3];  ///< rotation
-  /// Into the frame of the sector's slopes, whose axes are unit vectors, but at right angles only
-  /// for columns of equal azimuth: there it is the rotation.
+  /// Into the frame of the sector's slopes. Its axes are unit vectors, but perpendicular only for
+  /// columns of equal azimuth, where it is the rotation.
   float slopes_from_object[3][3];
   double metres;  ///< per object unit
   /// As RayPacket::rounding.
   double rounding;
-  float margin;  ///< what boxes in the sector's frame may be wrong by, object units
-  /// Half sizes of a box around the sector's origin that all beams' lines cross, object units; zero
-  /// where beams start at the origin. Likewise below.
+  float margin;  ///< error bound of boxes in the sector's frame, object units
+  /// Half sizes of a box around the sector's origin that the lines of all beams cross, object
+  /// units; zero where beams start at the origin. `behind` and `distance` are zero there too.
   float foot[3];
-  float behind;                ///< how far behind that crossing a beam may start
-  float distance;              ///< from the origin to where a beam starts, at most
+  float behind;                ///< maximum distance behind that crossing at which a beam starts
+  float distance;              ///< maximum distance from the origin to the start of a beam
   std::uint32_t first_number;  ///< of slot 0
-  bool always_retests;  ///< every triangle that is not surely missed goes to retest_exactly()
+  bool always_retests;         ///< also triangles that are certainly hit are re-tested
   /// Applies the hit rule to a cell and a slot.
   void (*retest_exactly)(void* context, std::uint32_t cell, std::uint32_t slot);
   void* context;

@@ -71,8 +71,8 @@ bool SectorExactTest::is_first(std::uint32_t cell, const PrimitiveRef& found, do
   return order.is_nearer;
 }
 
-/// True where the triangle has the corners of the cell's nearest one: the lower one is kept. Cells
-/// in a row mostly ask for the same two.
+/// True where the triangle has the same corners as the cell's nearest one; the lower one is kept.
+/// The last comparison is cached, since cells of a row mostly compare the same two.
 bool SectorExactTest::is_coincident(std::uint32_t cell, std::uint32_t slot) {
   const std::uint32_t number = number_at(cell);
   if (number == kNoSlotNumber || packet_.accepts_hit != nullptr) return false;

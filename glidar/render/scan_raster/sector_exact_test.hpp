@@ -11,7 +11,7 @@
 
 namespace glidar::scan_raster {
 
-/// Applies the hit rule to cells and triangles that single precision leaves in doubt.
+/// Applies the hit rule to cells and triangles that single precision cannot decide.
 class SectorExactTest {
  public:
   /// Adds to `deferred_beams`, see defer_to_rays().
@@ -23,7 +23,7 @@ class SectorExactTest {
         buffer_(buffer),
         deferred_beams_(deferred_beams) {}
 
-  /// Takes the next instance, and completes its placement.
+  /// Sets the next instance, and completes its placement.
   void set_instance(std::uint32_t instance, Placement& placement);
 
  private:
@@ -32,8 +32,8 @@ class SectorExactTest {
   void trace(std::uint32_t cell, std::uint32_t slot);
   [[nodiscard]] bool is_first(std::uint32_t cell, const PrimitiveRef& found, double low_m,
                               double high_m);
-  /// Leaves a cell to rays, since some triangles tie: it counts as one without a beam, and its beam
-  /// is added to those handed over.
+  /// Defers a cell to rays, since some triangles tie: it then counts as one without a beam, and its
+  /// beam is added to deferred_beams.
   void defer_to_rays(std::uint32_t cell);
   [[nodiscard]] std::uint32_t number_at(std::uint32_t cell) const;
 
@@ -44,11 +44,11 @@ class SectorExactTest {
   std::vector<std::size_t>& deferred_beams_;
   std::uint32_t instance_ = 0;
   std::size_t beam_ = 0;
-  std::uint32_t compared_ = kNoSlotNumber;  ///< number and slot that were compared last
+  std::uint32_t compared_ = kNoSlotNumber;  ///< number and slot of the last comparison
   std::uint32_t compared_slot_ = 0;
   bool is_same_ = false;      ///< they have the same corners
-  std::uint32_t lower_ = 0;   ///< then the one to keep
-  rays::RayPacket packet_{};  ///< of which the first ray is used
+  std::uint32_t lower_ = 0;   ///< if so, the number to keep
+  rays::RayPacket packet_{};  ///< only the first ray is used
 };
 
 }  // namespace glidar::scan_raster

@@ -14,10 +14,10 @@ namespace glidar::scan_raster {
 namespace {
 
 constexpr float kNoBeam = -1.0F;
-/// What single precision may add to a bound.
+/// Relative rounding of bounds to single precision.
 constexpr double kSectorMargin = 1.0 + 0x1p-20;
 
-/// Others hit nothing, see rays::BeamSearch.
+/// Other beams hit nothing, see rays::BeamSearch.
 bool is_beam(const Beams& beams, std::size_t i) {
   return beams.directions[i].allFinite() &&
          (beams.origins_m.empty() || beams.origins_m[i].lpNorm<1>() <= 3.0 * kMaxCoordinate_m);
@@ -46,7 +46,7 @@ void SectorTable::place_rows(const Beams& beams, const SectorShape& shape,
     const std::int64_t start = rows[j].column;
     const std::int64_t begin = std::clamp<std::int64_t>(start, 0, cols);
     const std::int64_t end = std::clamp<std::int64_t>(start + shape.columns, 0, cols);
-    // Below zero it wraps around, and comes back when a cell's column is added.
+    // Below zero it wraps around, which adding a cell's column undoes.
     first_beam_.push_back(row_start + static_cast<std::size_t>(start));
     rows_.push_back({row_start + static_cast<std::size_t>(begin),
                      j * pitch_ + static_cast<std::size_t>(begin - start),
@@ -63,7 +63,7 @@ void SectorTable::set_directions(const Beams& beams) {
     direction_[axis].resize(start_.size());
     exact_direction_[axis].resize(start_.size() + kLanes);
   }
-  // Cells without a beam repeat the one before: any direction will do.
+  // Cells without a beam repeat the previous direction, which is arbitrary.
   const auto first = std::find(start_.begin(), start_.end(), kInfinityf);
   Eigen::Vector3d exact = Eigen::Vector3d::UnitX();
   if (first != start_.end()) {
@@ -96,7 +96,7 @@ void SectorTable::set_origins(const Beams& beams) {
       if (start_[cell] == kInfinityf) visit(cell, beam(cell));
     }
   };
-  // A line may be moved along itself, so the middle of the lines' feet is the sector's origin.
+  // Only the lines matter, so the middle of the lines' feet is the sector's origin.
   Eigen::AlignedBox3d starts;
   for_beams([&](std::size_t, std::size_t i) { starts.extend(beams.origins_m[i]); });
   if (starts.isEmpty()) return;
@@ -116,7 +116,8 @@ void SectorTable::set_origins(const Beams& beams) {
   for_beams([&](std::size_t cell, std::size_t i) {
     const Eigen::Vector3d offset = frame_.sector_from_sensor * (beams.origins_m[i] - origin_m_);
     const Eigen::Vector3d direction = frame_.sector_from_sensor * beams.directions[i];
-    // The sector's frame may be left-handed, so the product is one of the sensor's frame.
+    // The sector's frame may be left-handed, so the cross product is computed in the sensor's
+    // frame.
     const Eigen::Vector3d product = beams.directions[i].cross(beams.origins_m[i] - origin_m_);
     const Eigen::Vector3f moment = (frame_.sector_from_sensor * product).cast<float>();
     const Eigen::Vector3f rounded = offset.cast<float>();

@@ -13,12 +13,12 @@
 
 namespace glidar::scan_raster {
 
-/// Cells of a sector.
+/// Size of a sector, in cells.
 struct SectorShape {
   std::uint32_t columns = 0;  ///< a multiple of kTileColumns
   std::uint32_t rows = 0;     ///< a multiple of kTileRows
 
-  /// The least shape that has room for so many.
+  /// The smallest shape for this many columns and rows.
   static SectorShape around(std::uint32_t columns, std::uint32_t rows) {
     return {(columns + kTileColumns - 1) / kTileColumns * kTileColumns,
             (rows + kTileRows - 1) / kTileRows * kTileRows};
@@ -36,13 +36,13 @@ struct SectorFrame {
   Eigen::Matrix3d slopes_from_sensor = Eigen::Matrix3d::Identity();  ///< see Placement
 };
 
-/// Where a row of a sector begins in the beams: at a column below zero, it has no beams there.
+/// First beam of a sector's row: at columns below zero, cells have no beam.
 struct RowStart {
   std::uint32_t row;
   std::int64_t column;
 };
 
-/// Beams of a row that stand side by side in a sector.
+/// Consecutive beams of a row of a sector.
 struct SectorRow {
   std::size_t first_beam;
   std::size_t first_cell;
@@ -52,35 +52,36 @@ struct SectorRow {
 /// The beams of one sector, in its own frame.
 class SectorTable {
  public:
-  /// `rows`: at most those of the shape. Where there are fewer, or the beams end, cells have none.
+  /// `rows`: at most those of the shape. Missing rows and columns beyond the beams have no beams.
   void build(const Beams& beams, const SectorShape& shape, const SectorFrame& frame,
              std::span<const RowStart> rows);
 
   [[nodiscard]] SectorView view() const;
   [[nodiscard]] const std::vector<SectorRow>& rows() const { return rows_; }
-  /// The beam of a cell that has one.
+  /// The beam of a cell; the cell must have one.
   [[nodiscard]] std::size_t beam(std::size_t cell) const {
     return first_beam_[cell / pitch_] + cell % pitch_;
   }
 
-  /// Components of the beams' directions in the sensor's frame, per cell, and kLanes more.
+  /// Components of the beams' directions in the sensor's frame, per cell, padded by kLanes.
   [[nodiscard]] const double* exact_direction(int axis) const {
     return exact_direction_[axis].data();
   }
 
   /// Per cell: infinity, or -1 where there is no beam.
   [[nodiscard]] const std::vector<float>& start() const { return start_; }
-  /// Per tile: the largest of them.
+  /// Per tile: the maximum of start().
   [[nodiscard]] const std::vector<float>& tile_start() const { return tile_start_; }
 
   [[nodiscard]] const SectorFrame& frame() const { return frame_; }
-  /// In the sensor's frame, metres.
+  /// The sector's origin in the sensor's frame, metres.
   [[nodiscard]] const Eigen::Vector3d& origin_m() const { return origin_m_; }
-  /// Half sizes of a box around the origin, in the sector's frame, that the beams' lines cross.
+  /// Half sizes of a box around the origin, in the sector's frame, that the lines of all beams
+  /// cross.
   [[nodiscard]] const Eigen::Vector3d& foot_m() const { return foot_m_; }
-  /// How far behind that crossing a beam may start.
+  /// Maximum distance behind that crossing at which a beam starts.
   [[nodiscard]] double behind_m() const { return behind_m_; }
-  /// From the origin to where a beam starts, at most.
+  /// Maximum distance from the origin to the start of a beam.
   [[nodiscard]] double distance_m() const { return distance_m_; }
 
  private:
@@ -97,7 +98,7 @@ class SectorTable {
   double distance_m_ = 0.0;
   std::uint32_t pitch_ = 1;
   std::vector<SectorRow> rows_;
-  std::vector<std::size_t> first_beam_;  ///< per row: of cell 0, were there one
+  std::vector<std::size_t> first_beam_;  ///< per row: of cell 0, which may have none
   std::vector<float> start_;
   std::vector<float> tile_start_;
   std::vector<double> exact_direction_[3];

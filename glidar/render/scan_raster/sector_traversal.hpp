@@ -5,10 +5,10 @@
 #include <glidar/render/rays/tree_traversal.hpp>
 #include <glidar/render/scan_raster/leaf_draw.hpp>
 
-// The walk of a sector through an instance's tree, near children first.
+// Traverses an instance's tree for a sector, near children first.
 namespace glidar::rays::GLIDAR_KERNEL {
 
-/// A node or leaf that is still to be visited.
+/// A node or leaf to visit.
 struct NodeVisit {
   float near;  ///< no beam meets it before, metres
   std::int32_t child;
@@ -74,7 +74,7 @@ struct ProjectedBoxes {
   }
 };
 
-/// What is still to be visited, the nearest on top.
+/// The nodes to visit, nearest on top.
 class VisitStack {
  public:
   GLIDAR_INLINE explicit VisitStack(const TileRect& all) { put(size_++, {0.0F, 0, all}); }
@@ -83,7 +83,7 @@ class VisitStack {
   GLIDAR_INLINE NodeVisit pop() { return visits_[--size_]; }
   [[nodiscard]] GLIDAR_INLINE unsigned size() const { return size_; }
 
-  /// Adds a visit among those from `bottom` on.
+  /// Inserts a visit among those from `bottom` on.
   GLIDAR_INLINE void push(unsigned bottom, const NodeVisit& visit) {
     unsigned place = size_++;
     for (; place > bottom && visits_[place - 1].near < visit.near; --place) {

@@ -13,7 +13,7 @@ void SectorWriter::take_beams(const SectorTable& sector, const RowRun& run, Work
   for (unsigned lane = 0; lane < kLanes; ++lane) {
     work.block.beam[lane] = run.first_beam + std::min(lane, run.count - 1);
   }
-  // Vectors are copied: those made of single numbers could not be read at once.
+  // Whole vectors are copied, since vectors written one number at a time are slow to load.
   Lanes3<double>& direction = work.beams.direction;
   const auto take = [&](int axis, Lanes<double>& component) {
     std::memcpy(&component, sector.exact_direction(axis) + run.first_cell, sizeof(component));
@@ -28,7 +28,7 @@ void SectorWriter::take_beams(const SectorTable& sector, const RowRun& run, Work
   }
 }
 
-/// Sets what the lanes of the mask found. Neighbours mostly found the same.
+/// Sets the hits of the mask's lanes. Neighbours mostly have the same triangle.
 void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, Work& work) {
   HitBlock& block = work.block;
   bool differs = false;
@@ -104,7 +104,7 @@ void SectorWriter::cast_rays(std::span<const std::size_t> some) {
   finish();
 }
 
-/// The block begun last is ready; the one before it goes a step on, the oldest is written.
+/// Advances the pipeline: prefetches for the batch before the last, and writes the oldest.
 void SectorWriter::advance() {
   if (begun_ >= 2) {
     target_.resolver.prefetch_corners(ring_[(begun_ - 2) % ring_.size()].block,

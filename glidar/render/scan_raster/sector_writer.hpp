@@ -12,7 +12,7 @@
 
 namespace glidar::scan_raster {
 
-/// What the writers of a cast share.
+/// Inputs that all writers of a cast share.
 struct HitTarget {
   const CastRequest& request;
   const Resolver& resolver;
@@ -20,18 +20,18 @@ struct HitTarget {
   Hits& hits;
 };
 
-/// Writes the hits of beams, some blocks at a time: what later steps read from memory comes while
-/// other blocks are worked on.
+/// Writes the hits of beams. Several batches are in progress at a time: data that later steps need
+/// are prefetched meanwhile.
 class SectorWriter {
  public:
   explicit SectorWriter(const HitTarget& target)
       : target_(target), with_corners_(needs_corners(target.request.fields)) {}
 
-  /// Hits and misses of all beams of a sector's rows. Cells handed over count as misses.
+  /// Hits and misses of all beams of a sector's rows. Deferred cells count as misses.
   void write_rows(const SectorTable& sector, const SectorBuffer& buffer,
                   const InstanceSlots& slots);
 
-  /// Hits of beams, cast as rays, over misses.
+  /// Casts beams as rays and writes their hits over misses.
   void cast_rays(std::span<const std::size_t> beams);
 
  private:
@@ -59,7 +59,7 @@ class SectorWriter {
 
   HitTarget target_;
   bool with_corners_;
-  std::uint32_t last_number_ = kNoSlotNumber;  ///< the cell before found this
+  std::uint32_t last_number_ = kNoSlotNumber;  ///< of the previous cell
   PrimitiveRef last_found_;
   std::array<Work, 3> ring_;
   std::size_t begun_ = 0;

@@ -4,7 +4,7 @@
 
 #include <glidar/render/scan_raster/cell_test.hpp>
 
-// How far a sector's tiles still look for something nearer.
+// Maximum distances in a sector's tiles, for occlusion tests.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 using scan_raster::kTileColumns;
@@ -25,7 +25,7 @@ GLIDAR_INLINE TileRect tiles_of(const CellRect& rect) {
           static_cast<std::uint16_t>(rect.last_row / static_cast<int>(kTileRows))};
 }
 
-/// The largest distance in a tile.
+/// The maximum distance in a tile.
 inline float farthest_in(const DrawContext& context, std::uint32_t row, std::uint32_t column) {
   const std::size_t pitch = context.grid.pitch;
   const float* high = context.buffer.high + std::size_t{row} * kTileRows * pitch +
@@ -36,7 +36,7 @@ inline float farthest_in(const DrawContext& context, std::uint32_t row, std::uin
   return -min_of(-largest);
 }
 
-/// True where some tile still looks for something at this distance.
+/// True where some tile may still have a hit at this distance.
 inline bool is_visible(const DrawContext& context, const TileRect& rect, float distance) {
   const SectorBuffer& buffer = context.buffer;
   for (std::uint32_t row = rect.first_row; row <= rect.last_row; ++row) {

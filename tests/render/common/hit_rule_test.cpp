@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The hit rule: watertight, independent of the order of corners and of the processor.
+// The hit rule is watertight, and independent of the order of corners and of the processor.
 // hit_rule_test.py compares it with rational arithmetic.
 #include <glidar/render/common/hit_rule.hpp>
 
@@ -64,7 +64,7 @@ TEST(HitRule, DistanceIsExactWhereNothingRounds) {
   EXPECT_EQ(distance_of({0.25, 0.25, 0}, {0, 0, 0.5}, triangle), 4.0) << "in lengths of d";
 }
 
-TEST(HitRule, BordersBelongToTheTriangle) {
+TEST(HitRule, EdgesBelongToTheTriangle) {
   const HitTriangle triangle = unit_triangle();
   for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.5, 0.0}, {0.5, 0.5}}) {
     EXPECT_EQ(distance_of({x, y, 0}, {0, 0, 1}, triangle), 2.0) << x << ' ' << y;
@@ -74,7 +74,7 @@ TEST(HitRule, BordersBelongToTheTriangle) {
   EXPECT_EQ(distance_of({0.5, 0.5 + 0x1p-53, 0}, {0, 0, 1}, triangle), 0.0);
 }
 
-TEST(HitRule, FromASurfaceTheSurfaceIsNotHit) {
+TEST(HitRule, AnOriginOnASurfaceDoesNotHitIt) {
   Numbers numbers(77);
   for (int i = 0; i < 20'000; ++i) {
     const double size = std::pow(10.0, numbers.in(-6.0, 6.0));
@@ -187,7 +187,7 @@ TEST(HitRule, ClosedFansDoNotLeakAtTheirVertices) {
     const Eigen::Vector3d vertex = fan.vertices[0].cast<double>();
     const Eigen::Vector3d origin =
         vertex + away * size * Eigen::Vector3d(numbers.in(-0.3, 0.3), numbers.in(-0.3, 0.3), -1.0);
-    // a sensor beyond 2^52 sizes sees the fan as a point
+    // a sensor beyond 2^52 sizes cannot resolve the fan
     if (away > 0x1p38) continue;
     ASSERT_NE(nearest_of_all(fan, aimed(origin, vertex)).primitive, UINT32_MAX)
         << "size " << size << ", " << away << " sizes away";
@@ -278,7 +278,7 @@ TEST(HitLimits, RaysOutsideThemHitNothingAndAreNamed) {
             "5.421010862427522e-20 to 18446744073709551616; make the direction a unit vector");
 }
 
-TEST(ExactProduct, DekkersErrorHasTheBitsOfAFusedMultiplyAdd) {
+TEST(ExactProduct, DekkersProductEqualsAFusedMultiplyAdd) {
   Numbers numbers(7);
   for (int i = 0; i < 1000000; ++i) {
     const double a = numbers.of_any_size(-240, 242);

@@ -13,7 +13,7 @@
 
 namespace glidar::testing {
 
-/// Random numbers that are the same on every machine.
+/// Random numbers with the same values on every machine.
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : engine_(seed) {}
@@ -22,7 +22,7 @@ class Numbers {
   double in(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11U) * 0x1p-53;
   }
-  /// Of any magnitude from 2^low to 2^high, of either sign.
+  /// A number of any magnitude from 2^low to 2^high, of either sign.
   double of_any_size(int low, int high) {
     const double size = std::ldexp(
         in(1.0, 2.0), low + static_cast<int>(below(static_cast<std::size_t>(high - low))));
@@ -52,7 +52,7 @@ inline TestRay aimed(const Eigen::Vector3d& origin, const Eigen::Vector3d& targe
   return {origin, (target - origin).normalized()};
 }
 
-/// Vertices and triangles, and nothing else.
+/// A mesh of vertices and triangles only.
 struct TestMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -82,7 +82,7 @@ TestMesh make_sphere(unsigned levels, double radius, const Eigen::Vector3d& cent
 TestMesh make_fan(std::uint32_t count, const Eigen::Vector3d& centre, double size,
                   Numbers& numbers);
 
-/// What a ray hits first by the rule, tested with every triangle; primitive UINT32_MAX: nothing.
+/// The first hit of a ray by the rule, from a test of every triangle; primitive UINT32_MAX: none.
 HitCandidate nearest_of_all(const TestMesh& mesh, const TestRay& ray);
 
 }  // namespace glidar::testing

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Through trees, packets and single-precision filters, beams find what the hit rule finds among all
+// Trees, packets and filters in single precision find the same hits as the hit rule applied to all
 // triangles of all instances.
 #include <glidar/render/rays/scene_search.hpp>
 
@@ -48,7 +48,7 @@ class Stage {
     return found;
   }
 
-  /// The same by the rule alone: the least distance, then the lowest of those that tie with it.
+  /// The same by the rule alone: the smallest distance, then the lowest of those that tie with it.
   std::vector<PrimitiveRef> search_by_rule() {
     prepare();
     std::vector<PrimitiveRef> found(beams.size());
@@ -164,7 +164,7 @@ Beams some_beams(std::size_t count, bool has_origins, bool is_coherent, std::uin
   return loose_beams(directions, origins);
 }
 
-TEST(BeamSearch, FindsWhatTheRuleFindsAmongManyInstances) {
+TEST(BeamSearch, EqualsTheRuleAmongManyInstances) {
   for (const bool has_origins : {false, true}) {
     for (const bool is_coherent : {false, true}) {
       const std::uint64_t seed = 2 * static_cast<unsigned>(has_origins) + 1;
@@ -186,7 +186,7 @@ TEST(BeamSearch, IsExactAMillionKilometresFromTheWorldsOrigin) {
   EXPECT_EQ(found, stage.search_by_rule());
 }
 
-TEST(BeamSearch, FindsTheFarAmongTheNearAndTheSmallAmongTheVast) {
+TEST(BeamSearch, IsExactForSmallAndDistantAmongLargeAndNearObjects) {
   Scene scene = crowd(20, 5, Eigen::Vector3d::Zero());
   for (const auto& [scale, distance_m] : {std::pair{6.4e6, 6.5e6}, {1e-3, 8.0}, {50.0, 1e5}}) {
     Instance instance = scene.instances[0];  // a torus: many triangles
@@ -200,7 +200,7 @@ TEST(BeamSearch, FindsTheFarAmongTheNearAndTheSmallAmongTheVast) {
   EXPECT_EQ(found, stage.search_by_rule());
 }
 
-TEST(BeamSearch, SkipsWhatIsAbsentAndCullsBackFaces) {
+TEST(BeamSearch, SkipsDisabledInstancesAndCullsBackFaces) {
   for (const bool culls : {false, true}) {
     Stage stage(crowd(40, 6, Eigen::Vector3d::Zero()), some_beams(320, false, true, 7),
                 Pose::Identity(), culls);
@@ -213,8 +213,8 @@ TEST(BeamSearch, SkipsWhatIsAbsentAndCullsBackFaces) {
   }
 }
 
-TEST(BeamSearch, OfTilesOnEachOtherItReportsTheLowest) {
-  // The same square cut in other ways, placed by other poses: distances differ by rounding.
+TEST(BeamSearch, ReportsTheLowestOfCoincidentTiles) {
+  // The same square with other triangles and poses: distances differ by rounding.
   Scene scene = builtin_scene("plane");
   const Instance one = scene.instances[0];
   Draws draws(8);
@@ -235,7 +235,7 @@ TEST(BeamSearch, OfTilesOnEachOtherItReportsTheLowest) {
   EXPECT_EQ(found, stage.search_by_rule());
 }
 
-/// A square whose halves are stitched along its diagonal by a triangle of this width.
+/// A square whose halves are connected along its diagonal by a triangle of this width.
 Scene stitched_square(float width) {
   Scene scene = builtin_scene("plane");
   Mesh& mesh = scene.meshes[0];
@@ -245,7 +245,7 @@ Scene stitched_square(float width) {
   return scene;
 }
 
-TEST(BeamSearch, NoneLeaksWhereATriangleWithoutWidthStitchesOthers) {
+TEST(BeamSearch, NoBeamLeaksAtATriangleWithoutWidth) {
   Draws draws(13);
   for (const float width : {1e-3F, 1e-9F, 1e-11F, 1e-12F, 1e-14F, 1e-30F, 0.0F}) {
     std::vector<Eigen::Vector3d> directions;
@@ -274,7 +274,7 @@ TEST(BeamSearch, FollowsInstancesAndSensorsThatMove) {
   }
 }
 
-TEST(BeamSearch, FollowsTheFewOfManyInstancesThatMove) {
+TEST(BeamSearch, FollowsFewMovingInstancesAmongMany) {
   Stage stage(crowd(60, 14, Eigen::Vector3d::Zero()), some_beams(160, false, true, 15),
               Pose::Identity());
   Draws draws(16);
@@ -289,7 +289,7 @@ TEST(BeamSearch, FollowsTheFewOfManyInstancesThatMove) {
   }
 }
 
-TEST(BeamSearch, FindsNothingInAnEmptySceneAndAlongBeamsThatAreNotNumbers) {
+TEST(BeamSearch, FindsNothingInAnEmptySceneOrForNanBeams) {
   Scene empty = builtin_scene("box");
   empty.instances.clear();
   Stage none(empty, some_beams(20, false, true, 11), Pose::Identity());

@@ -90,7 +90,7 @@ class BoxTreeTest : public ::testing::Test {
   std::vector<BoxReference> boxes;
 };
 
-TEST_F(BoxTreeTest, FitsBoxesThatMove) {
+TEST_F(BoxTreeTest, RefitsMovedBoxes) {
   Draws draws(1);
   for (std::uint32_t i = 0; i < kBoxes; ++i) {
     boxes.push_back(cube_at(30.0 * draws.next() * draws.direction(), i));
@@ -103,7 +103,7 @@ TEST_F(BoxTreeTest, FitsBoxesThatMove) {
   }
 }
 
-TEST_F(BoxTreeTest, IsWornWhenBoxesHaveMovedFar) {
+TEST_F(BoxTreeTest, NeedsRebuildWhenBoxesHaveMovedFar) {
   for (std::uint32_t i = 0; i < kBoxes; ++i) boxes.push_back(cube_at({3.0 * i, 0.0, 0.0}, i));
   build();
   EXPECT_FALSE(tree.needs_rebuild());
@@ -115,7 +115,7 @@ TEST_F(BoxTreeTest, IsWornWhenBoxesHaveMovedFar) {
   EXPECT_FALSE(tree.needs_rebuild());
 }
 
-TEST_F(BoxTreeTest, HoldsASingleBox) {
+TEST_F(BoxTreeTest, AcceptsASingleBox) {
   boxes = {cube_at({1.0, 2.0, 3.0}, 5)};
   tree.build(boxes, 6, thread_pool);
   boxes[0] = cube_at({-100.0, 2.0, 3.0}, 5);

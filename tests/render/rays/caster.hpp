@@ -33,13 +33,13 @@ struct FlatClusters {
   [[nodiscard]] TreeView view() const { return {nullptr, clusters.data(), blocks.data()}; }
 };
 
-/// What traced rays hit.
+/// Hits of traced rays.
 struct Traced {
   std::vector<HitCandidate> hits;  ///< one per ray; primitive kNoTriangle: nothing, at distance 0
-  std::size_t exact_tests = 0;     ///< how often the rule was applied
+  std::size_t exact_tests = 0;     ///< number of applications of the rule
 };
 
-/// What is traced through, and how.
+/// What to trace, and how.
 struct Tracer {
   const Kernel& kernel;
   MeshSphere sphere;
@@ -47,10 +47,10 @@ struct Tracer {
   std::function<void(RayPacket&)> trace;
 };
 
-/// Cuts rays into packets of up to `size` and traces them.
+/// Divides rays into packets of up to `size` and traces them.
 Traced trace_packets(std::span<const TestRay> rays, unsigned size, const Tracer& tracer);
 
-/// What the rule alone finds, without any filter.
+/// Hits by the rule alone, without any filter.
 std::vector<HitCandidate> trace_by_rule(const TestMesh& mesh, std::span<const TestRay> rays);
 
 inline bool are_equal(const HitCandidate& a, const HitCandidate& b) {
@@ -58,7 +58,7 @@ inline bool are_equal(const HitCandidate& a, const HitCandidate& b) {
          std::bit_cast<std::uint64_t>(a.distance) == std::bit_cast<std::uint64_t>(b.distance);
 }
 
-/// How many rays hit something else in `b`, to the bit.
+/// Number of rays whose hits differ in any bit.
 std::size_t differences(const std::vector<HitCandidate>& a, const std::vector<HitCandidate>& b);
 
 }  // namespace glidar::rays::testing

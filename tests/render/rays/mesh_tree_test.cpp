@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What rays hit depends on the mesh alone: not on tree, packet, kernel or threads.
+// Hits depend on the mesh alone: not on tree, packet, kernel or threads.
 #include <glidar/render/rays/mesh_tree.hpp>
 #include <render/rays/caster.hpp>
 #include <support/error_text.hpp>
@@ -49,7 +49,7 @@ std::uint64_t hash_of(const std::vector<HitCandidate>& hits) {
   return hash;
 }
 
-/// Rays at vertices and edges of a mesh from one place, and some beside it.
+/// Rays at vertices and edges of a mesh from one point, and some beside them.
 std::vector<TestRay> aimed_rays(const TestMesh& mesh, const Eigen::Vector3d& origin,
                                 std::size_t count, Numbers& numbers) {
   std::vector<TestRay> rays;
@@ -61,7 +61,7 @@ std::vector<TestRay> aimed_rays(const TestMesh& mesh, const Eigen::Vector3d& ori
   return rays;
 }
 
-/// A picture: neighbouring rays are similar, as of a camera.
+/// An image: neighbouring rays are similar, as those of a camera.
 std::vector<TestRay> picture(const Eigen::Vector3d& origin, unsigned side) {
   std::vector<TestRay> rays;
   for (unsigned tile = 0; tile < side * side / 16; ++tile) {
@@ -104,7 +104,7 @@ TestMesh crowded_mesh(Numbers& numbers) {
   return mesh;
 }
 
-TEST(MeshTree, FindsWhatTheRuleFindsAmongAllTriangles) {
+TEST(MeshTree, EqualsTheRuleForAllTriangles) {
   Numbers numbers(30);
   const TestMesh mesh = crowded_mesh(numbers);
   const MeshTree tree = tree_of(mesh);
@@ -219,7 +219,7 @@ TEST(MeshTree, ASensorOnAVertexSeesNeitherThatVertexNorThroughTheMesh) {
   }
 }
 
-TEST(MeshTree, HoldsMeshesOfEverySize) {
+TEST(MeshTree, AcceptsMeshesOfEverySize) {
   Numbers numbers(35);
   for (const std::uint32_t count : {0U, 1U, 2U, 8U, 9U, 63U, 65U, 700U}) {
     TestMesh mesh = make_sphere(3, 1.0, Eigen::Vector3d::Zero());
@@ -235,7 +235,7 @@ TEST(MeshTree, HoldsMeshesOfEverySize) {
   }
 }
 
-TEST(MeshTree, ManyTrianglesInOnePlaceAreHeldToo) {
+TEST(MeshTree, AcceptsManyTrianglesAtOnePosition) {
   TestMesh mesh;
   mesh.vertices = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   mesh.triangles.assign(5000, {0, 1, 2});
@@ -246,7 +246,7 @@ TEST(MeshTree, ManyTrianglesInOnePlaceAreHeldToo) {
   EXPECT_EQ(traced.hits[1].primitive, kNoTriangle);
 }
 
-TEST(MeshTree, IsNoDeeperThanTheStackOfTheKernels) {
+TEST(MeshTree, ItsDepthIsWithinTheStackOfTheKernels) {
   TestMesh mesh;  // triangles that halve in size: each cut takes few of them
   for (std::uint32_t i = 0; i < 240; ++i) {
     const float size = std::ldexp(1.0F, 90 - static_cast<int>(i));

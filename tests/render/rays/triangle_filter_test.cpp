@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Filter and rule together find what the rule alone finds, to the bit, with every kernel. The
-// library asserts meanwhile that the rule never refuses what the filter was sure of.
+// Filter and rule together equal the rule alone, bit for bit, with every kernel. The
+// library asserts that the rule never rejects a triangle that the filter accepted.
 #include <render/rays/caster.hpp>
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ Traced trace_flat(const FlatClusters& flat, const Case& c, const Kernel& kernel,
                                       }});
 }
 
-/// Rays from one place, or each from its own; a third at vertices and edges, a third near them,
+/// Rays from one point, or from separate ones; a third at vertices and edges, a third near them,
 /// some along edges, where triangles are seen edge-on.
 std::vector<TestRay> make_rays(const TestMesh& mesh, std::size_t count, double distance,
                                bool is_common, Numbers& numbers) {
@@ -110,7 +110,7 @@ std::vector<Case> make_cases() {
 
 class TriangleFilter : public ::testing::TestWithParam<const Kernel*> {};
 
-TEST_P(TriangleFilter, WithTheRuleFindsWhatTheRuleAloneFinds) {
+TEST_P(TriangleFilter, EqualsTheRule) {
   for (const Case& c : make_cases()) {
     const std::vector<HitCandidate> expected = trace_by_rule(c.mesh, c.rays);
     const auto misses = std::count_if(expected.begin(), expected.end(),

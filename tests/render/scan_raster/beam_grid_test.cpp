@@ -28,7 +28,7 @@ Beams preset_beams(const char* name) {
   return make_beams(load_sensor_file(find_sensor_file(name)));
 }
 
-TEST(BeamGrid, TakesSpinningAndLineScannerPresets) {
+TEST(BeamGrid, AcceptsSpinningAndLineScannerPresets) {
   for (const char* name : {"VLP-16", "VLP-32C", "HDL-32E", "HDL-64E-S3", "OS1-64", "OS0-128",
                            "Pandar64", "XT32", "UTM-30LX", "TiM781"}) {
     const Beams beams = preset_beams(name);
@@ -38,7 +38,7 @@ TEST(BeamGrid, TakesSpinningAndLineScannerPresets) {
   }
 }
 
-TEST(BeamGrid, RefusesBeamsWithoutRowsOrColumns) {
+TEST(BeamGrid, RejectsBeamsWithoutRowsOrColumns) {
   Draws draws(1);
   Beams random = scanner_beams({});
   for (Eigen::Vector3d& direction : random.directions) direction = draws.direction();
@@ -48,7 +48,7 @@ TEST(BeamGrid, RefusesBeamsWithoutRowsOrColumns) {
   }
 }
 
-TEST(BeamGrid, TakesCamerasOfAllLenses) {
+TEST(BeamGrid, AcceptsCamerasWithAllLenses) {
   for (const char* name : {"Azure-Kinect-NFOV", "Azure-Kinect-NFOV-2x2", "Azure-Kinect-WFOV",
                            "Azure-Kinect-WFOV-2x2", "Kinect-v2", "D435"}) {
     const Beams beams = preset_beams(name);
@@ -60,7 +60,7 @@ TEST(BeamGrid, TakesCamerasOfAllLenses) {
   }
 }
 
-TEST(BeamGrid, RefusesCamerasThatAreNoPicture) {
+TEST(BeamGrid, RejectsCamerasWithoutASmoothImage) {
   Draws draws(1);
   Beams random = testing::camera_beams(64, 48, 50.0);
   random.pinhole.reset();

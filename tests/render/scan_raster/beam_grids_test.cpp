@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids are kept for beams that come again, and for no others.
+// Grids are cached for the same beams only.
 #include <glidar/render/scan_raster/beam_grids.hpp>
 
 #include <render/scan_raster/scanner.hpp>
@@ -11,7 +11,7 @@ namespace {
 using testing::camera_beams;
 using testing::scanner_beams;
 
-TEST(BeamGrids, KeepsTheGridsOfSensorsThatTakeTurns) {
+TEST(BeamGrids, CachesTheGridsOfAlternatingSensors) {
   ThreadPool thread_pool(1);
   BeamGrids grids;
   const std::vector<Beams> sensors = {scanner_beams({}), camera_beams(64, 48, 50.0),
@@ -25,7 +25,7 @@ TEST(BeamGrids, KeepsTheGridsOfSensorsThatTakeTurns) {
   }
 }
 
-TEST(BeamGrids, MeasuresAnewWhenOneBitOfABeamChanges) {
+TEST(BeamGrids, MeasuresAgainWhenOneBitOfABeamChanges) {
   ThreadPool thread_pool(1);
   BeamGrids grids;
   Beams beams = scanner_beams({});

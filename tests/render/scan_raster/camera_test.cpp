@@ -35,7 +35,7 @@ Beams lens_beams(std::uint32_t width, std::uint32_t height, double focal_px,
                             .distortion = distortion});
 }
 
-/// A pinhole whose structure is not known.
+/// A pinhole without stored intrinsics.
 Beams plain_beams(std::uint32_t width, std::uint32_t height, double focal_px) {
   Beams beams = testing::camera_beams(width, height, focal_px);
   beams.pinhole.reset();
@@ -63,7 +63,7 @@ std::vector<Beams> cameras() {
   return all;
 }
 
-TEST(CameraRaster, SeesARoundBodyFromInsideAndOutside) {
+TEST(CameraRaster, EqualsRaysInsideAndOutsideOfASphere) {
   const std::vector<Beams> all = cameras();
   for (const char* model : {"asteroid", "torus", "sphere", "box"}) {
     const Scene scene = builtin_scene(model);
@@ -76,7 +76,7 @@ TEST(CameraRaster, SeesARoundBodyFromInsideAndOutside) {
   }
 }
 
-TEST(CameraRaster, TakesAllDistortingPresets) {
+TEST(CameraRaster, EqualsRaysForAllDistortingPresets) {
   const Scene room = make_room();
   for (const char* name : {"Azure-Kinect-NFOV", "Azure-Kinect-NFOV-2x2", "Azure-Kinect-WFOV",
                            "Azure-Kinect-WFOV-2x2", "Kinect-v2"}) {
@@ -87,7 +87,7 @@ TEST(CameraRaster, TakesAllDistortingPresets) {
   }
 }
 
-TEST(CameraRaster, SeesTrianglesOfAllSizesAcrossItsPlane) {
+TEST(CameraRaster, EqualsRaysForTrianglesAcrossItsPlane) {
   Draws draws(5);
   const std::vector<Beams> all = cameras();
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
@@ -100,7 +100,7 @@ TEST(CameraRaster, SeesTrianglesOfAllSizesAcrossItsPlane) {
   }
 }
 
-TEST(CameraRaster, StartsOnVerticesAndInThePlanesOfTriangles) {
+TEST(CameraRaster, EqualsRaysFromVerticesAndInPlanesOfTriangles) {
   const Scene room = make_room();
   const Beams beams = lens_beams(97, 80, 50.0, RadialTangential{.k1 = -0.2, .k2 = 0.03});
   for (const Instance& instance : room.instances) {
@@ -127,7 +127,7 @@ TEST(CameraRaster, FindsTheLowestOfCoincidentSurfacesOfManyInstances) {
   for (const Beams& beams : cameras()) expect_same_as_rays(scene, beams, from);
 }
 
-TEST(CameraRaster, KeepsBitsFarFromTheWorldsOriginAndFromTheObject) {
+TEST(CameraRaster, IsExactFarFromTheWorldsOriginAndFromTheObject) {
   const Scene near = builtin_scene("asteroid");
   Scene far = near;
   const Eigen::Vector3d offset(1e9, -2e9, 5e8);
@@ -150,7 +150,7 @@ TEST(CameraRaster, KeepsBitsFarFromTheWorldsOriginAndFromTheObject) {
   expect_same_as_rays(huge, beams, at(1.5e-9));
 }
 
-TEST(CameraRaster, CullsBackFacesAndLooksThroughMasks) {
+TEST(CameraRaster, CullsBackFacesAndAppliesAlphaMasks) {
   const Beams beams = lens_beams(120, 90, 60.0, Fisheye{.k1 = 0.1});
   Scene room = make_room();
   const Pose pose = turned(0.0, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.2});
@@ -179,7 +179,7 @@ TEST(CameraRaster, MissesPixelsWithoutABeam) {
   EXPECT_EQ(expect_same_as_rays(room, none, Pose::Identity()), 0U);
 }
 
-TEST(CameraRaster, TakesDirectionsWithRandomErrors) {
+TEST(CameraRaster, EqualsRaysForDirectionsWithRandomErrors) {
   const Scene room = make_room();
   Draws draws(9);
   for (const double error_px : {0.2, 1.0, 3.0}) {
@@ -187,7 +187,7 @@ TEST(CameraRaster, TakesDirectionsWithRandomErrors) {
     for (Eigen::Vector3d& d : beams.directions) {
       d = (d + error_px / 100.0 * draws.next() * draws.direction()).normalized();
     }
-    // Here half of the picture is no picture.
+    // Here half of the image has random directions.
     for (std::size_t i = 0; i < beams.size() / 3; ++i) beams.directions[i] = draws.direction();
     if (error_px < 2.0) {
       EXPECT_GT(expect_same_as_rays(room, beams, Pose::Identity()), 0U);
@@ -195,7 +195,7 @@ TEST(CameraRaster, TakesDirectionsWithRandomErrors) {
   }
 }
 
-TEST(CameraRaster, TakesRepeatedRows) {
+TEST(CameraRaster, EqualsRaysForRepeatedRows) {
   Beams beams = lens_beams(100, 70, 60.0, Fisheye{});
   const std::vector<Eigen::Vector3d> once = beams.directions;
   beams.directions.insert(beams.directions.end(), once.begin(), once.end());
@@ -222,7 +222,7 @@ TEST(CameraRaster, ReportsEveryBeamOnceAndAllProgress) {
   EXPECT_EQ(progress, 1.0);
 }
 
-TEST(CameraRaster, KeepsNothingOfBeamsThatChangedInPlace) {
+TEST(CameraRaster, DetectsBeamsThatChangedInPlace) {
   const Scene room = make_room();
   Beams beams = lens_beams(100, 70, 60.0, Fisheye{});
   const auto raster = make_renderer(room, {.kind = "raster", .threads = 2});
@@ -248,7 +248,7 @@ TEST(CameraRaster, HasTheSameBitsWithEveryInstructionSet) {
   unsetenv("GLIDAR_ISA");
 }
 
-TEST(CameraRaster, RefusesCamerasThatAreNoPictureOrMove) {
+TEST(CameraRaster, RejectsCamerasThatMoveOrHaveNoSmoothImage) {
   const Scene room = make_room();
   Draws draws(8);
   Beams random = plain_beams(64, 48, 50.0);

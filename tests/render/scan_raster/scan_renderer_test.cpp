@@ -38,7 +38,7 @@ std::vector<Scanner> scanners() {
           {.rows = 21, .cols = 200, .span_rad = 3.0 * std::numbers::pi}};
 }
 
-TEST(ScanRenderer, SeesARoundBodyFromInsideAndOutside) {
+TEST(ScanRenderer, EqualsRaysInsideAndOutsideOfASphere) {
   for (const char* model : {"asteroid", "torus", "sphere", "box"}) {
     const Scene scene = builtin_scene(model);
     const Beams beams = scanner_beams({});
@@ -50,7 +50,7 @@ TEST(ScanRenderer, SeesARoundBodyFromInsideAndOutside) {
   }
 }
 
-TEST(ScanRenderer, TakesGridsOfAllKinds) {
+TEST(ScanRenderer, EqualsRaysForGridsOfAllKinds) {
   const Scene room = make_room();
   const Scene soup = make_soup(3, 500, 4.0);
   for (const Scanner& scanner : scanners()) {
@@ -61,7 +61,7 @@ TEST(ScanRenderer, TakesGridsOfAllKinds) {
   }
 }
 
-TEST(ScanRenderer, TakesRandomOriginsInSoups) {
+TEST(ScanRenderer, EqualsRaysForRandomOriginsInTriangleSoups) {
   Draws draws(5);
   const Beams beams = scanner_beams({.rows = 24, .cols = 240, .uneven = 0.3});
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
@@ -72,7 +72,7 @@ TEST(ScanRenderer, TakesRandomOriginsInSoups) {
   }
 }
 
-TEST(ScanRenderer, StartsOnVerticesAndInThePlanesOfTriangles) {
+TEST(ScanRenderer, EqualsRaysFromVerticesAndInPlanesOfTriangles) {
   const Scene room = make_room();
   const Beams beams = scanner_beams({.rows = 17, .cols = 360, .low_rad = -0.4, .high_rad = 0.4});
   for (std::uint32_t i = 0; i < room.instances.size(); ++i) {
@@ -103,7 +103,7 @@ TEST(ScanRenderer, FindsTheLowestOfCoincidentSurfacesOfSeveralInstances) {
   }
 }
 
-TEST(ScanRenderer, KeepsBitsFarFromTheWorldsOriginAndFromTheObject) {
+TEST(ScanRenderer, IsExactFarFromTheWorldsOriginAndFromTheObject) {
   const Scene near = builtin_scene("asteroid");
   Scene far = near;
   const Eigen::Vector3d offset(1e9, -2e9, 5e8);
@@ -131,7 +131,7 @@ TEST(ScanRenderer, KeepsBitsFarFromTheWorldsOriginAndFromTheObject) {
   expect_same_as_rays(huge, beams, at(-1.5e-9, 0.0, 0.0));
 }
 
-TEST(ScanRenderer, CullsBackFacesAndLooksThroughMasks) {
+TEST(ScanRenderer, CullsBackFacesAndAppliesAlphaMasks) {
   const Beams beams = scanner_beams({.rows = 16, .cols = 300});
   Scene room = make_room();
   EXPECT_GT(expect_same_as_rays(room, {.beams = beams,
@@ -143,7 +143,7 @@ TEST(ScanRenderer, CullsBackFacesAndLooksThroughMasks) {
   expect_same_as_rays(room, beams, at(0.0, 0.0, 0.2));
 }
 
-TEST(ScanRenderer, LeavesOutInstancesThatAreNotThereAndMovesTheOthers) {
+TEST(ScanRenderer, SkipsDisabledInstancesAndMovesTheOthers) {
   const Scene room = make_room();
   const Beams beams = scanner_beams({.rows = 16, .cols = 300});
   std::vector<std::uint8_t> present(room.instances.size(), 1);
@@ -162,7 +162,7 @@ TEST(ScanRenderer, LeavesOutInstancesThatAreNotThereAndMovesTheOthers) {
   EXPECT_EQ(expect_same_as_rays(room, request), 0U);
 }
 
-TEST(ScanRenderer, MissesWhereThereIsNoBeam) {
+TEST(ScanRenderer, CellsWithoutABeamAreMisses) {
   const Scene room = make_room();
   Beams beams = scanner_beams({.rows = 16, .cols = 300});
   Draws draws(8);
@@ -175,7 +175,7 @@ TEST(ScanRenderer, MissesWhereThereIsNoBeam) {
   EXPECT_GT(expect_same_as_rays(room, beams, at(0.0, 0.0, 0.2)), 0U);
 }
 
-TEST(ScanRenderer, TakesRepeatedRowsAndSteepRows) {
+TEST(ScanRenderer, EqualsRaysForRepeatedAndSteepRows) {
   const Scene room = make_room();
   Beams beams = scanner_beams({.rows = 16, .cols = 300, .low_rad = -0.3, .high_rad = 1.5});
   const std::vector<Eigen::Vector3d> once = beams.directions;
@@ -185,7 +185,7 @@ TEST(ScanRenderer, TakesRepeatedRowsAndSteepRows) {
   EXPECT_GT(expect_same_as_rays(room, beams, at(0.0, 0.0, 0.2)), 0U);
 }
 
-TEST(ScanRenderer, TakesBeamsWithOriginsOfTheirOwn) {
+TEST(ScanRenderer, EqualsRaysForBeamsWithSeparateOrigins) {
   const Scene room = make_room();
   const Scene soup = make_soup(9, 500, 4.0);
   for (const double origin_m : {1e-9, 0.05, 3.0}) {
@@ -200,7 +200,7 @@ TEST(ScanRenderer, TakesBeamsWithOriginsOfTheirOwn) {
   }
 }
 
-TEST(ScanRenderer, KeepsNothingOfBeamsThatChangedInPlace) {
+TEST(ScanRenderer, DetectsBeamsThatChangedInPlace) {
   const Scene room = make_room();
   Beams beams = scanner_beams({.rows = 16, .cols = 300});
   const auto raster = make_renderer(room, {.kind = "raster", .threads = 2});
@@ -249,7 +249,7 @@ TEST(ScanRenderer, HasTheSameBitsWithEveryInstructionSet) {
   }
 }
 
-TEST(ScanRenderer, RefusesBeamsThatFormNoGrid) {
+TEST(ScanRenderer, RejectsBeamsThatFormNoGrid) {
   const Scene room = make_room();
   Draws draws(8);
   Beams beams = scanner_beams({.rows = 16, .cols = 300});

@@ -19,7 +19,7 @@ struct Scanner {
   double span_rad = 2.0 * std::numbers::pi;  ///< below zero: clockwise
   double stagger_rad = 0.0;                  ///< azimuth from one row to another, of four
   double uneven = 0.0;                       ///< random errors of all angles, of a column's width
-  double origin_m = 0.0;                     ///< random origins, each coordinate up to this
+  double origin_m = 0.0;                     ///< maximum random coordinate of origins
 };
 
 inline Beams scanner_beams(const Scanner& s, std::uint64_t seed = 1) {

@@ -9,7 +9,7 @@
 
 namespace glidar::testing {
 
-/// A room of 8 m x 8 m x 4 m with things in it, seen from its middle.
+/// A room of 8 m x 8 m x 4 m with objects, seen from its middle.
 Scene make_room();
 
 /// Triangles of all shapes anywhere in a cube: needles, duplicates, some without area.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Places the corners of triangles in the picture.
+// Projects the corners of triangles into the image.
 
 layout(location = 0) in vec3 position;  // relative to the mesh's origin
 uniform mat4 clip_from_object;

@@ -106,7 +106,7 @@ Shares shares() {
                 luminance(specular * gloss));
 }
 #else
-// The same everywhere, so it comes worked out.
+// Constant, so it is computed on the CPU.
 uniform vec3 plain_shares;
 
 float cosine_to_ray(float squared) {

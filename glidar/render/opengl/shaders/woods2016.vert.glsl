@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Places the corners of triangles in the picture, with all that their shading needs.
+// Projects the corners of triangles into the image, with all inputs of their shading.
 
 layout(location = 0) in vec3 position;  // relative to the mesh's origin
 layout(location = 3) in vec3 normal;
