@@ -215,10 +215,11 @@ void fill_return(const Source& s, Column& column) {
 }
 
 void fill_return_source(const Source& s, Column& column) {
-  const std::vector<ReturnSource>& causes = s.frame.return_source;
+  const std::vector<ReturnSource>& sources = s.frame.return_source;
   fill_each<std::uint8_t>(s, column, [&](std::size_t i) {
-    const ReturnSource told = causes.empty() ? ReturnSource::surface : causes[i];
-    return static_cast<std::uint8_t>(s.frame.status[i] == Status::hit ? told : ReturnSource::none);
+    const ReturnSource source = sources.empty() ? ReturnSource::surface : sources[i];
+    return static_cast<std::uint8_t>(s.frame.status[i] == Status::hit ? source
+                                                                      : ReturnSource::none);
   });
 }
 
@@ -320,15 +321,15 @@ const ColumnKind& kind_named(std::string_view name) {
 
 /// True if the frame has the hit columns that the cloud column requires.
 bool has(const Frame& frame, const HitFieldMask& needs) {
-  const Hits& truth = frame.ground_truth;
+  const Hits& hits = frame.ground_truth;
   const std::size_t size = frame.range_m.size();
   const auto kept = [size](bool needed, std::size_t found) { return !needed || found == size; };
-  return kept(needs.normal, truth.normal.size()) &&
-         kept(needs.shading_normal, truth.shading_normal.size()) &&
-         kept(needs.incidence, truth.cos_incidence.size()) &&
-         kept(needs.barycentrics, truth.barycentrics.size()) &&
-         kept(needs.colour, truth.colour.size()) &&
-         kept(needs.object_point, truth.object_point_m.size()) &&
+  return kept(needs.normal, hits.normal.size()) &&
+         kept(needs.shading_normal, hits.shading_normal.size()) &&
+         kept(needs.incidence, hits.cos_incidence.size()) &&
+         kept(needs.barycentrics, hits.barycentrics.size()) &&
+         kept(needs.colour, hits.colour.size()) &&
+         kept(needs.object_point, hits.object_point_m.size()) &&
          kept(needs.poses, frame.beam_poses.world_from_sensor.size());
 }
 

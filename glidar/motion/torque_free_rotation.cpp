@@ -148,7 +148,7 @@ struct TorqueFreeRotation::Solution {
   double phase_rate = 0.0;  ///< of the elliptic functions' argument (37.9)
   double phase0 = 0.0;      ///< at t0
   double turn_rate = 0.0;   ///< about L, for dn = 1
-  double wobble = 0.0;      ///< amplitude of the correction, see turn()
+  double correction = 0.0;  ///< amplitude of the correction, see turn()
   IntegralTable integral;   ///< over a quarter period, see turn()
   double integral0 = 0.0;   ///< at t0
   Matrix3d world_from_momentum;
@@ -164,7 +164,7 @@ struct TorqueFreeRotation::Solution {
   [[nodiscard]] double integral_to(double phase) const;
   [[nodiscard]] double turn(double seconds) const;
   [[nodiscard]] Matrix3d momentum_from_ordered(double phase) const;
-  void find_turn(double below);
+  void compute_turn_constants(double below);
 };
 
 Vector3d TorqueFreeRotation::Solution::rate(double phase) const {
@@ -184,20 +184,21 @@ double TorqueFreeRotation::Solution::integral_to(double phase) const {
 /// and (2 E I3 - L^2) / L^2 a3 (1 - dn) / ((1 + l3) (1 + I3 a3 / L)), where 1 - dn = m sn^2 / (1 +
 /// dn): nothing cancels, even if the phase hardly changes.
 double TorqueFreeRotation::Solution::turn(double seconds) const {
-  return turn_rate * (unit * seconds) + wobble * (integral_to(phase(seconds)) - integral0);
+  return turn_rate * (unit * seconds) + correction * (integral_to(phase(seconds)) - integral0);
 }
 
 /// `below` is 2 E I3 - L^2.
-void TorqueFreeRotation::Solution::find_turn(double below) {
+void TorqueFreeRotation::Solution::compute_turn_constants(double below) {
   const Vector3d w = rate(phase0);
   const double momentum = moments.cwiseProduct(w).norm();
-  const double lean = moments[2] * amplitude[2] / momentum;
+  const double third_axis_share = moments[2] * amplitude[2] / momentum;
   const double energy2 = w.dot(moments.cwiseProduct(w));
-  turn_rate = (energy2 / momentum + amplitude[2]) / (1.0 + lean);
-  wobble = below / (momentum * momentum) * amplitude[2] * modulus.m / ((1.0 + lean) * phase_rate);
+  turn_rate = (energy2 / momentum + amplitude[2]) / (1.0 + third_axis_share);
+  correction = below / (momentum * momentum) * amplitude[2] * modulus.m /
+               ((1.0 + third_axis_share) * phase_rate);
   const auto rest = [&](double u) {
     const JacobiValues j = jacobi(modulus, u);
-    return j.sn * j.sn / ((1.0 + j.dn) * (1.0 + lean * j.dn));
+    return j.sn * j.sn / ((1.0 + j.dn) * (1.0 + third_axis_share * j.dn));
   };
   integral = IntegralTable(modulus.quarter_period, FunctionRef<double(double)>(rest));
   integral0 = integral_to(phase0);
@@ -230,7 +231,7 @@ TorqueFreeRotation::Solution::Solution(const Vector3d& principal_moments,
   const double cn = w[0] / amplitude[0];
   const double length = std::sqrt(sn * sn + cn * cn);  // 1 up to rounding
   phase0 = elliptic_f(modulus, sn / length, cn / length);
-  find_turn(below);
+  compute_turn_constants(below);
   world_from_momentum =
       world_from_principal * (momentum_from_ordered(phase0) * ordered_from_principal).transpose();
 }

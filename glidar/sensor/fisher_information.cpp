@@ -81,9 +81,9 @@ class Returns {
  private:
   [[nodiscard]] double sigma(std::size_t beam) const {
     if (frame_.sigma_m.empty()) return options_.sigma_m;
-    const double told = frame_.sigma_m[beam];
-    if (told > 0.0 && std::isfinite(told)) return told;
-    fail("pose information, sigma", std::to_string(told) + " m at beam " + std::to_string(beam),
+    const double sigma_m = frame_.sigma_m[beam];
+    if (sigma_m > 0.0 && std::isfinite(sigma_m)) return sigma_m;
+    fail("pose information, sigma", std::to_string(sigma_m) + " m at beam " + std::to_string(beam),
          "a standard deviation above 0 for every return");
   }
 

@@ -20,25 +20,25 @@ inline double attenuation(const PhongHeadlight& light, double d) {
 }
 
 /// max(n . h, 0) with the half-vector h = l of equation (2): l = v = -direction.
-inline float lit(float cos_shading) {
+inline float clamped_cosine(float cos_shading) {
   return cos_shading > 0.0F ? cos_shading : 0.0F;
 }
 
 /// The ambient and diffuse terms of equation (5).
-inline float matte_colour(const Reflectance& surface, float ambient, float n_dot_h) {
+inline float ambient_and_diffuse(const Reflectance& surface, float ambient, float n_dot_h) {
   return ambient * surface.ambient + surface.diffuse * n_dot_h;
 }
 
 /// Equations (3) to (5) without the specular term. Returns true if a surface has one.
 GLIDAR_SIMD bool shade_diffuse(const PhongHeadlight& light, BeamRange range, Frame& frame) {
-  const Hits& truth = frame.ground_truth;
+  const Hits& hits = frame.ground_truth;
   const auto ambient = static_cast<float>(light.ambient);
   unsigned specular = 0;
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    const Reflectance& surface = truth.reflectance[i];
-    const float n_dot_h = lit(truth.cos_shading[i]);
-    const auto received = static_cast<float>(attenuation(light, truth.range_m[i])) *
-                          matte_colour(surface, ambient, n_dot_h);
+    const Reflectance& surface = hits.reflectance[i];
+    const float n_dot_h = clamped_cosine(hits.cos_shading[i]);
+    const auto received = static_cast<float>(attenuation(light, hits.range_m[i])) *
+                          ambient_and_diffuse(surface, ambient, n_dot_h);
     frame.intensity[i] = frame.status[i] == Status::hit ? received : 0.0F;
     specular |= static_cast<unsigned>(surface.specular > 0.0F);
   }
@@ -51,21 +51,22 @@ GLIDAR_SIMD void raise(Batch<double>& base, const Batch<double>& exponent) {
 
 /// Equations (3) to (5) for the surfaces of a batch that have a specular term.
 void measure_specular(const PhongHeadlight& light, BeamRange range, Frame& frame) {
-  const Hits& truth = frame.ground_truth;
+  const Hits& hits = frame.ground_truth;
   const auto ambient = static_cast<float>(light.ambient);
   Batch<double> lobe{};
   Batch<double> shininess{};
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    lobe[i - range.begin] = lit(truth.cos_shading[i]);
-    shininess[i - range.begin] = truth.reflectance[i].shininess;
+    lobe[i - range.begin] = clamped_cosine(hits.cos_shading[i]);
+    shininess[i - range.begin] = hits.reflectance[i].shininess;
   }
   raise(lobe, shininess);
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    const Reflectance& surface = truth.reflectance[i];
+    const Reflectance& surface = hits.reflectance[i];
     if (frame.status[i] != Status::hit || !(surface.specular > 0.0F)) continue;
-    const float colour = matte_colour(surface, ambient, lit(truth.cos_shading[i])) +
-                         surface.specular * static_cast<float>(lobe[i - range.begin]);
-    frame.intensity[i] = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;
+    const float colour =
+        ambient_and_diffuse(surface, ambient, clamped_cosine(hits.cos_shading[i])) +
+        surface.specular * static_cast<float>(lobe[i - range.begin]);
+    frame.intensity[i] = static_cast<float>(attenuation(light, hits.range_m[i])) * colour;
   }
 }
 

@@ -122,7 +122,7 @@ bool CloudPublisher::has(std::uint64_t subscribers) {
   if (subscribers == 0 || all_subscribed()) return true;
   const auto waited = std::chrono::steady_clock::now() - last_handshake_;
   if (waited < options_.subscription_timeout || match_.pending() == 0) return false;
-  give_up_subscriptions(options_.subscription_timeout);
+  stop_waiting_for_subscriptions(options_.subscription_timeout);
   return all_subscribed();
 }
 
@@ -133,9 +133,9 @@ bool CloudPublisher::all_subscribed() const {
          std::chrono::steady_clock::now() - last_change_ >= kSubscriptionDelay;
 }
 
-void CloudPublisher::give_up_subscriptions(std::chrono::milliseconds waited) {
+void CloudPublisher::stop_waiting_for_subscriptions(std::chrono::milliseconds waited) {
   const std::uint64_t missing = match_.pending();
-  match_.give_up();
+  match_.stop_waiting();
   std::ostringstream text;
   text << missing << (missing == 1 ? " peer has" : " peers have")
        << " shaken hands but not subscribed to clouds within "
@@ -160,7 +160,7 @@ void CloudPublisher::shut_down(std::chrono::milliseconds timeout) {
     link::wait_for({&clouds_}, -1, kPollInterval);
     serve();
   }
-  if (match_.pending() > 0) give_up_subscriptions(timeout);
+  if (match_.pending() > 0) stop_waiting_for_subscriptions(timeout);
   // Cloud topics last: with keeps_newest only the last message is certain to arrive.
   std::vector<std::string> ending = {"p", "P"};
   for (const auto& [sensor, topic] : topics_) ending.push_back(topic);

@@ -88,7 +88,7 @@ class CloudPublisher final : public CloudSink {
   [[nodiscard]] bool is_repeated(const Frame& frame, std::uint64_t timestamp);
   std::uint64_t timestamp_of(const Frame& frame);
   [[nodiscard]] bool all_subscribed() const;
-  void give_up_subscriptions(std::chrono::milliseconds waited);
+  void stop_waiting_for_subscriptions(std::chrono::milliseconds waited);
   void answer_handshakes();
   void process_peer_events();
   void set_subscribers(std::uint64_t count);

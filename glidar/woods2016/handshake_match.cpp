@@ -35,7 +35,7 @@ void HandshakeMatch::set_subscribers(std::uint64_t count) {
   }
 }
 
-void HandshakeMatch::give_up() {
+void HandshakeMatch::stop_waiting() {
   absent_ += pending_;
   pending_ = 0;
 }

@@ -17,7 +17,7 @@ class HandshakeMatch {
   void set_subscribers(std::uint64_t count);
   /// Stops waiting for missing subscriptions. Later subscriptions are matched with these
   /// handshakes.
-  void give_up();
+  void stop_waiting();
 
   /// Handshakes whose subscription is missing.
   [[nodiscard]] std::uint64_t pending() const { return pending_; }

@@ -64,7 +64,7 @@ TEST(HandshakeMatch, ASubscriberThatLeftBeforeItsHandshakeIsExpectedAgain) {
 TEST(HandshakeMatch, LateSubscriptionsMatchTheOldHandshakes) {
   HandshakeMatch match;
   match.add_handshake();
-  match.give_up();
+  match.stop_waiting();
   EXPECT_EQ(match.pending(), 0U);
   EXPECT_EQ(match.matched(), 0U);
   match.set_subscribers(1);

@@ -40,19 +40,19 @@ class Reader {
   explicit Reader(Bytes bytes) : rest_(bytes) {}
 
   template <class Number>
-  Number take() {
+  Number read() {
     Number number{};
     std::memcpy(&number, rest_.data(), sizeof(Number));
     rest_ = rest_.subspan(sizeof(Number));
     return number;
   }
-  Eigen::Vector3d take_vector() {
-    const auto x = take<double>();
-    const auto y = take<double>();
-    const auto z = take<double>();
+  Eigen::Vector3d read_vector() {
+    const auto x = read<double>();
+    const auto y = read<double>();
+    const auto z = read<double>();
     return {x, y, z};
   }
-  std::string take_text(std::size_t size) {
+  std::string read_text(std::size_t size) {
     std::string text(size, '\0');
     std::memcpy(text.data(), rest_.data(), size);
     rest_ = rest_.subspan(size);
@@ -66,23 +66,23 @@ class Reader {
 class Writer {
  public:
   template <class Number>
-  void put(Number number) {
+  void write(Number number) {
     static_assert(std::is_arithmetic_v<Number>);
     const auto* start = reinterpret_cast<const std::byte*>(&number);
     bytes_.insert(bytes_.end(), start, start + sizeof(Number));
   }
-  void put_vector(const Eigen::Vector3d& v) {
-    for (const double x : {v.x(), v.y(), v.z()}) put(x);
+  void write_vector(const Eigen::Vector3d& v) {
+    for (const double x : {v.x(), v.y(), v.z()}) write(x);
   }
   /// Truncated to the size or padded with zeros.
-  void put_text(std::string_view text, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i) put(i < text.size() ? text[i] : '\0');
+  void write_text(std::string_view text, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) write(i < text.size() ? text[i] : '\0');
   }
-  void put_start(std::uint16_t kind, std::uint64_t id) {
-    for (const char letter : kMagic) put(letter);
-    put(kVersion);
-    put(kind);
-    put(id);
+  void write_start(std::uint16_t kind, std::uint64_t id) {
+    for (const char letter : kMagic) write(letter);
+    write(kVersion);
+    write(kind);
+    write(id);
   }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
@@ -97,11 +97,11 @@ std::uint16_t read_start(Bytes message, std::uint64_t& id) {
   }
   Reader from(message);
   for (const char letter : kMagic) {
-    if (from.take<char>() != letter) refuse("first bytes", "other bytes", "'GLDR'");
+    if (from.read<char>() != letter) refuse("first bytes", "other bytes", "'GLDR'");
   }
-  const auto version = from.take<std::uint16_t>();
-  const auto kind = from.take<std::uint16_t>();
-  id = from.take<std::uint64_t>();
+  const auto version = from.read<std::uint16_t>();
+  const auto kind = from.read<std::uint16_t>();
+  id = from.read<std::uint64_t>();
   if (version != kVersion) {
     refuse("version", std::to_string(version), std::to_string(kVersion));
   }
@@ -141,7 +141,7 @@ void check(const Counts& counts, std::size_t size) {
 }
 
 std::string read_name(Reader& from) {
-  std::string name = from.take_text(kNameBytes);
+  std::string name = from.read_text(kNameBytes);
   name.resize(name.find_last_not_of('\0') + 1);
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), is_letter)) return name;
@@ -149,10 +149,10 @@ std::string read_name(Reader& from) {
 }
 
 Body read_body(Reader& from, const std::string& where) {
-  const Eigen::Vector3d position_m = from.take_vector();
-  const auto w = from.take<double>();
-  const Eigen::Vector3d xyz = from.take_vector();
-  Body body{.rate_rad_s = from.take_vector(), .velocity_m_s = from.take_vector()};
+  const Eigen::Vector3d position_m = from.read_vector();
+  const auto w = from.read<double>();
+  const Eigen::Vector3d xyz = from.read_vector();
+  Body body{.rate_rad_s = from.read_vector(), .velocity_m_s = from.read_vector()};
   if (!position_m.allFinite() || position_m.cwiseAbs().maxCoeff() > kMaxCoordinate_m) {
     refuse(where + ", position", "a number that is not finite or too large", "metres up to 1e15");
   }
@@ -175,13 +175,13 @@ Moment read_moment(Reader& from, std::uint32_t index, std::uint32_t objects) {
   Moment moment;
   constexpr std::int64_t kMaxTime_ns =
       9'000'000'000'000'000'000;  // leaves room for the firing times
-  moment.t_ns = from.take<std::int64_t>();
+  moment.t_ns = from.read<std::int64_t>();
   if (moment.t_ns > kMaxTime_ns || moment.t_ns < -kMaxTime_ns) {
     refuse(where + ", time", std::to_string(moment.t_ns) + " ns", "from -9e18 to 9e18");
   }
-  moment.seed = from.take<std::uint64_t>();
-  moment.number = from.take<std::uint32_t>();
-  if (from.take<std::uint32_t>() != 0) refuse(where + ", reserved", "another number", "0");
+  moment.seed = from.read<std::uint64_t>();
+  moment.number = from.read<std::uint32_t>();
+  if (from.read<std::uint32_t>() != 0) refuse(where + ", reserved", "another number", "0");
   moment.sensor = read_body(from, where + ", sensor");
   moment.objects.reserve(objects);
   for (std::uint32_t k = 0; k < objects; ++k) {
@@ -190,11 +190,11 @@ Moment read_moment(Reader& from, std::uint32_t index, std::uint32_t objects) {
   return moment;
 }
 
-void put_body(const Body& body, Writer& to) {
+void write_body(const Body& body, Writer& to) {
   const PoseVector numbers = to_xyz_wxyz(body.world_from_body);
-  for (const double number : numbers) to.put(number);
-  to.put_vector(body.rate_rad_s);
-  to.put_vector(body.velocity_m_s);
+  for (const double number : numbers) to.write(number);
+  to.write_vector(body.rate_rad_s);
+  to.write_vector(body.velocity_m_s);
 }
 
 std::string_view type_of(const Column& column) {
@@ -205,28 +205,28 @@ std::string_view type_of(const Column& column) {
 
 std::vector<std::byte> encode_one(const Describe& describe) {
   Writer to;
-  to.put_start(kDescribe, describe.id);
+  to.write_start(kDescribe, describe.id);
   return to.take();
 }
 
 std::vector<std::byte> encode_one(const Measure& measure) {
   Writer to;
-  to.put_start(kMeasure, measure.id);
-  to.put(measure.sensor);
-  to.put(measure.hits_only ? kHitsOnly : 0U);
-  to.put(static_cast<std::uint32_t>(measure.columns.size()));
-  to.put(static_cast<std::uint32_t>(measure.moments.size()));
-  to.put(
+  to.write_start(kMeasure, measure.id);
+  to.write(measure.sensor);
+  to.write(measure.hits_only ? kHitsOnly : 0U);
+  to.write(static_cast<std::uint32_t>(measure.columns.size()));
+  to.write(static_cast<std::uint32_t>(measure.moments.size()));
+  to.write(
       static_cast<std::uint32_t>(measure.moments.empty() ? 0 : measure.moments[0].objects.size()));
-  to.put(std::uint32_t{0});
-  for (const std::string& name : measure.columns) to.put_text(name, kNameBytes);
+  to.write(std::uint32_t{0});
+  for (const std::string& name : measure.columns) to.write_text(name, kNameBytes);
   for (const Moment& moment : measure.moments) {
-    to.put(moment.t_ns);
-    to.put(moment.seed);
-    to.put(moment.number);
-    to.put(std::uint32_t{0});
-    put_body(moment.sensor, to);
-    for (const Body& body : moment.objects) put_body(body, to);
+    to.write(moment.t_ns);
+    to.write(moment.seed);
+    to.write(moment.number);
+    to.write(std::uint32_t{0});
+    write_body(moment.sensor, to);
+    for (const Body& body : moment.objects) write_body(body, to);
   }
   return to.take();
 }
@@ -251,7 +251,7 @@ Request decode_request(Bytes message, std::uint64_t& id) {
   Counts counts;
   for (std::uint32_t* count : {&counts.sensor, &counts.flags, &counts.columns, &counts.moments,
                                &counts.objects, &counts.reserved}) {
-    *count = from.take<std::uint32_t>();
+    *count = from.read<std::uint32_t>();
   }
   check(counts, message.size());
   Measure measure{.id = id,
@@ -274,24 +274,24 @@ std::vector<std::byte> encode(const Request& request) {
 std::vector<std::byte> encode_head(std::uint64_t id, std::span<const CloudHead> heads,
                                    const PointCloud& like) {
   Writer to;
-  to.put_start(kClouds, id);
-  to.put(static_cast<std::uint32_t>(heads.size()));
-  to.put(static_cast<std::uint32_t>(like.columns.size()));
+  to.write_start(kClouds, id);
+  to.write(static_cast<std::uint32_t>(heads.size()));
+  to.write(static_cast<std::uint32_t>(like.columns.size()));
   for (const Column& column : like.columns) {
-    to.put_text(column.name, kNameBytes);
-    to.put_text(type_of(column), 2);
-    to.put(static_cast<std::uint16_t>(column.components.size()));
-    to.put(std::uint32_t{0});
+    to.write_text(column.name, kNameBytes);
+    to.write_text(type_of(column), 2);
+    to.write(static_cast<std::uint16_t>(column.components.size()));
+    to.write(std::uint32_t{0});
   }
   for (const CloudHead& head : heads) {
-    to.put(head.stamp_ns);
-    to.put(head.seed);
-    to.put(head.number);
-    to.put(head.rows);
-    to.put(head.cols);
-    to.put(std::uint32_t{0});
-    to.put_text(head.frame_id, kFrameId_bytes);
-    for (const double number : to_xyz_wxyz(head.world_from_cloud)) to.put(number);
+    to.write(head.stamp_ns);
+    to.write(head.seed);
+    to.write(head.number);
+    to.write(head.rows);
+    to.write(head.cols);
+    to.write(std::uint32_t{0});
+    to.write_text(head.frame_id, kFrameId_bytes);
+    for (const double number : to_xyz_wxyz(head.world_from_cloud)) to.write(number);
   }
   return to.take();
 }
@@ -303,7 +303,7 @@ Bytes bytes_of(const Column& column) {
 
 std::vector<std::byte> encode_text_head(std::uint64_t id, TextKind kind) {
   Writer to;
-  to.put_start(static_cast<std::uint16_t>(kind), id);
+  to.write_start(static_cast<std::uint16_t>(kind), id);
   return to.take();
 }
 

@@ -49,7 +49,7 @@ class Waveform {
       : work_(work), group_(group), per_sigma_(1.0 / sigma_m), step_m_(kStep * sigma_m) {}
 
   /// The range of sample k; sample 0 is at the nearest contribution.
-  [[nodiscard]] double place_m(std::ptrdiff_t k) const {
+  [[nodiscard]] double sample_range_m(std::ptrdiff_t k) const {
     return work_.path[group_.begin].range_m + static_cast<double>(k) * step_m_;
   }
 
@@ -65,20 +65,20 @@ class Waveform {
   void sample_from(std::ptrdiff_t k) {
     first_ = k;
     samples_.fill(0.0);
-    std::array<double, kPathsAtOnce> places_m;
-    for (std::size_t j = 0; j < places_m.size(); ++j) {
-      places_m[j] = place_m(first_ + static_cast<std::ptrdiff_t>(j));
+    std::array<double, kPathsAtOnce> sample_ranges_m;
+    for (std::size_t j = 0; j < sample_ranges_m.size(); ++j) {
+      sample_ranges_m[j] = sample_range_m(first_ + static_cast<std::ptrdiff_t>(j));
     }
     for (std::size_t i = group_.begin; i < group_.end; ++i) {
       const EchoContribution& path = work_.path[i];
-      add_pulse(path.range_m, path.signal, per_sigma_, places_m.data(), samples_.data());
+      add_pulse(path.range_m, path.signal, per_sigma_, sample_ranges_m.data(), samples_.data());
     }
   }
 
   GLIDAR_SIMD static void add_pulse(double range_m, double signal, double per_sigma,
-                                    const double* places_m, double* samples) {
+                                    const double* sample_ranges_m, double* samples) {
     for (std::ptrdiff_t j = 0; j < kPathsAtOnce; ++j) {
-      const double x = (range_m - places_m[j]) * per_sigma;
+      const double x = (range_m - sample_ranges_m[j]) * per_sigma;
       const double y = 0.5 * x * x;
       const double slight = slight_fading(y);
       const double strong = strong_fading(y);
@@ -180,7 +180,7 @@ void split(const Group& group, double sigma_m, WaveformBuffer& work) {
       height = std::max(height, peak_height(before, at, after));
       rose = false;
     } else if (!rose && at <= before && at < after) {
-      const double valley_m = waveform.place_m(k);
+      const double valley_m = waveform.sample_range_m(k);
       std::size_t to = from;
       while (to < group.end && work.path[to].range_m < valley_m) ++to;
       close(to);

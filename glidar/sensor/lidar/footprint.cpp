@@ -69,7 +69,7 @@ struct Crosses {
 };
 
 /// out = scale (from + a x + b y).
-GLIDAR_SIMD void lean(const Vectors& from, const Crosses& c, const Eigen::Vector2d& ab,
+GLIDAR_SIMD void tilt(const Vectors& from, const Crosses& c, const Eigen::Vector2d& ab,
                       double scale, Vectors& out) {
   const double a = ab.x();
   const double b = ab.y();
@@ -117,7 +117,7 @@ void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange 
                  std::size_t first, Beams& out) {
   Crosses crosses;
   Vectors start_m{};
-  Vectors leant;
+  Vectors tilted;
   find_crosses(beams, range, crosses);
   const std::size_t count = range.end - range.begin;
   for (std::size_t i = 0; i < count; ++i) {
@@ -128,11 +128,11 @@ void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange 
   }
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const auto place = [&](std::size_t i) { return first + i * rays.size() + k; };
-    lean(crosses.beam, crosses, rays[k].slope, rays[k].shortening, leant);
-    for (std::size_t i = 0; i < count; ++i) out.directions[place(i)] = leant.get(i);
+    tilt(crosses.beam, crosses, rays[k].slope, rays[k].shortening, tilted);
+    for (std::size_t i = 0; i < count; ++i) out.directions[place(i)] = tilted.get(i);
     if (out.origins_m.empty()) continue;
-    lean(start_m, crosses, rays[k].offset_m, 1.0, leant);
-    for (std::size_t i = 0; i < count; ++i) out.origins_m[place(i)] = leant.get(i);
+    tilt(start_m, crosses, rays[k].offset_m, 1.0, tilted);
+    for (std::size_t i = 0; i < count; ++i) out.origins_m[place(i)] = tilted.get(i);
   }
 }
 

@@ -48,10 +48,10 @@ void weather_echoes(const PreparedWeather& weather, double hard_range_m, const R
   }
   RngKey drops = key;
   drops.purpose = Purpose::weather;
-  const auto append = [&](const DropField& field, std::uint32_t block, ReturnSource cause) {
+  const auto append = [&](const DropField& field, std::uint32_t block, ReturnSource source) {
     drops.block = block;
     const auto take = [&](const DropEcho& drop) {
-      echoes.push_back({drop.range_m, drop.signal, cause});
+      echoes.push_back({drop.range_m, drop.signal, source});
     };
     sample_drops(weather.light, field, end_m, drops, FunctionRef<void(const DropEcho&)>(take));
   };

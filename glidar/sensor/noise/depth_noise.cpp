@@ -23,68 +23,71 @@ struct Disparity {
 };
 
 /// Beams with a disparity <= 0 get an infinite range.
-GLIDAR_SIMD void measure(const Disparity& law, const Batch<double>& normal, NoiseBatch& b) {
-  const double rounding = law.rounds ? 1.0 / 12.0 : 0.0;
+GLIDAR_SIMD void measure(const Disparity& model, const Batch<double>& normal, NoiseBatch& b) {
+  const double rounding = model.rounds ? 1.0 / 12.0 : 0.0;
   for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double z = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i];
-    const double sigma = law.sigma_steps * b.scale[i];
-    const double steps = law.k_m / z + sigma * normal[i];
-    const double whole = std::floor(steps - law.offset_steps + 0.5) + law.offset_steps;
-    const double told = law.rounds ? whole : steps;
-    const double told_z = told > 0.0 ? law.k_m / told : std::numeric_limits<double>::infinity();
-    const double per_step = z * z / law.k_m / b.depth_per_m[i];
-    b.range_m[i] = z == z ? (told_z - b.depth_at_zero[i]) / b.depth_per_m[i] : z;
+    const double sigma = model.sigma_steps * b.scale[i];
+    const double steps = model.k_m / z + sigma * normal[i];
+    const double whole = std::floor(steps - model.offset_steps + 0.5) + model.offset_steps;
+    const double reported = model.rounds ? whole : steps;
+    const double reported_z =
+        reported > 0.0 ? model.k_m / reported : std::numeric_limits<double>::infinity();
+    const double per_step = z * z / model.k_m / b.depth_per_m[i];
+    b.range_m[i] = z == z ? (reported_z - b.depth_at_zero[i]) / b.depth_per_m[i] : z;
     b.variance_m2[i] += (sigma * sigma + rounding) * per_step * per_step;
   }
 }
 
-void lose_far(NoiseBatch& batch) {
+void invalidate_infinite_ranges(NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (is_hit(batch, i) && std::isinf(batch.range_m[i]))
       invalidate_return(batch, i, Status::too_far);
   }
 }
 
-inline double left_of_right_angle(double incidence_rad) {
+inline double complement_rad(double incidence_rad) {
   const double left = 0.5 * std::numbers::pi - incidence_rad;
   return left > kMinGrazing_rad ? left : kMinGrazing_rad;
 }
 
-inline double axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad) {
-  const double beyond = z_m - law.c_m;
-  const double sigma = law.a_m + law.b_per_m * beyond * beyond;
-  const double share = incidence_rad / left_of_right_angle(incidence_rad);
-  const double grazing_coefficient = law.grazing_coefficient / std::sqrt(z_m) * share * share;
+inline double axial_sigma_m(const NguyenAxial& model, double z_m, double incidence_rad) {
+  const double beyond = z_m - model.c_m;
+  const double sigma = model.a_m + model.b_per_m * beyond * beyond;
+  const double share = incidence_rad / complement_rad(incidence_rad);
+  const double grazing_coefficient = model.grazing_coefficient / std::sqrt(z_m) * share * share;
   return incidence_rad <= std::numbers::pi / 3.0 ? sigma : sigma + grazing_coefficient;
 }
 
-inline double lateral_sigma_px(const NguyenLateral& law, double incidence_rad) {
-  return law.a_px + law.b_px * incidence_rad / left_of_right_angle(incidence_rad);
+inline double lateral_sigma_px(const NguyenLateral& model, double incidence_rad) {
+  return model.a_px + model.b_px * incidence_rad / complement_rad(incidence_rad);
 }
 
-GLIDAR_SIMD void add_axial(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
+GLIDAR_SIMD void add_axial(const NguyenAxial& model, const Batch<double>& normal, NoiseBatch& b) {
   for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double z = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i];
     const double sigma =
-        axial_sigma_m(law, z, angle_of(b.cosine[i])) * b.scale[i] / b.depth_per_m[i];
+        axial_sigma_m(model, z, angle_of(b.cosine[i])) * b.scale[i] / b.depth_per_m[i];
     b.range_m[i] += sigma * normal[i];
     b.variance_m2[i] += sigma * sigma;
   }
 }
 
-GLIDAR_SIMD void scale_lateral(const NguyenLateral& law, const NoiseBatch& b, PairBatch& shift) {
+GLIDAR_SIMD void scale_lateral(const NguyenLateral& model, const NoiseBatch& b, PairBatch& shift) {
   for (std::size_t i = 0; i < kSampleBatch; ++i) {
-    const double sigma = lateral_sigma_px(law, angle_of(b.cosine[i])) * b.scale[i];
+    const double sigma = lateral_sigma_px(model, angle_of(b.cosine[i])) * b.scale[i];
     shift.first[i] *= sigma;
     shift.second[i] *= sigma;
   }
 }
 
 /// A normal error of depth: sigma = a + b (z - c)^2.
-GLIDAR_SIMD void add_parabola(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
+GLIDAR_SIMD void add_parabola(const NguyenAxial& model, const Batch<double>& normal,
+                              NoiseBatch& b) {
   for (std::size_t i = 0; i < kSampleBatch; ++i) {
-    const double beyond = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i] - law.c_m;
-    const double sigma = (law.a_m + law.b_per_m * beyond * beyond) * b.scale[i] / b.depth_per_m[i];
+    const double beyond = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i] - model.c_m;
+    const double sigma =
+        (model.a_m + model.b_per_m * beyond * beyond) * b.scale[i] / b.depth_per_m[i];
     b.range_m[i] += sigma * normal[i];
     b.variance_m2[i] += sigma * sigma;
   }
@@ -92,18 +95,18 @@ GLIDAR_SIMD void add_parabola(const NguyenAxial& law, const Batch<double>& norma
 
 }  // namespace
 
-double nguyen_axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad) {
-  return axial_sigma_m(law, z_m, incidence_rad);
+double nguyen_axial_sigma_m(const NguyenAxial& model, double z_m, double incidence_rad) {
+  return axial_sigma_m(model, z_m, incidence_rad);
 }
 
-double nguyen_lateral_sigma_px(const NguyenLateral& law, double incidence_rad) {
-  return lateral_sigma_px(law, incidence_rad);
+double nguyen_lateral_sigma_px(const NguyenLateral& model, double incidence_rad) {
+  return lateral_sigma_px(model, incidence_rad);
 }
 
 void apply(const DisparityQuantization& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   const Batch<double> none{};
   measure({.k_m = step.k_m, .offset_steps = step.offset_steps}, none, batch);
-  lose_far(batch);
+  invalidate_infinite_ranges(batch);
 }
 
 void apply(const Khoshelham& step, const NoiseView& /*view*/, NoiseBatch& batch) {
@@ -120,18 +123,18 @@ void apply(const NguyenAxial& step, const NoiseView& /*view*/, NoiseBatch& batch
 }
 
 void prepare(const NguyenLateral& /*step*/, const NoiseView& view, NoiseBatch& batch) {
-  keep_depth(view, batch);
+  store_depth(view, batch);
 }
 
 void apply(const NguyenLateral& step, const NoiseView& view, NoiseBatch& batch) {
   PairBatch shift;
   sample_normals(batch.key, shift);
   scale_lateral(step, batch, shift);
-  look_aside(shift, view, batch);
+  shift_laterally(shift, view, batch);
 }
 
 void prepare(const IclKinect& /*step*/, const NoiseView& view, NoiseBatch& batch) {
-  keep_depth(view, batch);
+  store_depth(view, batch);
 }
 
 void apply(const IclKinect& step, const NoiseView& view, NoiseBatch& batch) {
@@ -141,11 +144,11 @@ void apply(const IclKinect& step, const NoiseView& view, NoiseBatch& batch) {
     shift.first[i] *= step.lateral_px * batch.scale[i];
     shift.second[i] *= step.lateral_px * batch.scale[i];
   }
-  look_aside(shift, view, batch);
+  shift_laterally(shift, view, batch);
   Batch<double> normal;
   sample_shared_normals(block(batch.key, 1), normal);
   measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps}, normal, batch);
-  lose_far(batch);
+  invalidate_infinite_ranges(batch);
 }
 
 void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch) {
@@ -160,7 +163,7 @@ void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {
   mean_over_window(step.window, view, batch, normal);
   measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps, .offset_steps = step.offset_steps},
           normal, batch);
-  lose_far(batch);
+  invalidate_infinite_ranges(batch);
 }
 
 void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
@@ -171,7 +174,7 @@ void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
            .sigma_steps = step.sigma_px / unit_px,
            .rounds = step.step_px > 0.0},
           normal, batch);
-  lose_far(batch);
+  invalidate_infinite_ranges(batch);
 }
 
 }  // namespace glidar

@@ -70,8 +70,8 @@ struct Stereo {
 };
 
 /// The standard deviations of the models above.
-double nguyen_axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad);
-double nguyen_lateral_sigma_px(const NguyenLateral& law, double incidence_rad);
+double nguyen_axial_sigma_m(const NguyenAxial& model, double z_m, double incidence_rad);
+double nguyen_lateral_sigma_px(const NguyenLateral& model, double incidence_rad);
 
 void apply(const DisparityQuantization& step, const NoiseView& view, NoiseBatch& batch);
 void prepare(const KinectV1& step, const NoiseView& view, NoiseBatch& batch);

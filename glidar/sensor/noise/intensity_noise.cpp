@@ -21,7 +21,7 @@ GLIDAR_SIMD void disturb(const IntensityGaussian& step, const Batch<double>& nor
   }
 }
 
-double spelt(const IntensityScale& step, double reflectance) {
+double scaled_intensity(const IntensityScale& step, double reflectance) {
   switch (step.kind) {
     case IntensityScale::Kind::vendor:
       return vendor_intensity(reflectance, step.largest);
@@ -57,7 +57,7 @@ void apply(const IntensityScale& step, const NoiseView& /*view*/, NoiseBatch& ba
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i)) continue;
     const double times = compensates ? batch.range_m[i] / step.reference_m : 1.0;
-    batch.intensity[i] = spelt(step, step.gain * batch.intensity[i] * times * times);
+    batch.intensity[i] = scaled_intensity(step, step.gain * batch.intensity[i] * times * times);
   }
 }
 

@@ -8,7 +8,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// The stored depth of a pixel; NaN outside the image.
-double kept_depth(const NoiseView& view, double row, double col) {
+double stored_depth(const NoiseView& view, double row, double col) {
   const bool inside = row >= 0.0 && col >= 0.0 && row < view.beams.rows && col < view.beams.cols;
   if (!inside) return kNone;
   const auto at = static_cast<std::size_t>(row) * view.beams.cols + static_cast<std::size_t>(col);
@@ -21,16 +21,16 @@ double depth_between(const NoiseView& view, double row, double col) {
   const double down = row - top;
   const double right = col - left;
   const auto along = [&](double in_row) {
-    const double first = kept_depth(view, in_row, left);
+    const double first = stored_depth(view, in_row, left);
     if (!(right > 0.0)) return first;
-    return (1.0 - right) * first + right * kept_depth(view, in_row, left + 1.0);
+    return (1.0 - right) * first + right * stored_depth(view, in_row, left + 1.0);
   };
   const double upper = along(top);
   const double lower = along(top + 1.0);
   // A neighbour of weight 0 must not contribute, even if it is outside.
   const double depth = down > 0.0 ? (1.0 - down) * upper + down * lower : upper;
   if (!std::isnan(depth)) return depth;
-  return kept_depth(view, std::floor(row + 0.5), std::floor(col + 0.5));
+  return stored_depth(view, std::floor(row + 0.5), std::floor(col + 0.5));
 }
 
 /// Sums of `window` rows around a row, at the columns [first, first + sums).
@@ -48,14 +48,14 @@ std::size_t sum_rows(const NoiseView& view, std::size_t row, std::size_t reach, 
 
 }  // namespace
 
-void keep_depth(const NoiseView& view, const NoiseBatch& batch) {
+void store_depth(const NoiseView& view, const NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     view.frame.workspace.before[batch.first + i] =
         batch.depth_at_zero[i] + batch.depth_per_m[i] * batch.range_m[i];
   }
 }
 
-void look_aside(const PairBatch& shift_px, const NoiseView& view, NoiseBatch& batch) {
+void shift_laterally(const PairBatch& shift_px, const NoiseView& view, NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i)) continue;
     const std::size_t beam = batch.first + i;

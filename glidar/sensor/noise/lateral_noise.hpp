@@ -26,12 +26,12 @@ inline double angle_of(double cosine) {
 }
 
 /// Stores the depths of a batch in the workspace for its neighbours.
-void keep_depth(const NoiseView& view, const NoiseBatch& batch);
+void store_depth(const NoiseView& view, const NoiseBatch& batch);
 
 /// Gives each beam the depth at an offset of (first, second) = (columns, rows) pixels: bilinear
 /// between the four nearest pixels, or that of the nearest if one of them has no depth. If the
 /// nearest has none either, the return is lost. Offsets are clamped to the image.
-void look_aside(const PairBatch& shift_px, const NoiseView& view, NoiseBatch& batch);
+void shift_laterally(const PairBatch& shift_px, const NoiseView& view, NoiseBatch& batch);
 
 /// Means of the white noise in the workspace over a window around each pixel, clipped to the image,
 /// scaled to a standard deviation of 1.

@@ -40,8 +40,8 @@ inline void invalidate_return(NoiseBatch& batch, std::size_t i, Status why) {
 
 /// Sets the source of a return of the batch that is not an echo of the beam's own light.
 inline void set_return_source(const NoiseView& view, const NoiseBatch& batch, std::size_t i,
-                              ReturnSource cause) {
-  view.frame.return_source[batch.first + i] = cause;
+                              ReturnSource source) {
+  view.frame.return_source[batch.first + i] = source;
 }
 
 inline bool is_hit(const NoiseBatch& batch, std::size_t i) {

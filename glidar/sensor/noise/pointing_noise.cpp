@@ -40,11 +40,11 @@ GLIDAR_SIMD void jitter(const Eigen::Vector3d& up, const PointingJitter& step,
     const double ax = is_level ? cx * inverse : 1.0;
     const double ay = is_level ? cy * inverse : 0.0;
     const double az = is_level ? cz * inverse : 0.0;
-    const double aside = step.sigma_azimuth_rad * normal.first[i];
+    const double sideways = step.sigma_azimuth_rad * normal.first[i];
     const double upwards = step.sigma_elevation_rad * normal.second[i];
-    const double vx = x + aside * ax + upwards * (y * az - z * ay);
-    const double vy = y + aside * ay + upwards * (z * ax - x * az);
-    const double vz = z + aside * az + upwards * (x * ay - y * ax);
+    const double vx = x + sideways * ax + upwards * (y * az - z * ay);
+    const double vy = y + sideways * ay + upwards * (z * ax - x * az);
+    const double vz = z + sideways * az + upwards * (x * ay - y * ax);
     const double unit = 1.0 / std::sqrt(vx * vx + vy * vy + vz * vz);
     xyz[3 * i] = vx * unit;
     xyz[3 * i + 1] = vy * unit;

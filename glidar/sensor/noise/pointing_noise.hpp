@@ -28,7 +28,7 @@ struct EncoderError {
 };
 
 /// Error of the reported azimuth without the random error of the frame.
-double encoder_error_rad(const EncoderError& law, double azimuth_rad);
+double encoder_error_rad(const EncoderError& model, double azimuth_rad);
 
 /// Applies the step to the beams [first, first + count); `key` is that of beam 0.
 void perturb(const PointingJitter& step, const RngKey& key, std::size_t first, std::size_t count,

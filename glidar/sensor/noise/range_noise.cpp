@@ -15,7 +15,7 @@ namespace {
 constexpr double kPulseFwhmPerSigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
 constexpr double kMinIntensity = 1e-9;  // intensity 0 would have an infinite error
 
-inline double not_dark(double intensity) {
+inline double clamp_intensity(double intensity) {
   return intensity > kMinIntensity ? intensity : kMinIntensity;
 }
 
@@ -38,7 +38,7 @@ GLIDAR_SIMD void add_linear(double sigma_m, double sigma_per_m, const Batch<doub
 
 GLIDAR_SIMD void add_by_signal(const Spread& spread, const Batch<double>& normal, NoiseBatch& b) {
   for (std::size_t i = 0; i < kSampleBatch; ++i) {
-    const double inverse = 1.0 / not_dark(b.intensity[i]);
+    const double inverse = 1.0 / clamp_intensity(b.intensity[i]);
     const double sigma = std::sqrt(spread.constant_m2 + spread.per_intensity_m2 * inverse +
                                    spread.per_intensity_squared_m2 * inverse * inverse) *
                          b.scale[i];
@@ -75,16 +75,16 @@ GLIDAR_SIMD void spread_out(PairBatch& uniforms) {
 
 }  // namespace
 
-double pulse_sigma_m(const RangeCrlb& law, double amplitude) {
-  const double sigma_p = law.pulse_fwhm_s / kPulseFwhmPerSigma;
+double pulse_sigma_m(const RangeCrlb& model, double amplitude) {
+  const double sigma_p = model.pulse_fwhm_s / kPulseFwhmPerSigma;
   const double sqrt_pi = 1.0 / std::numbers::inv_sqrtpi;
-  return kHalfLight_m_per_s * (law.noise / amplitude) *
-         std::sqrt(2.0 * sigma_p * law.sample_s / sqrt_pi);
+  return kHalfLight_m_per_s * (model.noise / amplitude) *
+         std::sqrt(2.0 * sigma_p * model.sample_s / sqrt_pi);
 }
 
-double photon_sigma_m(const RangeShotNoise& law, double amplitude) {
-  const double sigma_p = law.pulse_fwhm_s / kPulseFwhmPerSigma;
-  return kHalfLight_m_per_s * sigma_p / std::sqrt(law.photons_at_full_scale * amplitude);
+double photon_sigma_m(const RangeShotNoise& model, double amplitude) {
+  const double sigma_p = model.pulse_fwhm_s / kPulseFwhmPerSigma;
+  return kHalfLight_m_per_s * sigma_p / std::sqrt(model.photons_at_full_scale * amplitude);
 }
 
 void apply(const RangeGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {

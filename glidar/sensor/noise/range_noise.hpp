@@ -55,8 +55,8 @@ struct RangeQuantization {
 };
 
 /// Standard deviations of the models above, metres.
-double pulse_sigma_m(const RangeCrlb& law, double amplitude);
-double photon_sigma_m(const RangeShotNoise& law, double amplitude);
+double pulse_sigma_m(const RangeCrlb& model, double amplitude);
+double photon_sigma_m(const RangeShotNoise& model, double amplitude);
 
 void apply(const RangeGaussian& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const RangeSnr& step, const NoiseView& view, NoiseBatch& batch);
