@@ -124,7 +124,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   const Walk walked = walk(*scene, gltf ? gltf_transforms(own->whole(), *scene) : NodeTransforms{});
   const MtlOptions mtl = read_mtl_options(files);
   imported.texture_folders = texture_folders(files.paths(), folder);
-  folder.also.assign(imported.texture_folders.begin(), imported.texture_folders.end());
+  folder.material_folders.assign(imported.texture_folders.begin(), imported.texture_folders.end());
   TextureStore textures(*scene, folder, files, imported);
   BakeOptions options;
   options.crease_angle_rad = crease_angle_rad;

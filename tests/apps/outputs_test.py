@@ -90,7 +90,7 @@ class Failures(CliTest):
             preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))  # fmt: skip
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("nothing of this file was left behind", done.stderr)
+        self.assertIn("no part of this file remains", done.stderr)
         self.assertEqual(self.files(), [])
 
 
@@ -118,7 +118,7 @@ class StandardOutput(CliTest):
                                   env=self.environment, stdout=full, stderr=subprocess.PIPE, text=True, timeout=MAX_WAIT_S,
                                   check=False)  # fmt: skip
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("what was sent before is not whole", done.stderr)
+        self.assertIn("the data sent so far is incomplete", done.stderr)
         self.assertNotIn("left behind", done.stderr)
         self.assertEqual(self.files(), [])
 

@@ -83,7 +83,7 @@ inline void add_columns(PointCloud& cloud) {
   });
 }
 
-/// What images of the truth need besides.
+/// Additional columns of ground truth images.
 inline void add_image_columns(PointCloud& cloud) {
   add_column<float>(cloud, "incidence", {"incidence"}, [](std::size_t i, std::size_t) {
     return is_miss(i) ? std::numeric_limits<float>::quiet_NaN()
@@ -97,7 +97,7 @@ inline void add_image_columns(PointCloud& cloud) {
   });
 }
 
-/// What scanners tell besides: the columns that layouts need.
+/// Additional columns of scanners, which layouts need.
 inline void add_scan_columns(PointCloud& cloud) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto add_angle = [&](const char* name, double first_rad, double step_rad) {

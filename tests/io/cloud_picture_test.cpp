@@ -229,7 +229,7 @@ TEST(CloudPicture, RefusesSizesAndEyesThatCannotBe) {
   Made made = make();
   made.options.picture.eye_m = made.options.picture.target_m = Eigen::Vector3d(1.0, 2.0, 3.0);
   EXPECT_THAT(error_text([&] { written(made, "a.view.png"); }),
-              HasSubstr("view_eye: it is where the view looks at"));
+              HasSubstr("view_eye: it equals the view's target"));
   made.options.picture.width = 10;
   EXPECT_THAT(error_text([&] { written(made, "a.bev.png"); }),
               HasSubstr("picture size: 10 x 1000 pixels; allowed: sides from 200 to 8192"));

@@ -203,9 +203,10 @@ TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithTheScaleThatFits) {
 TEST(PaperPng, IsRefusedToAFrameThatWasNotReadFromAPicture) {
   CloudFixture made = make_fixture();
   made.frame.picture.rgba.clear();
-  EXPECT_THAT(write_error(made, "a.paper.png"),
-              HasSubstr("a frame that was not read from the paper's picture; allowed: a frame of "
-                        "the paper's target"));
+  EXPECT_THAT(
+      write_error(made, "a.paper.png"),
+      HasSubstr("a frame that was not read from the paper's framebuffer; allowed: a frame of "
+                "the paper's target"));
 }
 
 TEST(TransformFile, IsTheFirstObjectInTheCloudsFrameWithoutScale) {

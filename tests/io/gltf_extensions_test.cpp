@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::TestFolder;
 
-/// A sheet of n x n squares, 2 n^2 triangles, whose heights differ.
+/// A height field of n x n squares, 2 n^2 triangles, whose heights differ.
 struct Sheet {
   std::uint32_t n = 3;
   std::vector<Eigen::Vector3f> positions;

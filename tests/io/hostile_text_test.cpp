@@ -51,7 +51,7 @@ TEST(HostileJson, NestedSidecarsAreRefused) {
   folder.write("b.pcd.json",
                R"({"glidar":"x","command":null,"frame":")" + std::string(100'000, 'x') + "\"}");
   const std::string error = error_text([&] { read_sidecar(folder / "b.pcd"); });
-  EXPECT_THAT(error, HasSubstr("is no count"));
+  EXPECT_THAT(error, HasSubstr("is not a count"));
   EXPECT_LT(error.size(), 600U);
 }
 

@@ -3,7 +3,7 @@
 #include "yaml_files.hpp"
 
 #include <glidar/io/config/sensor_file.hpp>
-#include <glidar/io/formats/npy.hpp>
+#include <glidar/io/formats/npy_file.hpp>
 #include <support/data.hpp>
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What single formats say of axes, transparency and textures, and what becomes of it.
+// Axes, transparency and textures of specific formats.
 #include <glidar/io/model/import_process.hpp>
 
 #include <io/model_test_support.hpp>
@@ -44,7 +44,7 @@ TEST(ModelFormats, UniformTranslucencyIsToldToBeSolid) {
   EXPECT_THAT(notes_of_mtl("Tr 0.7"), Contains(HasSubstr("transparency is shown solid")));
   EXPECT_THAT(notes_of_mtl("d 1"), Not(Contains(HasSubstr("transparency"))));
   EXPECT_THAT(notes_of_mtl("d 0.3\nmap_d mask.ppm"),
-              Not(Contains(HasSubstr("transparency"))));  // the mask says where it is cut
+              Not(Contains(HasSubstr("transparency"))));  // the mask defines the cut-out
 }
 
 TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
@@ -80,8 +80,8 @@ TEST(ModelFormats, ATextureOfASiblingFolderIsMissingWithTheRemedy) {
   const Model model = load(temp.write("model/a.obj", testing::quad_obj("a.mtl")));
   ASSERT_EQ(model.missing_textures.size(), 1U);
   EXPECT_EQ(model.missing_textures[0].name, "../pictures/paint.ppm");
-  EXPECT_THAT(model.missing_textures[0].reason,
-              AllOf(HasSubstr("outside the model's folder"), HasSubstr("copy it in there")));
+  EXPECT_THAT(model.missing_textures[0].reason, AllOf(HasSubstr("outside the model's folder"),
+                                                      HasSubstr("copy it into that folder")));
   temp.write("model/paint.ppm", testing::ppm(1, 1, "abc"));
   EXPECT_THAT(load(temp.path() / "model/a.obj").missing_textures, ::testing::IsEmpty());
 }

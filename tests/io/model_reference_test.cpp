@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The truth of reference/core: every stable pixel names a triangle of the model and its distance.
-// Here only the loader is on trial: the named triangle must lie where the pixel's ray is, at that
-// distance.
+// The ground truth of reference/core: every stable pixel has a triangle of the model and its
+// distance. Here only the loader is on trial: the named triangle must lie where the pixel's ray is,
+// at that distance.
 
 #include <glidar/io/model/model.hpp>
 

@@ -232,7 +232,7 @@ TEST(SceneFileErrors, WrongSizesOfBuiltInModelsAreReportedWithTheirPlace) {
     return error_of(folder, [&] { load_scene_file(file, {}, {}); });
   };
   EXPECT_EQ(error("models: [{model: 'builtin:box', radius: 2}]\n"),
-            "s.yaml:1:18: models[0].model: builtin:box:radius=2: 'radius' is no size of this "
+            "s.yaml:1:18: models[0].model: builtin:box:radius=2: 'radius' is not a size of this "
             "model; allowed: size");
   EXPECT_EQ(error("models: [{model: 'builtin:box', size: [1, 2]}]\n"),
             "s.yaml:1:18: models[0].model: builtin:box:size=1,2: 2 numbers; allowed: one number, "

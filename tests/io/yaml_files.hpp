@@ -15,7 +15,7 @@ namespace glidar {
 
 using testing::TestFolder;
 
-/// What the error of `action` says, without the folder's name; "" when there is none.
+/// The error message of `action` without the folder's name; "" without an error.
 template <class Action>
 std::string error_of(const TestFolder& folder, Action action) {
   try {
@@ -31,7 +31,7 @@ std::string error_of(const TestFolder& folder, Action action) {
   return "";
 }
 
-/// A file with one fault, and what the error must say of it.
+/// A file with one error, and the expected message.
 struct BadFile {
   const char* name;
   std::string content;

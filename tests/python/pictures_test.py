@@ -121,7 +121,7 @@ def test_pictures_of_clouds_reject_invalid_options(frame):
         (lambda: frame.bird_eye(colour_by="ring"), "a camera has no rings"),
         (lambda: frame.bird_eye(colour_by="heat"), "colour_by: 'heat'; allowed: height, range"),
         (lambda: frame.bird_eye(size=(10, 1000)), "picture size: 10 x 1000 pixels"),
-        (lambda: frame.perspective(eye=[1, 2, 3], target=[1, 2, 3]), "view_eye: it is where"),
+        (lambda: frame.perspective(eye=[1, 2, 3], target=[1, 2, 3]), "view_eye: it equals"),
         (lambda: frame.perspective(eye=[1, 2]), "view_eye"),
     ):
         with pytest.raises(glidar.Error, match=words):

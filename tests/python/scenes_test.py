@@ -119,7 +119,7 @@ def test_built_in_models_have_sizes():
     box = glidar.Scene("builtin:box:size=4,2,1")
     assert box.objects[0].name == "box"
     assert box.bounds[1] == pytest.approx([2, 1, 0.5])
-    with pytest.raises(glidar.Error, match="'sise' is no size of this model.*did you mean 'size'"):
+    with pytest.raises(glidar.Error, match="'sise' is not a size of this model.*did you mean 'size'"):
         glidar.Scene("builtin:box:sise=4")
 
 

@@ -24,7 +24,7 @@
 namespace glidar {
 namespace {
 
-/// A piece stays in a core's own cache until the system has copied it.
+/// A block stays in a core's cache until the system has copied it.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
 constexpr std::size_t kSlots = 128;
 constexpr std::size_t kSlotPathBytes = 4096;
@@ -35,14 +35,14 @@ constexpr int kFilling = 1;
 constexpr int kListed = 2;
 constexpr int kRemoving = 3;
 
-/// A temporary file's name where a signal handler can read it: no allocation, no lock.
+/// A temporary file's name in memory that a signal handler can read without allocation and locks.
 struct Slot {
   std::atomic<int> state{kFree};
   std::array<char, kSlotPathBytes> path{};
 };
 static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
 
-// A signal handler takes no arguments, so this list has to be the process's own.
+// Global, because a signal handler has no arguments.
 constinit std::array<Slot, kSlots> unfinished{};
 
 int list_unfinished(const std::string& path) {
@@ -57,7 +57,7 @@ int list_unfinished(const std::string& path) {
   return -1;
 }
 
-/// A slot that a handler is reading is left alone: the process is ending.
+/// A slot that a handler is reading is not changed, because the process is ending.
 void unlist(int slot) {
   if (slot < 0) return;
   int expected = kListed;
@@ -68,17 +68,17 @@ void unlist(int slot) {
   const std::string reason = std::generic_category().message(code);
   std::string remedy;
   if (code == ENOSPC || code == EDQUOT || code == EFBIG)
-    remedy = "make room or write to another folder; nothing of this file was left behind";
-  if (code == ENOENT) remedy = "make the folder first";
+    remedy = "make room or write to another folder; no part of this file remains";
+  if (code == ENOENT) remedy = "create the folder first";
   if (code == EACCES || code == EPERM || code == EROFS) remedy = "write to another folder";
   throw Error({path.string(), fmt::format("cannot {}: {}", what, reason), "", remedy});
 }
 
-/// To a descriptor of others: what was sent cannot be taken back.
+/// Error for an open file descriptor, to which bytes were written already.
 [[noreturn]] void fail_sent(const std::filesystem::path& path, int code) {
   throw Error({path.string(),
                fmt::format("cannot write: {}", std::generic_category().message(code)), "",
-               "what was sent before is not whole; write to a file instead"});
+               "the data sent so far is incomplete; write to a file instead"});
 }
 
 /// A temporary file, listed as unfinished.
@@ -88,11 +88,11 @@ struct Temporary {
   int slot = -1;  ///< in the list; -1: the list is full
 };
 
-/// A new file in `folder` that nobody else has open. It is listed before it exists, so that a
-/// signal at any moment leaves nothing behind.
+/// A new, exclusively opened file in `folder`. It is listed before it exists, so that a
+/// signal at any moment leaves no file.
 Temporary open_temporary(const std::filesystem::path& folder, const std::filesystem::path& wanted,
                          mode_t mode) {
-  // Clients that use up all descriptors are cut off by another thread soon.
+  // Another thread soon disconnects clients that use up all descriptors.
   constexpr unsigned kMaxWaits = 200;
   constexpr std::chrono::milliseconds kWait{10};
   unsigned waits = 0;
@@ -116,11 +116,12 @@ Temporary open_temporary(const std::filesystem::path& folder, const std::filesys
 }  // namespace
 
 AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : path_(path) {
-  std::error_code ignored;  // a path that cannot be looked at fails below, with the reason
+  std::error_code ignored;  // an inaccessible path fails below with the reason
   if (std::filesystem::is_directory(path, ignored))
     throw Error({path.string(), "is a folder", "a file name", ""});
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
-    throw Error({path.string(), "is a device, pipe or socket", "a regular file, or none yet", ""});
+    throw Error(
+        {path.string(), "is a device, pipe or socket", "a regular file, or a new name", ""});
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   buffer_.resize(kPieceBytes);
   constexpr mode_t kDefault = 0666;
@@ -134,7 +135,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : pat
 AtomicFile::AtomicFile(int target, const std::filesystem::path& name)
     : path_(name), target_(target) {
   buffer_.resize(kPieceBytes);
-  // unnamed, so that it is gone whenever the program ends; formats go back in it to fill gaps
+  // unnamed, so that it disappears when the program ends; a file, because formats seek back
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
   if (!file) fail(path_, "create a temporary file", errno);
   descriptor_ = ::fcntl(::fileno(file.get()), F_DUPFD_CLOEXEC, 0);
@@ -190,7 +191,7 @@ void AtomicFile::finish() {
 void AtomicFile::commit() {
   finish();
   if (target_ >= 0) return send();
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "put in place", errno);
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "rename", errno);
   temporary_.clear();
   unlist(std::exchange(slot_, -1));
 }
@@ -216,7 +217,7 @@ void AtomicFile::send() const {
       const ssize_t written = ::write(target_, rest.data(), rest.size());
       if (written < 0 && errno == EINTR) continue;
       if (written < 0 && errno == EPIPE)
-        throw ClosedPipe({path_.string(), "nobody reads it any more", "", ""});
+        throw ClosedPipe({path_.string(), "its reader has closed it", "", ""});
       if (written < 0) fail_sent(path_, errno);
       rest = rest.subspan(static_cast<std::size_t>(written));
     }

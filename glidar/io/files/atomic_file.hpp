@@ -13,36 +13,36 @@
 
 namespace glidar {
 
-/// Nobody reads the other end of a pipe any more, as with `| head`.
+/// The reader has closed the other end of a pipe, as with `| head`.
 class ClosedPipe : public Error {
  public:
   using Error::Error;
 };
 
-/// A file that appears under its name only when it is whole: bytes go to a temporary file in the
-/// same folder, commit() renames it. Without commit() the destructor removes the temporary file and
-/// whatever stood under the name stays. Writes are gathered and go out in large pieces that start
-/// at multiples of their size, which file systems take fastest.
+/// A file that appears under its name only when it is complete: bytes are written to a temporary
+/// file in the same folder, which commit() renames. Without commit() the destructor removes the
+/// temporary file and an existing file stays unchanged. Writes are buffered and flushed in large
+/// blocks at multiples of the block size, which is fastest for file systems.
 class AtomicFile {
  public:
-  /// Who may read the file: all that the user's mask lets, or its owner alone.
+  /// Who may read the file: everyone whom the user's umask allows, or its owner only.
   enum class Readers : std::uint8_t { usual, owner };
-  /// Throws Error when `path` is there and no regular file (a folder, a device), or no file can be
-  /// made beside it.
+  /// Throws Error when `path` exists and is not a regular file (a folder, a device), or no file can
+  /// be created in its folder.
   explicit AtomicFile(const std::filesystem::path& path, Readers readers = Readers::usual);
-  /// The same for an open file of the system that stays open, such as standard output: commit()
-  /// sends it the bytes, in order. `name` appears in errors.
+  /// The same for an open file descriptor that stays open, such as standard output: commit()
+  /// writes the bytes to it, in order. `name` appears in errors.
   AtomicFile(int target, const std::filesystem::path& name);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// Appends at the current position. Throws Error (disk full, quota, input/output error), and then
-  /// again at every further call: a file with a gap is never put in place.
+  /// again at every further call: an incomplete file is never renamed.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Room for the next bytes, at least `least` of them, to be filled in place; take() then appends
+  /// Buffer space for at least `least` bytes, to be filled in place; take() then appends
   /// the first `count`. Throws as write() does.
   std::span<std::byte> room(std::size_t least);
   void take(std::size_t count);
@@ -51,18 +51,18 @@ class AtomicFile {
   void seek(std::uint64_t offset);
   [[nodiscard]] std::uint64_t position() const { return position_; }
 
-  /// Hands everything to the system and closes the temporary file, so that of several files all can
-  /// be complete before the first is renamed. Throws Error when a byte could not be stored.
+  /// Writes everything and closes the temporary file, so that several files can all
+  /// be complete before the first one is renamed. Throws Error when a byte could not be stored.
   void finish();
 
-  /// finish(), then gives the file its name, replacing what was there in one step. Throws Error;
-  /// ClosedPipe when it was to go to a pipe that nobody reads.
+  /// finish(), then renames the file, which replaces an existing one atomically. Throws Error;
+  /// ClosedPipe when the target is a pipe that its reader has closed.
   void commit();
 
-  /// In the place of finish() and commit(), for a file that a loss of power does not undo: the
+  /// Instead of finish() and commit(), for a file that survives power loss: the
   /// bytes are on the disk before the file gets its name, and the name when this returns. Throws
-  /// Error also when the disk cannot confirm one of them; where that is the name, the file is in
-  /// place. What commit() sends to an open file of the system is not synced.
+  /// Error also when the disk cannot confirm one of them; if that is the name, the file is in
+  /// place. Bytes that commit() writes to an open file descriptor are not synced.
   void commit_durably();
 
   /// The name the file will have.
@@ -77,11 +77,11 @@ class AtomicFile {
   std::filesystem::path path_;
   std::filesystem::path temporary_;  ///< absolute; empty once committed
   int descriptor_ = -1;              ///< -1 once finished
-  int target_ = -1;                  ///< where commit() sends the bytes; -1: nowhere, it renames
+  int target_ = -1;                  ///< where commit() writes the bytes; -1: none, it renames
   int failure_ = 0;                  ///< errno of the first write that failed
   int slot_ = -1;                    ///< in the list for remove_unfinished_files, -1: not in it
   std::uint64_t position_ = 0;
-  std::vector<std::byte> buffer_;  ///< a piece, and room beyond it for what straddles its end
+  std::vector<std::byte> buffer_;  ///< a block, and space for bytes beyond its end
   std::size_t filled_ = 0;         ///< bytes of the buffer in use
 };
 

@@ -39,8 +39,8 @@ std::string reason(int error) {
   return std::strerror(error);
 }
 
-/// Makes the folder, and those above it, for their owner only, as the XDG base directory
-/// specification wants them. 0 or an error number.
+/// Creates the folder and its parents for their owner only, as required by the XDG base directory
+/// specification. 0 or an error number.
 int make_private(const fs::path& path) {
   if (::mkdir(path.c_str(), kOwnerOnly) == 0 || errno == EEXIST) return 0;
   if (errno != ENOENT || !path.has_parent_path() || path.parent_path() == path) return errno;
@@ -49,18 +49,18 @@ int make_private(const fs::path& path) {
   return ::mkdir(path.c_str(), kOwnerOnly) == 0 || errno == EEXIST ? 0 : errno;
 }
 
-/// Why a folder with these properties must not be used; empty: it may.
+/// Why a folder with these properties must not be used; empty: it may be used.
 std::string distrust(const struct stat& info, const fs::path& path) {
   if (info.st_uid != ::geteuid()) {
     return fmt::format(
-        "the cache folder {} belongs to another user (id {}), so models are not cached; name a "
-        "folder of your own by --cache-folder, or use --no-cache",
+        "the cache folder {} belongs to another user (id {}), so models are not cached; use a "
+        "folder of your own with --cache-folder, or --no-cache",
         path.string(), info.st_uid);
   }
   if ((info.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return fmt::format(
         "the cache folder {} is accessible to other users (mode {:04o}), so models are not cached; "
-        "run: chmod 700 '{}' (or name another by --cache-folder)",
+        "run: chmod 700 '{}' (or use another with --cache-folder)",
         path.string(), info.st_mode & 07777U, path.string());
   }
   return "";
@@ -75,7 +75,7 @@ bool is_entry(std::string_view name) {
   return name.ends_with(kEnding) && is_key(name.substr(0, name.size() - kEnding.size()));
 }
 
-/// The name of an entry, a dot, and more: an entry that is being written, or was.
+/// The name of an entry, a dot, and a suffix: a complete or incomplete temporary file.
 bool is_temporary(std::string_view name) {
   const std::size_t entry = kKeyDigits + kEnding.size();
   return name.size() > entry && name[entry] == '.' && is_entry(name.substr(0, entry));
@@ -113,7 +113,7 @@ bool is_earlier(const Used& a, const Used& b) {
   return a.at.tv_sec != b.at.tv_sec ? a.at.tv_sec < b.at.tv_sec : a.at.tv_nsec < b.at.tv_nsec;
 }
 
-/// Removes the entries that were not used for longest, but never `kept`.
+/// Removes the least recently used entries, but never `kept`.
 void evict(const CacheFolder& folder, std::uint64_t limit_bytes, const std::string& kept) {
   std::vector<Used> entries;
   std::uint64_t total = 0;
@@ -135,7 +135,7 @@ void evict(const CacheFolder& folder, std::uint64_t limit_bytes, const std::stri
   }
 }
 
-/// A temporary file that this process has locked; it goes with its owner unless it was renamed.
+/// A temporary file that this process has locked; the destructor removes it unless it was renamed.
 class TemporaryEntry {
  public:
   TemporaryEntry(const CacheFolder& folder, const std::string& entry) : folder_(folder.fd.get()) {
@@ -158,7 +158,7 @@ class TemporaryEntry {
   [[nodiscard]] int fd() const { return fd_.get(); }
   /// 0 or an error number.
   [[nodiscard]] int error() const { return fd_ ? 0 : error_; }
-  /// 0 or an error number; some file systems find only on closing that a disk or quota is full.
+  /// 0 or an error number; some file systems report a full disk or quota only on closing.
   [[nodiscard]] int error_of_closing() const {
     const int copy = ::fcntl(fd_.get(), F_DUPFD_CLOEXEC, 0);  // the file stays locked
     if (copy < 0) return errno;
@@ -175,7 +175,7 @@ class TemporaryEntry {
     [[maybe_unused]] const ssize_t got = ::getrandom(&value, sizeof value, 0);
     return value;
   }
-  /// Another process may have taken the file for a dead writer's before it was locked.
+  /// Before it was locked, another process may have considered the file abandoned.
   static bool is_ours(const UniqueFd& file) {
     ::flock(file.get(), LOCK_EX);
     struct stat info {};

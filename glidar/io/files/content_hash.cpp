@@ -44,11 +44,11 @@ std::string hex(const Hash128& hash) {
 }
 
 std::optional<Hash128> hash_file(const std::filesystem::path& path) {
-  // O_NONBLOCK: a FIFO in the place of the file must not stop us before fstat tells.
+  // O_NONBLOCK: a FIFO must not block open() before fstat() detects it.
   const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat info {};
   if (!fd || ::fstat(fd.get(), &info) != 0 || !S_ISREG(info.st_mode)) return std::nullopt;
-  constexpr off_t kMax_bytes = off_t{1} << 36U;  // 64 GiB: a file without content may claim more
+  constexpr off_t kMax_bytes = off_t{1} << 36U;  // 64 GiB: a sparse file may be larger
   if (info.st_size > kMax_bytes) return std::nullopt;
   ContentHash hash;
   std::vector<char> buffer(std::size_t{1} << 18U);

@@ -14,7 +14,8 @@ namespace glidar {
 
 using Hash128 = std::array<std::uint64_t, 2>;
 
-/// XXH3-128 over bytes that arrive in pieces. Not cryptographic: it finds changes and damage.
+/// XXH3-128 over bytes that are added in blocks. Not cryptographic: it detects changes and
+/// corruption.
 class ContentHash {
  public:
   ContentHash();
@@ -32,7 +33,7 @@ class ContentHash {
 /// 32 hexadecimal digits.
 std::string hex(const Hash128& hash);
 
-/// Hash of a regular file's content; none when it cannot be read or is no regular file.
+/// Hash of a regular file's content; empty when it cannot be read or is not a regular file.
 std::optional<Hash128> hash_file(const std::filesystem::path& path);
 
 }  // namespace glidar

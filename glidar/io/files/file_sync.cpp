@@ -38,8 +38,7 @@ int sync(int descriptor) {
 void sync_file(int descriptor, const std::filesystem::path& path) {
   const int error = sync(descriptor);
   if (error != 0) {
-    fail(path, "write to the disk (fsync)", error,
-         "check the disk; nothing of this file was left behind");
+    fail(path, "write to the disk (fsync)", error, "check the disk; no part of this file remains");
   }
 }
 
@@ -47,11 +46,11 @@ void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   const UniqueFd descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   const int error = descriptor ? sync(descriptor.get()) : errno;
-  // POSIX lets a file system refuse it (EINVAL); FUSE and network file systems do (ENOTSUP).
+  // POSIX lets a file system reject it (EINVAL); FUSE and network file systems do (ENOTSUP).
   if (error == 0 || (descriptor && (error == EINVAL || error == ENOTSUP))) return;
   fail(path, "write its folder to the disk (fsync)", error,
-       "the file is in place and complete, but may not survive a loss of power; check the disk, or "
-       "leave out --durable");
+       "the file is in place and complete, but may not survive power loss; check the disk, or "
+       "omit --durable");
 }
 
 }  // namespace glidar

@@ -10,15 +10,15 @@
 
 namespace glidar {
 
-/// Excludes other writers to a folder while it lives: an advisory lock (flock) on the folder
-/// itself, so that no file is left behind. It ends with the process at the latest.
+/// Excludes other writers to a folder during its lifetime: an advisory lock (flock) on the folder
+/// itself, so that no lock file is needed. The system releases it when the process ends.
 class FolderLock {
  public:
-  /// Waits for its turn, up to a minute. A file system that has no such locks gives none. Throws
-  /// Error when another program keeps the lock for longer.
+  /// Waits for the lock, up to a minute. On file systems without such locks it is not acquired.
+  /// Throws Error when another program keeps the lock for longer.
   explicit FolderLock(const std::filesystem::path& folder);
 
-  /// Whether the file system gave the lock.
+  /// Whether the file system granted the lock.
   [[nodiscard]] bool is_held() const { return static_cast<bool>(descriptor_); }
 
  private:

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
          nearest.empty() ? "" : "did you mean '" + excerpt(nearest) + "'?");
   }
   if (code == ENXIO || code == ENODEV) fail(path, "not a regular file", kind.name);
-  fail(path, "cannot be opened: " + std::generic_category().message(code), "a file you may read");
+  fail(path, "cannot be opened: " + std::generic_category().message(code), "a readable file");
 }
 
 void check_size(const fs::path& path, std::uintmax_t size, const InputFileKind& kind) {
@@ -45,8 +45,8 @@ void check_size(const fs::path& path, std::uintmax_t size, const InputFileKind& 
 
 InputFile open_input_file(const fs::path& path, const InputFileKind& kind) {
   if (path.native().find('\0') != std::string::npos)
-    fail(excerpt(path.native()), "a zero byte in the name of a file", "a path");
-  // O_NONBLOCK: to open a pipe that nobody writes to would wait for a writer
+    fail(excerpt(path.native()), "a zero byte in the file name", "a path");
+  // O_NONBLOCK: opening a pipe without a writer would block
   InputFile file{UniqueFd(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY))};
   if (!file.descriptor) fail_to_open(path, errno, kind);
   struct stat info {};
@@ -69,7 +69,7 @@ std::size_t read_some(const InputFile& file, const fs::path& path, char* to, std
 
 std::string read_input_file(const fs::path& path, const InputFileKind& kind) {
   const InputFile file = open_input_file(path, kind);
-  std::string content(file.size + 1, '\0');  // one more, so that its end is seen
+  std::string content(file.size + 1, '\0');  // one more byte, to detect the end of the file
   std::size_t filled = 0;
   for (;;) {
     const std::size_t count =

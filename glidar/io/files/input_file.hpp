@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to the library and the program: the one way to open a file that is read.
+// Private to the library and the program: opens input files.
 
 #include <glidar/io/files/unique_fd.hpp>
 
@@ -13,7 +13,7 @@
 
 namespace glidar {
 
-/// What a file is to be, for errors.
+/// The expected type of a file, for errors.
 struct InputFileKind {
   std::string name;  ///< "a YAML file"
   std::uintmax_t largest_mib = 1;
@@ -26,13 +26,13 @@ struct InputFile {
   std::size_t size = 0;  ///< bytes, when it was opened
 };
 
-/// Opens a regular file of at most kind.largest_mib. A pipe or device in its place is refused
-/// without waiting for it. Throws Error: missing (with the nearest name in its folder), not a
+/// Opens a regular file of at most kind.largest_mib. A pipe or device is rejected
+/// without blocking. Throws Error: missing (with the nearest name in its folder), not a
 /// regular file, too large, not readable.
 InputFile open_input_file(const std::filesystem::path& path, const InputFileKind& kind);
 
-/// The whole file. Throws Error likewise, also when it cannot be read to its end, or grows beyond
-/// the limit.
+/// The whole file. Throws Error like open_input_file, also when it cannot be read completely or
+/// grows beyond the limit.
 std::string read_input_file(const std::filesystem::path& path, const InputFileKind& kind);
 
 /// The next bytes of an open file, at most `size`; 0 at its end. Throws Error.

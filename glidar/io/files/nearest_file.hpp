@@ -7,8 +7,8 @@
 
 namespace glidar {
 
-/// The name in the folder of a path that is most like the path's own; empty when none is near.
-/// For "did you mean" where there is no such file.
+/// The name in a path's folder that is most similar to the path's file name; empty when none is
+/// similar. For suggestions when a file is missing.
 std::string nearest_file(const std::filesystem::path& path);
 
 }  // namespace glidar

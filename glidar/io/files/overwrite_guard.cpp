@@ -18,7 +18,7 @@ std::filesystem::path real_path(const std::filesystem::path& path) {
 }
 
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code no_such_file;  // then it is not the same either, but for its name
+  std::error_code no_such_file;  // a missing file equals only its own name
   return real_path(a) == real_path(b) || std::filesystem::equivalent(a, b, no_such_file);
 }
 
@@ -32,7 +32,7 @@ std::vector<std::string> files_of(const Scene& scene) {
 
 void refuse_overwrite_of_inputs(std::span<const std::string> read,
                                 const std::filesystem::path& output) {
-  std::error_code ignored;  // what cannot be looked at is compared by its name
+  std::error_code ignored;  // inaccessible files are compared by name
   const std::filesystem::path name = real_path(output);
   const bool is_there = std::filesystem::exists(output, ignored);
   const auto is_it = [&](const std::string& file) {
@@ -41,7 +41,7 @@ void refuse_overwrite_of_inputs(std::span<const std::string> read,
   };
   if (std::none_of(read.begin(), read.end(), is_it)) return;
   throw Error({.where = output.string(),
-               .found = "is an input file: the scene was read from it, or it is written otherwise",
+               .found = "is an input file: the scene was read from it, or another output writes it",
                .allowed = "",
                .remedy = "choose another name"});
 }

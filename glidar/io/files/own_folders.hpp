@@ -9,8 +9,8 @@
 
 namespace glidar {
 
-/// Folders below which what was installed with this code lies (share/glidar, libexec/glidar), so
-/// that a moved installation finds its own: those of the shared library that holds the code (its
+/// Folders that contain the installed files of this code (share/glidar, libexec/glidar), so
+/// that a moved installation finds its files: those of the shared library with this code (its
 /// own folder and the one above), else the one above the running program's.
 std::vector<std::filesystem::path> own_folders();
 

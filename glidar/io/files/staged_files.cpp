@@ -32,7 +32,7 @@ void StagedFiles::add_folder(const std::filesystem::path& path) {
   std::error_code failure;
   if (std::filesystem::create_directory(path, failure)) folders_.push_back(path);
   if (!failure) return;
-  throw Error({path.string(), "cannot make this folder: " + failure.message(), "",
+  throw Error({path.string(), "cannot create this folder: " + failure.message(), "",
                "write to another folder"});
 }
 
@@ -50,7 +50,7 @@ void StagedFiles::commit() {
 void StagedFiles::clear() noexcept {
   files_.clear();
   removals_.clear();
-  std::error_code ignored;  // a folder that somebody else uses by now stays
+  std::error_code ignored;  // a folder that is in use by now stays
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
     std::filesystem::remove(*folder, ignored);
   folders_.clear();

@@ -12,8 +12,8 @@
 
 namespace glidar {
 
-/// Files that get their names together, once all of them are complete. Without commit() the
-/// destructor removes them and the folders that were made for them.
+/// Files that are renamed together when all of them are complete. Without commit() the
+/// destructor removes them and the folders that were created for them.
 class StagedFiles {
  public:
   StagedFiles() = default;
@@ -21,24 +21,24 @@ class StagedFiles {
   StagedFiles& operator=(const StagedFiles&) = delete;
   ~StagedFiles() { clear(); }
 
-  /// Files that none of those that are added may replace; they must outlive this.
+  /// Files that must not be overwritten; they must outlive this object.
   void protect(std::span<const std::string> read) { protected_ = read; }
-  /// A new file, to be written to and finished by the caller. Throws Error as AtomicFile does, and
-  /// when it would replace a protected file.
+  /// A new file, to be written to and finished by the caller. Throws Error like AtomicFile, and
+  /// when it would overwrite a protected file.
   AtomicFile& add(const std::filesystem::path& path);
-  /// The same for an open file of the system, which is sent the bytes.
+  /// The same for an open file descriptor, to which the bytes are written.
   AtomicFile& add(int target, const std::filesystem::path& name) {
     return files_.emplace_back(target, name);
   }
-  /// Removes a regular file at commit(), if it is there by then: one of an earlier output that does
+  /// Removes a regular file at commit(), if it exists: one of an earlier output that does
   /// not belong to the new files.
   void remove(const std::filesystem::path& path) { removals_.push_back(path); }
-  /// Makes a folder unless it is there. Throws Error.
+  /// Creates a folder unless it exists. Throws Error.
   void add_folder(const std::filesystem::path& path);
-  /// Removes what is outdated, then names the files, the one added first last: whoever waits for it
-  /// finds the others too. Programs that write the same files at once take turns, by a lock on the
-  /// folder of the file added first, so that all files in place are of one of them; file systems
-  /// without locks do without. Throws Error.
+  /// Removes outdated files, then renames the files, the first one last, so that
+  /// the others exist when it appears. Programs that write the same files concurrently are
+  /// serialised by a lock on the folder of the file added first, so that all files are from one
+  /// program; file systems without locks are not protected. Throws Error.
   void commit();
   /// Removes everything that is not committed.
   void clear() noexcept;

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The bytes of the character in UTF-8 that a text begins with (RFC 3629); 0: it begins with none.
+/// Length in bytes of the UTF-8 character at the start of a text (RFC 3629); 0: invalid.
 std::size_t character_size(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -24,7 +24,7 @@ std::size_t character_size(std::string_view text) {
   for (std::size_t i = 1; i < size; ++i) {
     if ((byte(i) & 0xC0U) != 0x80U) return 0;
   }
-  // spelled with more bytes than needed, half of a surrogate pair, or beyond the last letter
+  // overlong encoding, surrogate, or beyond the last code point
   const bool is_long = (first == 0xE0U && byte(1) < 0xA0U) || (first == 0xF0U && byte(1) < 0x90U);
   const bool is_no_letter =
       (first == 0xEDU && byte(1) > 0x9FU) || (first == 0xF4U && byte(1) > 0x8FU);

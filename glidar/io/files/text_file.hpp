@@ -14,13 +14,14 @@ namespace glidar {
 
 using TextFileKind = InputFileKind;
 
-/// The whole file, see read_input_file. Throws Error likewise, and when it has zero bytes in it.
+/// The whole file, see read_input_file. Throws Error like read_input_file, and when it contains
+/// zero bytes.
 std::string read_text_file(const std::filesystem::path& file, const TextFileKind& kind);
 
-/// Throws Error, with file and line, where a text is not UTF-8.
+/// Throws Error, with file and line, when a text is not UTF-8.
 void require_utf8(const std::filesystem::path& file, std::string_view text);
 
-/// A word of a file, fit for one line of an error among others; see excerpt().
+/// A word of a file, shortened for an error; see excerpt().
 std::string shown(std::string_view word);
 
 }  // namespace glidar

@@ -41,7 +41,7 @@ struct Layout {
   std::vector<LayoutField> fields;
 };
 
-/// What the surface seems to send back: 1 for a white matt one seen square on. See reflectivity().
+/// Apparent reflectivity: 1 for a white diffuse surface at normal incidence. See reflectivity().
 constexpr const char* kReflectivity = "reflectivity";
 
 double same(double value) {
@@ -64,8 +64,8 @@ double whole_turn(double angle_rad) {
 constexpr double kMaxByte = 255.0;
 
 /// A byte that is linear up to `white` for a reflectivity of 1 and logarithmic beyond, up to 255
-/// for a retro-reflector of 1000. The makers tell `white` and that more is retro-reflecting, not
-/// how much more.
+/// for a retro-reflector of 1000. Manufacturers publish `white` and that larger values are
+/// retro-reflective, but not the slope.
 double reflectivity_byte(double reflectivity, double white) {
   constexpr double kBrightest = 1000.0;
   if (!(reflectivity > 1.0)) return std::round(white * reflectivity);
@@ -73,13 +73,13 @@ double reflectivity_byte(double reflectivity, double white) {
   return std::min(255.0, white + 1.0 + std::round((254.0 - white) * share));
 }
 
-/// 0 to 100 is the per cent of diffuse surfaces: VLP-16 User Manual 63-9243, "Calibrated
+/// 0 to 100 is the percentage of diffuse surfaces: VLP-16 User Manual 63-9243, "Calibrated
 /// Reflectivity"; Ouster's firmware manual since 2.1 has the same scale.
 double percent_byte(double reflectivity) {
   return reflectivity_byte(reflectivity, 100.0);
 }
 
-/// 0 to 150 is 0 to 100 % of Lambert's reflection: Livox Avia User Manual, "Output Data".
+/// 0 to 150 is 0 to 100 % Lambertian reflection: Livox Avia User Manual, "Output Data".
 double livox_byte(double reflectivity) {
   return reflectivity_byte(reflectivity, 150.0);
 }
@@ -147,7 +147,7 @@ const std::vector<Layout>& layouts() {
   return kLayouts;
 }
 
-/// The cloud columns that the fields are made of, each once.
+/// The cloud columns that the fields need, each once.
 std::vector<std::string> columns_of(const Layout& layout) {
   std::vector<std::string> columns;
   const auto need = [&](const std::string& name) {
@@ -167,7 +167,7 @@ PointFieldLayout told(const Layout& layout) {
   return {layout.name, text, columns_of(layout)};
 }
 
-/// Where among layouts() the one of this name is.
+/// Index in layouts() of the layout with this name.
 std::size_t place_of(std::string_view name) {
   std::vector<std::string> names;
   for (const Layout& layout : layouts()) {
@@ -180,14 +180,14 @@ std::size_t place_of(std::string_view name) {
                near.empty() ? "" : fmt::format("did you mean '{}'?", near)});
 }
 
-/// One component of a column; its numbers are exact in double but for times beyond 104 days.
+/// One component of a column; its numbers are exact in double, except times beyond 104 days.
 std::vector<double> field_values(const PointCloud& cloud, const Layout& layout,
                                  const std::string& name, std::size_t component) {
   const Column* column = find_column(cloud, name);
   if (column == nullptr) {
     throw Error({"cloud layout " + layout.name, fmt::format("the cloud has no column {}", name),
                  fmt::format("a cloud with {}", fmt::join(columns_of(layout), " ")),
-                 "ask for these columns"});
+                 "request these columns"});
   }
   const std::size_t step = column->components.size();
   std::vector<double> numbers(cloud.size());
@@ -200,9 +200,9 @@ std::vector<double> field_values(const PointCloud& cloud, const Layout& layout,
   return numbers;
 }
 
-/// How the sensor spells intensity.
+/// How the sensor reports intensity.
 struct Spelling {
-  bool is_reflectance = false;             ///< the range's part is taken out already
+  bool is_reflectance = false;             ///< already corrected for range
   const IntensityScale* vendor = nullptr;  ///< reflectance as a byte; nullptr: as a number
 };
 
@@ -217,10 +217,10 @@ Spelling spelling_of(const Sensor& sensor) {
   return spelling;
 }
 
-/// The sensor's own estimate of what a surface sends back, as makers calibrate it: the range's part
-/// of the signal is taken out as it is in clear air, which is where they calibrate; the incidence's
-/// and the weather's stay. Sensors that tell reflectance have done so,
-/// and the paper's light hardly weakens over the range, so its intensity is that already.
+/// The sensor's own estimate of reflectivity, as manufacturers calibrate it: the signal is
+/// corrected for range as in clear air, where sensors are calibrated, but not for incidence and
+/// weather. Sensors that report reflectance have done so, and the paper's light hardly depends on
+/// range, so its intensity is the reflectivity.
 std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
                                  const Sensor& sensor, const Beams& beams) {
   std::vector<double> numbers = field_values(cloud, layout, "intensity", 0);
@@ -235,7 +235,7 @@ std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
   return numbers;
 }
 
-/// The nearest number of the type; NaN is 0 where there is no NaN.
+/// The nearest number of the type; NaN becomes 0 in types without NaN.
 template <class T>
 T nearest(double value) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -260,15 +260,15 @@ Column made(const LayoutField& field, const std::vector<double>& numbers, std::s
   return column;
 }
 
-/// Autoware's codes of two returns tell which is stronger and which is nearer, or that both are
-/// one; a row of them alone does not.
+/// Autoware's codes of two returns state which is stronger and which is nearer, or that both are
+/// one; a single return does not contain this.
 void check_returns(const Layout& layout, const Beams& beams) {
   if (layout.name != "autoware" || beams.returns == 1) return;
-  throw Error({"cloud layout autoware", fmt::format("the sensor tells {} returns", beams.returns),
-               "one return of each pulse", "give --returns strongest, or another layout"});
+  throw Error({"cloud layout autoware", fmt::format("the sensor reports {} returns", beams.returns),
+               "one return of each pulse", "use --returns strongest, or another layout"});
 }
 
-/// For its columns: what unit_intensities() is made of.
+/// A layout for unit_intensities().
 const Layout& unit_layout() {
   static const Layout kUnit = {"kitti", "KITTI", {{"intensity", F32{}, kReflectivity, 0, same}}};
   return kUnit;

@@ -13,12 +13,12 @@
 
 namespace glidar {
 
-/// The fields of a point as the driver of another sensor names, types, scales and orders them;
-/// docs/files.md tells each field with its source.
+/// The point format of a sensor's driver: names, types, scales and order of the fields;
+/// docs/files/layouts.md lists each field with its source.
 struct PointFieldLayout {
   std::string name;
-  std::string description;           ///< for --help: whose it is, and its fields
-  std::vector<std::string> columns;  ///< cloud columns it is made of
+  std::string description;           ///< for --help: its driver and fields
+  std::vector<std::string> columns;  ///< cloud columns that it requires
 };
 
 /// All layouts, for help and errors.
@@ -27,16 +27,16 @@ std::span<const PointFieldLayout> cloud_layouts();
 /// Throws Error naming all layouts and the nearest when there is none of this name.
 const PointFieldLayout& find_layout(std::string_view name);
 
-/// The points of a cloud, in the same order, with one column per field of the layout. The sensor
-/// and its beams tell how its intensities are to be read.
-/// Throws Error when there is no such layout or the cloud lacks a column that it is made of.
+/// The points of a cloud, in the same order, with one column per field of the layout. Sensor
+/// and beams determine how intensities are converted.
+/// Throws Error when there is no such layout or the cloud lacks a required column.
 PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const Sensor& sensor,
                         const Beams& beams);
 
-/// Intensities from 0 to 1, clipped, as KITTI's points have them. Of sensors of pulsed light the
-/// calibrated reflectivity as the byte of the layout `velodyne` over 255; of sensors whose noise
-/// spells intensity as a vendor's byte, that byte over 255; else the intensity itself. Needs the
-/// columns intensity and, of pulsed light, range. Throws Error without them.
+/// Intensities from 0 to 1, clipped, as in KITTI's points. For pulsed sensors the
+/// calibrated reflectivity as the byte of the layout `velodyne` over 255; for sensors whose noise
+/// converts intensity to a vendor's byte, that byte over 255; else the intensity itself. Needs the
+/// columns intensity and, for pulsed sensors, range. Throws Error without them.
 std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& sensor,
                                     const Beams& beams);
 

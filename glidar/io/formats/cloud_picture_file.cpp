@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/cloud_picture_file.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/pictures/chart.hpp>
 #include <glidar/io/pictures/font.hpp>
 #include <glidar/io/pictures/png_image.hpp>
@@ -17,17 +18,17 @@
 namespace glidar {
 namespace {
 
-/// A cloud ready to be drawn.
+/// A cloud prepared for drawing.
 struct CloudScene {
   ShownPoints shown;
   PointColours colours;
   Eigen::Matrix3d up_from_cloud;
   Eigen::Vector3d sensor_m;  ///< in the frame with z up
-  Eigen::Vector3d ahead;     ///< of the sensor, in the same frame
+  Eigen::Vector3d ahead;     ///< boresight of the sensor, in the same frame
 };
 
-/// Turns the cloud's axes so that z is up: the world's are like that; others are the sensor's,
-/// which become x ahead, y to the left, z up.
+/// Rotates the cloud so that z is up: the world frame is unchanged; others are sensor frames,
+/// which become x forward, y left, z up.
 Eigen::Matrix3d up_from_cloud(const CloudFile& job) {
   if (job.cloud.frame_id == "world") return Eigen::Matrix3d::Identity();
   const SensorAxes axes = axes_of(job.context.beams);
@@ -56,7 +57,7 @@ CloudScene scene_of(const CloudFile& job) {
   return scene;
 }
 
-/// The picture's parts, in pixels.
+/// Layout of the picture, in pixels.
 struct PictureLayout {
   double letters;
   Box plot;
@@ -88,7 +89,7 @@ PictureLayout make_layout(const CloudPictureOptions& options, const PointColours
 
 void draw_key(Picture& picture, const PictureLayout& layout, const PointColours& colours) {
   if (colours.bar) {
-    const std::size_t inset = layout.key.width / 6;  // a bar need not be as wide as the plot
+    const std::size_t inset = layout.key.width / 6;  // the bar is narrower than the plot
     draw_colour_bar(
         picture,
         {layout.key.x + inset, layout.key.y, layout.key.width - 2 * inset, layout.key.height},
@@ -105,7 +106,7 @@ Colour darkened(const Colour& colour, double share) {
   return {channel(colour.r), channel(colour.g), channel(colour.b)};
 }
 
-/// Each pixel in the colour of its point, as much of it as `shades` say (empty: all).
+/// Each pixel in the colour of its point, multiplied by `shades` (empty: 1).
 void draw_points(Picture& picture, const Box& plot, const PointImage& image,
                  const std::vector<Colour>& colours, const std::vector<double>& shades) {
   for (std::size_t i = 0; i < image.points.size(); ++i) {
@@ -117,7 +118,7 @@ void draw_points(Picture& picture, const Box& plot, const PointImage& image,
   }
 }
 
-/// A line of text in the lower right corner of the plot, on ground of its own.
+/// A line of text in the lower right corner of the plot, on its own background.
 void draw_note(Picture& picture, const PictureLayout& layout, const std::string& note) {
   if (note.empty()) return;
   const Box& plot = layout.plot;
@@ -174,10 +175,10 @@ Perspective view_of(const CloudFile& job, const CloudScene& scene, const Box& pl
   if (options.target_m) view.target_m = scene.up_from_cloud * *options.target_m;
   if (options.eye_m) view.eye_m = scene.up_from_cloud * *options.eye_m;
   if ((view.target_m - view.eye_m).norm() > 0.0) return view;
-  throw Error({"view_eye", "it is where the view looks at", "a place apart from view_target", ""});
+  throw Error({"view_eye", "it equals the view's target", "a point other than view_target", ""});
 }
 
-/// Lines on the ground below the points, every so many metres.
+/// A grid of lines on the ground below the points.
 struct GroundGrid {
   double height_m;
   double step_m;
@@ -195,7 +196,7 @@ GroundGrid grid_of(const CloudScene& scene, const Perspective& view) {
   return {heights.low, factor * power, view.target_m.head<2>()};
 }
 
-/// A line as dots that are close enough to be one; behind all points.
+/// A line as dense dots, behind all points.
 void draw_line(Picture& picture, const Box& plot, const Perspective& view, const PointImage& image,
                const std::array<Eigen::Vector3d, 2>& ends) {
   constexpr int kDots = 4000;
@@ -217,7 +218,7 @@ void draw_line(Picture& picture, const Box& plot, const Perspective& view, const
 
 void draw_ground(Picture& picture, const Box& plot, const Perspective& view,
                  const PointImage& image, const GroundGrid& grid) {
-  constexpr int kLines = 12;  // to each side
+  constexpr int kLines = 12;  // in each direction
   const double x = std::round(grid.middle_m.x() / grid.step_m);
   const double y = std::round(grid.middle_m.y() / grid.step_m);
   const auto corner = [&](double i, double j) {

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/depth_png_file.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kMaxDepthGrey = std::numeric_limits<std::uint16_t>::max();
 
-/// The largest scale that holds this depth, rounded down to two digits to be easy to remember.
+/// The maximum scale for this depth, rounded down to two digits.
 double fitting_scale(double depth_m) {
   const double exact = kMaxDepthGrey / depth_m;
   const double unit = std::pow(10.0, std::floor(std::log10(exact)) - 1.0);
@@ -33,7 +34,7 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
   if (smallest_m < 0.0) {
     throw Error({file.path().string(),
                  fmt::format("a depth of {:.9g} m, behind the sensor", smallest_m),
-                 "depths above 0", "write .npy or .depth.tiff, which hold any depth"});
+                 "depths above 0", "write .npy or .depth.tiff, which can store any depth"});
   }
   if (std::round(largest_m * units_per_m) > kMaxDepthGrey) {
     throw Error(

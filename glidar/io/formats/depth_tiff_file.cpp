@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/depth_tiff_file.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 
 #include <fmt/format.h>
 #include <tiffio.h>
@@ -19,7 +20,7 @@
 namespace glidar {
 namespace {
 
-/// The file in memory: libtiff goes back in it to link its parts.
+/// The file in memory, because libtiff seeks back to link its parts.
 struct Memory {
   std::vector<char> bytes;
   std::size_t position = 0;
@@ -69,7 +70,7 @@ int on_error(TIFF* /*tiff*/, void* user, const char* /*module*/, const char* for
   std::array<char, 256> text{};
   std::vsnprintf(text.data(), text.size(), format, arguments);
   static_cast<Memory*>(user)->message = text.data();
-  return 1;  // nobody else has to hear of it
+  return 1;  // suppresses libtiff's own messages
 }
 
 using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
@@ -116,8 +117,8 @@ void write_depth_tiff(const CloudFile& job, AtomicFile& file) {
         TIFFFlush(tiff.get()) == 1;
   }
   if (!is_written) {
-    throw Error({file.path().string(), fmt::format("cannot make the TIFF: {}", memory.message), "",
-                 "write .npy, which holds the same numbers"});
+    throw Error({file.path().string(), fmt::format("cannot write the TIFF: {}", memory.message), "",
+                 "write .npy, which has the same numbers"});
   }
   file.write(std::string_view(memory.bytes.data(), memory.bytes.size()));
 }

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/file_sink.hpp>
+#include <glidar/io/formats/kitti_file.hpp>
+#include <glidar/io/formats/sidecar_file.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/format_table.hpp>
-#include <glidar/io/formats/kitti_files.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
 
 #include <fcntl.h>
@@ -31,21 +32,21 @@ void check_writable(const std::filesystem::path& path, const std::filesystem::pa
 
 void check_folder(const std::filesystem::path& path, const Format& format) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  std::error_code ignored;  // a folder that cannot be looked at is none for us
+  std::error_code ignored;  // an inaccessible folder is treated as missing
   if (!path.has_filename()) {
-    throw Error({path.string(), "is the name of a folder", "a file name",
-                 "leave out the separator at its end"});
+    throw Error(
+        {path.string(), "is the name of a folder", "a file name", "remove the trailing separator"});
   }
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw Error({path.string(), fmt::format("there is no folder {}", folder.string()), "",
-                 "make it first, or correct the path"});
+                 "create it first, or correct the path"});
   }
-  const bool wants_folder = format.told.is_folder;
+  const bool wants_folder = format.info.is_folder;
   const bool is_folder = std::filesystem::is_directory(path, ignored);
   check_writable(path, wants_folder && is_folder ? path : folder);
   if (std::filesystem::exists(path, ignored) && is_folder != wants_folder) {
-    throw Error({path.string(), wants_folder ? "is no folder" : "is a folder",
-                 wants_folder ? "a folder, or none yet" : "a file name", "choose another name"});
+    throw Error({path.string(), wants_folder ? "is not a folder" : "is a folder",
+                 wants_folder ? "a folder, or a new name" : "a file name", "choose another name"});
   }
   if (wants_folder) return;
   // a pipe or device would be replaced, not written to
@@ -66,19 +67,19 @@ void check_column_sizes(const PointCloud& cloud, const std::filesystem::path& pa
   }
 }
 
-/// Columns that writers read as what make_point_cloud makes of them.
+/// Columns that writers read with the types of make_point_cloud.
 void check_column_types(const PointCloud& cloud, const std::filesystem::path& path) {
   const auto check = [&](std::string_view name, std::size_t components, Stored type,
-                         const char* told) {
+                         const char* expected) {
     const Column* column = find_column(cloud, name);
     if (column == nullptr) return;
     if (column->components.size() == components && native_type(*column) == type) return;
-    throw Error({path.string(), fmt::format("column {} is of another type", name), told,
-                 "make the cloud with make_point_cloud"});
+    throw Error({path.string(), fmt::format("column {} has another type", name), expected,
+                 "create the cloud with make_point_cloud"});
   };
-  check("xyz", 3, Stored::f64, "three doubles a point");
-  check("depth", 1, Stored::f64, "a double a point");
-  check("intensity", 1, Stored::f32, "a float a point");
+  check("xyz", 3, Stored::f64, "three doubles per point");
+  check("depth", 1, Stored::f64, "a double per point");
+  check("intensity", 1, Stored::f32, "a float per point");
 }
 
 void check_needed_columns(const FileFormat& format, const PointCloud& cloud,
@@ -89,7 +90,7 @@ void check_needed_columns(const FileFormat& format, const PointCloud& cloud,
     if (find_column(cloud, needed) != nullptr) continue;
     throw Error({path.string(), fmt::format("the cloud has no column {}", needed),
                  fmt::format("{} needs {}", format.suffix, fmt::join(format.columns, " ")),
-                 fmt::format("it has: {}; ask for {} too", fmt::join(there, " "), needed)});
+                 fmt::format("it has: {}; request {} too", fmt::join(there, " "), needed)});
   }
 }
 
@@ -101,10 +102,10 @@ void check_picture_size(const CloudPictureOptions& options) {
   }
 }
 
-/// Where a sink's bytes go.
+/// The target of a sink.
 struct Target {
   std::filesystem::path path;
-  int descriptor = -1;  ///< an open file to send them to; -1: they become the file `path`
+  int descriptor = -1;  ///< an open file; -1: the file `path`
 };
 
 class FormatSink : public FileSink {
@@ -123,7 +124,7 @@ class FormatSink : public FileSink {
     std::vector<std::filesystem::path> all = {target_.path};
     if (target_.descriptor >= 0) return all;
     if (has_sidecar()) all.push_back(sidecar_path());
-    if (format_.beside != nullptr && !format_.told.is_folder)
+    if (format_.stage_extra_files != nullptr && !format_.info.is_folder)
       all.push_back(labels_path(target_.path));
     return all;
   }
@@ -132,7 +133,7 @@ class FormatSink : public FileSink {
     staged_.clear();
     check_column_sizes(cloud, target_.path);
     check_column_types(cloud, target_.path);
-    check_needed_columns(format_.told, cloud, target_.path);
+    check_needed_columns(format_.info, cloud, target_.path);
     try {
       stage_points(cloud, frame);
     } catch (...) {
@@ -145,7 +146,7 @@ class FormatSink : public FileSink {
 
  private:
   [[nodiscard]] bool has_sidecar() const {
-    return options_.sidecar && format_.content != Content::per_beam && !format_.told.is_folder;
+    return options_.sidecar && format_.content != Content::per_beam && !format_.info.is_folder;
   }
   [[nodiscard]] std::filesystem::path sidecar_path() const {
     return target_.path.string() + ".json";
@@ -164,21 +165,23 @@ class FormatSink : public FileSink {
   }
 
   void deliver(const PointCloud& cloud, const Frame& frame) {
-    if (options_.layout.empty() || !format_.told.takes_more) {
+    if (options_.layout.empty() || !format_.info.takes_more) {
       const std::vector<Field> fields = format_.fields(cloud);
       store({cloud, frame, options_, context_, fields, {}, format_.pixels});
-      tell(rounding_told(fields, "write .npz, .csv or .ply, which keep far points"));
+      tell(
+          rounding_warning(fields, "write .npz, .csv or .ply, which store distant points exactly"));
       return;
     }
     const PointCloud laid = apply_layout(cloud, options_.layout, context_.sensor, context_.beams);
     const std::vector<Field> fields = native_fields(laid);
     store({laid, frame, options_, context_, fields, options_.layout, {}});
     const std::array points = {Field{"x", find_column(cloud, "xyz"), 0, Stored::f32}};
-    tell(rounding_told(points, "without a layout .npz, .csv and .ply keep far points"));
+    tell(rounding_warning(points,
+                          "without a layout .npz, .csv and .ply store distant points exactly"));
   }
 
-  /// All files are complete before the first gets its name; that of the cloud is named last, so
-  /// that whoever waits for it finds the others too.
+  /// All files are complete before the first is renamed. The cloud's file is renamed last, so
+  /// that the others exist when it appears.
   void store(const CloudFile& job) {
     const std::filesystem::path& path = target_.path;
     const bool is_stream = target_.descriptor >= 0;
@@ -188,7 +191,7 @@ class FormatSink : public FileSink {
       file.finish();
     }
     if (is_stream) return;
-    if (format_.beside != nullptr) format_.beside(job, path, staged_);
+    if (format_.stage_extra_files != nullptr) format_.stage_extra_files(job, path, staged_);
     if (!has_sidecar()) return;
     AtomicFile& sidecar = staged_.add(sidecar_path());
     sidecar.write(sidecar_text(job, path));
@@ -204,7 +207,7 @@ class FormatSink : public FileSink {
   FileSinkOptions options_;
   SidecarContext context_;
   Report report_;
-  PointCloud hits_;  ///< of the last cloud, for its memory
+  PointCloud hits_;  ///< of the last cloud; reuses its memory
   StagedFiles staged_;
 };
 
@@ -266,9 +269,9 @@ std::unique_ptr<FileSink> make_stream_sink(int descriptor, const std::filesystem
                                            const SidecarContext& context, Report report) {
   const Format& format = find_format(name);
   check(options);
-  if (format.told.is_folder) {
+  if (format.info.is_folder) {
     throw Error({name.string(), "is a folder of several files", "a format of one file",
-                 "write it to a folder of its own"});
+                 "write to a folder instead"});
   }
   return std::make_unique<FormatSink>(Target{name, descriptor}, format, options, context,
                                       std::move(report));

@@ -19,10 +19,11 @@ namespace glidar {
 
 enum class PcdEncoding : std::uint8_t { ascii, binary, binary_compressed };
 
-/// What gives the points of .bev.png and .view.png their colours.
+/// The value that determines the colours of points in .bev.png and .view.png.
 enum class ColourBy : std::uint8_t { height, range, intensity, ring, object_class, instance };
 
-inline constexpr std::uint32_t kMinPictureSide = 200;  ///< pixels: letters and a plot fit
+inline constexpr std::uint32_t kMinPictureSide =
+    200;  ///< pixels; smaller pictures have no room for labels and a plot
 inline constexpr std::uint32_t kMaxPictureSide = 8192;
 
 /// Pictures of a cloud from above and in perspective.
@@ -30,8 +31,8 @@ struct CloudPictureOptions {
   ColourBy colour_by = ColourBy::height;
   std::uint32_t width = 1400;  ///< pixels, of the whole picture
   std::uint32_t height = 1000;
-  std::optional<Eigen::Vector3d> eye_m = {};     ///< of the perspective, in the cloud's frame;
-  std::optional<Eigen::Vector3d> target_m = {};  ///< empty: so that most points are seen
+  std::optional<Eigen::Vector3d> eye_m = {};     ///< eye of the perspective, in the cloud's frame;
+  std::optional<Eigen::Vector3d> target_m = {};  ///< empty: a view of most points
 };
 
 /// The names of ColourBy, in its order: height range intensity ring class instance.
@@ -40,67 +41,68 @@ std::span<const std::string> colour_by_names();
 struct FileSinkOptions {
   PcdEncoding pcd = PcdEncoding::binary;
   bool ply_ascii = false;
-  bool dense = false;       ///< point formats leave misses out
-  bool sidecar = true;      ///< write FILE.json beside a cloud
+  bool dense = false;       ///< point formats omit misses
+  bool sidecar = true;      ///< write FILE.json for a cloud
   std::string layout = {};  ///< of cloud_layouts(), for formats that take columns; empty: none
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
   CloudPictureOptions picture = {};
-  ProgressCallback progress = {};  ///< of one file, by its points; images and NPZ do not tell
+  ProgressCallback progress = {};  ///< of one file, by its points; not for images and NPZ
 };
 
-/// The command that makes a cloud, and where it runs; no arguments: none.
+/// The command that writes a cloud, and its working folder; no arguments: none.
 struct CommandRecord {
   std::vector<std::string> arguments = {};
   std::filesystem::path folder = {};
 };
 
-/// What the sidecar tells besides the frame; must outlive the sink.
+/// Contents of the sidecar other than the frame; must outlive the sink.
 struct SidecarContext {
   const Scene& scene;
   const Sensor& sensor;
   const Beams& beams;
   std::string renderer;
   CommandRecord command = {};  ///< lets `glidar explain` repeat the measurement
-  /// Files that were read or are written otherwise: no file of the cloud may replace one of them.
+  /// Input files and other outputs, which no file of the cloud may overwrite.
   std::span<const std::string> inputs = {};
 };
 
 /// One output format.
 struct FileFormat {
-  std::string suffix;       ///< ".pcd", ".depth.png" ... ; the longest that matches a path wins
+  std::string suffix;       ///< ".pcd", ".depth.png" ... ; the longest match selects the format
   std::string description;  ///< for --help
   std::vector<std::string> columns;  ///< cloud columns it needs at least
-  bool takes_more = false;           ///< keeps any other columns of the cloud too
+  bool takes_more = false;           ///< also stores all other columns of the cloud
   bool is_folder = false;            ///< the path is a folder, to which every frame adds its files
 };
 
 /// All formats, for help and errors.
 std::span<const FileFormat> file_formats();
 
-/// The path of an output: for formats that are folders without the separators that end it, which
-/// the completion of names in shells appends ("out.kitti/"). Throws Error as format_for() does.
+/// The path of an output: for folder formats without trailing separators, which
+/// shells append ("out.kitti/"). Throws Error as format_for() does.
 std::filesystem::path output_path(const std::filesystem::path& path);
 
-/// The format for a path by its suffix; separators at its end do not count. Throws Error naming all
-/// suffixes and the nearest.
+/// The format for a path by its suffix; trailing separators are ignored. Throws Error naming all
+/// suffixes and the nearest one.
 const FileFormat& format_for(const std::filesystem::path& path);
 
-/// True for formats that are plain text with these options, fit for a terminal.
+/// True for formats that are plain text with these options and thus readable on a terminal.
 bool is_text(const FileFormat& format, const FileSinkOptions& options);
 
-/// Why a sensor of a rig has no output of this format, as the rest of a sentence ("the depths of
-/// its beams behind it ..."); empty: it has. A depth image is for sensors that look ahead, a
-/// picture of a cloud by ring for those with rings.
+/// Why a sensor of a rig has no output of this format, as the end of a sentence ("the depths of
+/// its beams behind it ..."); empty: it has. A depth image requires a sensor that looks ahead, a
+/// picture coloured by ring one with rings.
 std::string misfit(const FileFormat& format, const CloudPictureOptions& picture,
                    const Sensor& sensor, const Beams& beams);
 
 /// Writes files in two steps, so that the files of several sinks appear together or not at all.
 class FileSink : public CloudSink {
  public:
-  /// The files that a cloud is written to, as far as they can be told before; a folder itself.
+  /// The files that a cloud is written to, as far as known in advance; for a folder format the
+  /// folder.
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
   /// Writes all files of the cloud under temporary names. Throws Error, also when one of them
-  /// is among the context's inputs; then nothing of it is left.
+  /// is among the context's inputs; then no file remains.
   virtual void stage(const PointCloud& cloud, const Frame& frame) = 0;
   /// Gives the staged files their names. Throws Error when the system refuses.
   virtual void commit() = 0;
@@ -108,18 +110,17 @@ class FileSink : public CloudSink {
   void write(const PointCloud& cloud, const Frame& frame) override;
 };
 
-/// A sink that writes one file (and its sidecar) per cloud: to a temporary name beside it, then
-/// renamed, so that a path either holds a whole file or is as it was.
-/// Throws Error at once when the suffix or the layout is unknown or the folder does not exist.
-/// Warns through `report` when the format's float32 moves a coordinate or depth by more than 0.1
-/// mm.
+/// A sink that writes one file (and its sidecar) per cloud: to a temporary name in the same folder,
+/// then renamed, so that a path has either the complete file or is unchanged. Throws Error at once
+/// when the suffix or the layout is unknown or the folder does not exist. Warns through `report`
+/// when the format's float32 moves a coordinate or depth by more than 0.1 mm.
 std::unique_ptr<FileSink> make_file_sink(const std::filesystem::path& path,
                                          const FileSinkOptions& options,
                                          const SidecarContext& context, Report report = {});
 
-/// The same bytes to an open file of the system, such as standard output, once they are complete;
-/// without a sidecar. `name` has the format's suffix and appears in errors. Throws Error likewise;
-/// commit() throws ClosedPipe when nobody reads the other end any more.
+/// Sends the same bytes to an open file descriptor, such as standard output, when they are
+/// complete; without a sidecar. `name` has the format's suffix and appears in errors. Throws Error
+/// like make_file_sink; commit() throws ClosedPipe when the reader has closed the pipe.
 std::unique_ptr<FileSink> make_stream_sink(int descriptor, const std::filesystem::path& name,
                                            const FileSinkOptions& options,
                                            const SidecarContext& context, Report report = {});

@@ -9,13 +9,13 @@
 
 namespace glidar {
 
-/// The information as a table for people: bounds by axis, the six directions, what is degenerate.
+/// The information as a readable table: bounds per axis, the six directions, degeneracy.
 std::string information_text(const FisherInformation& information);
 
-/// The same as JSON, with the matrices and the convention; what is infinite is null.
+/// The same as JSON, with the matrices and the convention; infinite values are null.
 std::string information_json(const FisherInformation& information);
 
-/// Writes the JSON, whole or not at all.
+/// Writes the JSON atomically.
 void write_information(const FisherInformation& information, const std::filesystem::path& path);
 
 }  // namespace glidar

@@ -4,7 +4,20 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
-#include <glidar/io/formats/kitti_files.hpp>
+#include <glidar/io/formats/cloud_picture_file.hpp>
+#include <glidar/io/formats/csv_file.hpp>
+#include <glidar/io/formats/depth_png_file.hpp>
+#include <glidar/io/formats/depth_tiff_file.hpp>
+#include <glidar/io/formats/kitti_file.hpp>
+#include <glidar/io/formats/kitti_folder.hpp>
+#include <glidar/io/formats/npy_file.hpp>
+#include <glidar/io/formats/npz_file.hpp>
+#include <glidar/io/formats/pcd_file.hpp>
+#include <glidar/io/formats/ply_file.hpp>
+#include <glidar/io/formats/preview_file.hpp>
+#include <glidar/io/formats/transform_file.hpp>
+#include <glidar/io/formats/truth_images.hpp>
+#include <glidar/io/formats/woods2016_png_file.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,12 +29,12 @@
 namespace glidar {
 namespace {
 
-/// Of formats that are no table of points.
+/// For formats that do not store points.
 std::vector<Field> no_fields(const PointCloud& /*cloud*/) {
   return {};
 }
 
-/// Images besides those of formats().
+/// Image formats.
 std::vector<Format> image_formats() {
   return {
       {{".depth.tiff", "32-bit depth image, metres", {"depth"}, false},
@@ -35,25 +48,25 @@ std::vector<Format> image_formats() {
        no_fields,
        write_rgb_png,
        nullptr,
-       "surface colour times cosine of incidence times 255 as 8-bit RGB; black: nothing there"},
+       "surface colour times cosine of incidence times 255 as 8-bit RGB; black: no surface"},
       {{".normal.png", "16-bit normals", {"normal"}, false},
        Content::image,
        no_fields,
        write_normal_png,
        nullptr,
-       "unit normal n in frame_id as 16-bit RGB v: n = 2 v / 65535 - 1; 0 0 0: nothing there"},
+       "unit normal n in frame_id as 16-bit RGB v: n = 2 v / 65535 - 1; 0 0 0: no surface"},
       {{".instance.png", "16-bit instance ids", {"instance"}, false},
        Content::image,
        no_fields,
        write_instance_png,
        nullptr,
-       "id of the instance as 16-bit grey; 0: nothing there"},
+       "id of the instance as 16-bit grey; 0: no surface"},
       {{".class.png", "class ids", {"class"}, false},
        Content::image,
        no_fields,
        write_class_png,
        nullptr,
-       "id of the class as grey; 0: unlabelled, or nothing there"},
+       "id of the class as grey; 0: unlabelled, or no surface"},
   };
 }
 
@@ -123,7 +136,7 @@ namespace {
 
 std::vector<std::string> suffixes() {
   std::vector<std::string> all;
-  for (const Format& format : formats()) all.push_back(format.told.suffix);
+  for (const Format& format : formats()) all.push_back(format.info.suffix);
   return all;
 }
 
@@ -140,7 +153,7 @@ std::filesystem::path without_separators(const std::filesystem::path& path) {
 }  // namespace
 
 std::filesystem::path output_path(const std::filesystem::path& path) {
-  return find_format(path).told.is_folder ? without_separators(path) : path;
+  return find_format(path).info.is_folder ? without_separators(path) : path;
 }
 
 const Format& find_format(const std::filesystem::path& given) {
@@ -148,16 +161,16 @@ const Format& find_format(const std::filesystem::path& given) {
   const std::string name = lower_case(path.filename().string());
   const Format* best = nullptr;
   for (const Format& format : formats()) {
-    const std::string& suffix = format.told.suffix;
+    const std::string& suffix = format.info.suffix;
     if (name.size() <= suffix.size() || !name.ends_with(suffix)) continue;
-    if (best == nullptr || suffix.size() > best->told.suffix.size()) best = &format;
+    if (best == nullptr || suffix.size() > best->info.suffix.size()) best = &format;
   }
   if (best != nullptr) return *best;
   const std::string suffix = lower_case(path.extension().string());
   const std::vector<std::string> all = suffixes();
   const std::string nearest = suffix.empty() ? "" : closest_match(suffix, all);
   throw Error({given.string(),
-               suffix.empty() ? "the name has no suffix that tells the format"
+               suffix.empty() ? "the name has no suffix that selects a format"
                               : fmt::format("no format has the suffix {}", excerpt(suffix)),
                fmt::format("{}", fmt::join(all, " ")),
                nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
@@ -165,15 +178,15 @@ const Format& find_format(const std::filesystem::path& given) {
 
 std::span<const FileFormat> file_formats() {
   static const std::vector<FileFormat> kTold = [] {
-    std::vector<FileFormat> told;
-    for (const Format& format : formats()) told.push_back(format.told);
-    return told;
+    std::vector<FileFormat> infos;
+    for (const Format& format : formats()) infos.push_back(format.info);
+    return infos;
   }();
   return kTold;
 }
 
 const FileFormat& format_for(const std::filesystem::path& path) {
-  return find_format(path).told;
+  return find_format(path).info;
 }
 
 }  // namespace glidar

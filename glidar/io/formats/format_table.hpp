@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/io: every file format, one line each.
+// Private to glidar/io: the table of file formats.
 
 #include <glidar/io/files/staged_files.hpp>
 #include <glidar/io/formats/cloud_file.hpp>
@@ -13,30 +13,30 @@
 
 namespace glidar {
 
-/// Which misses go into the file, and whether a sidecar belongs to it.
+/// Whether misses are stored, and whether the file has a sidecar.
 enum class Content : std::uint8_t {
-  points,    ///< a cloud: organised or dense, as the options say
+  points,    ///< a cloud: organised or dense, by option
   kitti,     ///< a cloud: always dense, with KITTI's intensity
   image,     ///< always the whole frame, with a sidecar
-  per_beam,  ///< a picture for people or a pose: always the whole frame, no sidecar
+  per_beam,  ///< a preview or a pose: always the whole frame, no sidecar
 };
 
 struct Format {
-  FileFormat told;
+  FileFormat info;
   Content content;
-  std::vector<Field> (*fields)(const PointCloud&);  ///< what it stores of each point
-  void (*write)(const CloudFile&, AtomicFile&);     ///< nullptr: `beside` writes it all
-  /// Adds further files; nullptr: there are none.
-  void (*beside)(const CloudFile&, const std::filesystem::path&, StagedFiles&) = nullptr;
-  const char* pixels = "";  ///< what those of an image are, for its sidecar
+  std::vector<Field> (*fields)(const PointCloud&);  ///< stored numbers of each point
+  void (*write)(const CloudFile&, AtomicFile&);     ///< nullptr: `stage_extra_files` writes all
+  /// Adds further files; nullptr: none.
+  void (*stage_extra_files)(const CloudFile&, const std::filesystem::path&, StagedFiles&) = nullptr;
+  const char* pixels = "";  ///< meaning of an image's pixels, for its sidecar
 };
 
 /// All formats, in the order in which they are listed to users.
 const std::vector<Format>& formats();
 
-/// The format whose suffix the name ends with, the longest one that fits; separators at the end of
-/// the path do not count.
-/// Throws Error naming all formats and the nearest.
+/// The format with the longest suffix that matches the name; trailing separators of
+/// the path are ignored.
+/// Throws Error naming all formats and the nearest one.
 const Format& find_format(const std::filesystem::path& given);
 
 }  // namespace glidar

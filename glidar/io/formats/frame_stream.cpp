@@ -14,20 +14,16 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint64_t kMark = 0x3142'5241'4449'4C47;  // "GLIDARB1" on a little-endian machine
-constexpr std::uint32_t kVersion = 3;                   // raised when the layout of a frame changes
+constexpr std::uint64_t kMagic = 0x3142'5241'4449'4C47;  // "GLIDARB1" on a little-endian machine
+constexpr std::uint32_t kVersion = 3;  // incremented when the frame's format changes
 constexpr std::size_t kBuffer = std::size_t{1} << 16U;
-
-[[noreturn]] void damaged(const std::string& found) {
-  throw Error({.where = "imported data", .found = found, .allowed = "", .remedy = ""});
-}
 
 void write_all(int fd, const void* data, std::size_t size) {
   const auto* at = static_cast<const char*>(data);
   while (size > 0) {
     const ssize_t put = ::write(fd, at, size);
     if (put < 0 && errno == EINTR) continue;
-    if (put <= 0) damaged(std::string("writing failed: ") + std::strerror(errno));
+    if (put <= 0) reject_imported_data(std::string("writing failed: ") + std::strerror(errno));
     at += put;
     size -= static_cast<std::size_t>(put);
   }
@@ -38,13 +34,17 @@ void read_all(int fd, void* data, std::size_t size) {
   while (size > 0) {
     const ssize_t got = ::read(fd, at, size);
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) damaged("it ends too early");
+    if (got <= 0) reject_imported_data("it ends too early");
     at += got;
     size -= static_cast<std::size_t>(got);
   }
 }
 
 }  // namespace
+
+void reject_imported_data(const std::string& found) {
+  throw Error({.where = "imported data", .found = found, .allowed = "", .remedy = ""});
+}
 
 FrameWriter::FrameWriter(int fd, FrameKind kind)
     : fd_(fd), kind_(kind), head_at_(::lseek(fd, 0, SEEK_CUR)) {
@@ -73,20 +73,21 @@ void FrameWriter::flush() {
 
 void FrameWriter::finish() {
   flush();
-  const FrameHead head{kMark, kVersion, static_cast<std::uint32_t>(kind_), size_, hash_.value()};
+  const FrameHead head{kMagic, kVersion, static_cast<std::uint32_t>(kind_), size_, hash_.value()};
   if (::pwrite(fd_, &head, sizeof head, head_at_) != static_cast<ssize_t>(sizeof head)) {
-    damaged(std::string("writing failed: ") + std::strerror(errno));
+    reject_imported_data(std::string("writing failed: ") + std::strerror(errno));
   }
 }
 
 FrameReader::FrameReader(int fd) : fd_(fd) {
   read_all(fd_, &head_, sizeof head_);
-  if (head_.mark != kMark || head_.version != kVersion) damaged("it has a foreign head");
+  if (head_.magic != kMagic || head_.version != kVersion)
+    reject_imported_data("it has an unknown header");
   struct stat info {};
   const std::int64_t at = ::lseek(fd_, 0, SEEK_CUR);
   if (::fstat(fd_, &info) != 0 || at < 0 || info.st_size < at ||
       static_cast<std::uint64_t>(info.st_size - at) < head_.size) {
-    damaged("it ends too early");
+    reject_imported_data("it ends too early");
   }
 }
 
@@ -99,7 +100,7 @@ void FrameReader::fill() {
 }
 
 void FrameReader::bytes(void* data, std::size_t size) {
-  if (size > remaining()) damaged("it tells more data than it has");
+  if (size > remaining()) reject_imported_data("it claims more data than it has");
   taken_ += size;
   auto* to = static_cast<std::byte*>(data);
   while (size > 0) {
@@ -108,7 +109,7 @@ void FrameReader::bytes(void* data, std::size_t size) {
     next_ += ready;
     to += ready;
     size -= ready;
-    if (size > kBuffer) {  // past the buffer, straight to its place
+    if (size > kBuffer) {  // bypass the buffer
       read_all(fd_, to, size);
       hash_.add(to, size);
       fetched_ += size;
@@ -119,8 +120,8 @@ void FrameReader::bytes(void* data, std::size_t size) {
 }
 
 void FrameReader::finish() {
-  if (remaining() != 0) damaged("it has bytes that nothing reads");
-  if (hash_.value() != head_.hash) damaged("its checksum does not fit");
+  if (remaining() != 0) reject_imported_data("it has extra bytes");
+  if (hash_.value() != head_.hash) reject_imported_data("its checksum differs");
 }
 
 }  // namespace glidar

@@ -11,21 +11,24 @@
 
 namespace glidar {
 
-/// What a frame holds.
+/// The content of a frame.
 enum class FrameKind : std::uint32_t { model = 1, failure = 2, cached_file = 3 };
 
-/// The head of a frame: bytes that a file or a pipe's memory holds as one checked piece.
-/// Little-endian machines only (all that GLIDAR supports), checked through `mark`.
+/// The header of a frame: a checksummed block of bytes in a file or memory file.
+/// Little-endian machines only (all that GLIDAR supports), checked by `magic`.
 struct FrameHead {
-  std::uint64_t mark = 0;
+  std::uint64_t magic = 0;
   std::uint32_t version = 0;
   std::uint32_t kind = 0;
   std::uint64_t size = 0;  ///< bytes after the head
   Hash128 hash{};          ///< XXH3-128 of them
 };
 
-/// Writes one frame at the file's position. The head is completed by finish().
-/// Throws Error when the file takes no more.
+/// Throws Error for malformed data of the import process or the model cache.
+[[noreturn]] void reject_imported_data(const std::string& found);
+
+/// Writes one frame at the file's position. finish() completes the header.
+/// Throws Error when the file cannot be written.
 class FrameWriter {
  public:
   FrameWriter(int fd, FrameKind kind);
@@ -43,17 +46,18 @@ class FrameWriter {
   std::vector<std::byte> buffer_;
 };
 
-/// Reads one frame at the file's position. Trusts nothing: throws Error when the head is not that
-/// of a frame of this version, when it tells more bytes than the file has, when more is asked for
-/// than is left, and when the hash does not fit.
+/// Reads one frame at the file's position. Trusts nothing: throws Error when the header is not that
+/// of a frame of this version, when it claims more bytes than the file has, when more is requested
+/// than remains, and when the hash differs.
 class FrameReader {
  public:
   explicit FrameReader(int fd);
   [[nodiscard]] FrameKind kind() const { return static_cast<FrameKind>(head_.kind); }
-  /// Bytes not yet read: bounds every count before memory is taken for it.
+  /// Bytes not yet read: bounds every count before memory is allocated for it.
   [[nodiscard]] std::uint64_t remaining() const { return head_.size - taken_; }
   void bytes(void* data, std::size_t size);
-  /// Checks that everything was read and the hash; leaves the file's position after the frame.
+  /// Checks that everything was read, and the hash; moves the file's position to the end of the
+  /// frame.
   void finish();
 
  private:
@@ -61,7 +65,7 @@ class FrameReader {
 
   int fd_;
   FrameHead head_;
-  std::uint64_t taken_ = 0;    ///< handed out
+  std::uint64_t taken_ = 0;    ///< returned to the caller
   std::uint64_t fetched_ = 0;  ///< read from the file
   ContentHash hash_;
   std::vector<std::byte> buffer_;

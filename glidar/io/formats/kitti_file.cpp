@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/kitti_file.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/formats/kitti_files.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kMaxLabel = std::numeric_limits<std::uint16_t>::max();
 
-/// A number of 16 bits of a label; 0 where there is no surface.
+/// A 16-bit number of a label; 0 for no surface.
 std::uint32_t label_part(std::uint32_t id, const char* what, const AtomicFile& file) {
   if (id == kInvalidId) return 0;
   if (id <= kMaxLabel) return id;
@@ -33,7 +33,7 @@ const std::vector<std::uint32_t>& ids_of(const CloudFile& job, const char* name,
   if (column != nullptr) return std::get<std::vector<std::uint32_t>>(column->values);
   throw Error({file.path().string(), fmt::format("the cloud has no column {}", name),
                "clouds of scenes with classes have the columns instance and class",
-               fmt::format("ask for {} too", name)});
+               fmt::format("request {} too", name)});
 }
 
 }  // namespace

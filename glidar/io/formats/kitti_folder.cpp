@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/kitti_folder.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/kitti_files.hpp>
+#include <glidar/io/formats/kitti_file.hpp>
 #include <glidar/io/pictures/image_box.hpp>
 
 #include <fmt/format.h>
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -41,7 +42,7 @@ Pose camera_from_sensor(const Sensor& sensor) {
   return is_camera ? Pose::Identity() : optical_from_body();
 }
 
-/// The points in the sensor's own frame, which is KITTI's Velodyne frame here.
+/// The points in the sensor's frame, which is used as KITTI's Velodyne frame.
 PointCloud in_sensor_frame(const CloudFile& job) {
   PointCloud cloud = job.cloud;
   const Pose& world_from_sensor = job.frame.world_from_sensor;
@@ -55,14 +56,14 @@ PointCloud in_sensor_frame(const CloudFile& job) {
   return cloud;
 }
 
-/// A box with two faces level in the camera's frame, as KITTI has them.
+/// A box with two horizontal faces in the camera's frame, as in KITTI.
 struct LevelBox {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< length, height, width
   Eigen::Vector3d bottom = Eigen::Vector3d::Zero();  ///< centre of the lower face
   double rotation_y = 0.0;                           ///< from the camera's x to the object's x axis
 };
 
-/// The heading of an object's x axis; of one that is upright, of its y axis less a quarter turn.
+/// The heading of an object's x axis; if that is vertical, of its y axis minus a quarter turn.
 double heading(const Eigen::Matrix3d& camera_from_object) {
   constexpr double kUpright = 1e-6;
   const Eigen::Vector3d x = camera_from_object.col(0);
@@ -71,7 +72,7 @@ double heading(const Eigen::Matrix3d& camera_from_object) {
   return std::atan2(-y.z(), y.x()) - std::numbers::pi / 2.0;
 }
 
-/// The angle from -pi to pi.
+/// The angle normalised to -pi to pi.
 double wrapped_angle(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * std::numbers::pi);
 }
@@ -115,7 +116,7 @@ std::string type_of(const std::string& name) {
   return word;
 }
 
-/// How much others hide of an object is not known.
+/// Occlusion state "unknown".
 constexpr int kOcclusionUnknown = 3;
 
 std::string object_line(const std::string& type, const PlacedMesh& seen,
@@ -133,7 +134,7 @@ std::string object_line(const std::string& type, const PlacedMesh& seen,
   return line + "\n";
 }
 
-/// A region of the image without labels; none where the object is not in the image.
+/// A region of the image without labels; empty when the object is not in the image.
 std::string dont_care_line(const PlacedMesh& seen, const RectifiedCamera& camera) {
   const std::optional<ImageBox> image = image_box(seen, camera);
   if (!image) return "";

@@ -10,7 +10,7 @@ LineFile::LineFile(const std::filesystem::path& path, const InputFileKind& kind,
                    std::size_t max_line_bytes)
     : path_(path), file_(open_input_file(path, kind)), max_line_bytes_(max_line_bytes) {}
 
-/// Appends to the buffer, from which lines that were handed out are gone; false: the file ends.
+/// Appends to the buffer after removing returned lines; false: end of file.
 bool LineFile::fill() {
   constexpr std::size_t kPiece = std::size_t{1} << 16U;
   buffer_.erase(0, at_);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to the library: a text that is read line by line.
+// Private to the library: reads a text file line by line.
 
 #include <glidar/io/files/input_file.hpp>
 
@@ -12,15 +12,15 @@
 
 namespace glidar {
 
-/// The lines of a regular file, of any length in all.
+/// The lines of a regular file of any size.
 class LineFile {
  public:
-  /// Throws Error as open_input_file does. Lines may have `max_line_bytes`.
+  /// Throws Error like open_input_file. Lines have at most `max_line_bytes`.
   LineFile(const std::filesystem::path& path, const InputFileKind& kind,
            std::size_t max_line_bytes);
 
-  /// The next line without its end; false: there is none. Throws Error when it is too long, or
-  /// cannot be read.
+  /// Reads the next line without its terminator; false: end of file. Throws Error when it is too
+  /// long, or cannot be read.
   bool next(std::string& line);
 
  private:
@@ -30,7 +30,7 @@ class LineFile {
   InputFile file_;
   std::size_t max_line_bytes_;
   std::string buffer_;
-  std::size_t at_ = 0;  ///< where in the buffer the next line begins
+  std::size_t at_ = 0;  ///< start of the next line in the buffer
   bool is_at_end_ = false;
 };
 

@@ -9,8 +9,8 @@
 
 namespace glidar {
 
-/// All columns that a format may read: those of FileFormat, and those that it needs of some sensors
-/// and scenes (KITTI: the range to calibrate intensities, instance and class for labels).
+/// All columns that a format may read: those of FileFormat, and those that it needs for some
+/// sensors and scenes (KITTI: the range to calibrate intensities, instance and class for labels).
 std::vector<std::string> needed_columns(const FileFormat& format);
 
 }  // namespace glidar

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/cloud_file.hpp>
-#include <glidar/io/formats/npy.hpp>
+#include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
 #include <fmt/format.h>

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/npz_file.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
-#include <glidar/io/formats/npy.hpp>
+#include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
 
 #include <fmt/format.h>
@@ -18,14 +19,14 @@
 namespace glidar {
 namespace {
 
-/// One array of the archive; `bytes` stay where they are until the archive is closed.
+/// One array of the archive; `bytes` must stay valid until the archive is closed.
 struct Array {
   std::string name;
   std::string head;
   std::span<const std::byte> bytes;
 };
 
-/// A pose as NumPy has it: row by row.
+/// A pose in NumPy's order: row by row.
 using RowMajor4d = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 template <class T>
@@ -52,7 +53,7 @@ Array array_of(const PointCloud& cloud, const Column& column) {
       column.values);
 }
 
-/// Where libzip's bytes go, and what went wrong on the way: no exception may pass through it.
+/// The target of libzip's bytes, and a stored exception, because none may pass through libzip.
 struct NpzTarget {
   AtomicFile& file;
   std::exception_ptr failure;
@@ -60,7 +61,7 @@ struct NpzTarget {
 };
 
 zip_int64_t seek(NpzTarget& target, void* data, zip_uint64_t length) {
-  // libzip seeks from the start or from here, never from the end: no length is kept for that
+  // libzip seeks from the start or the current position, never from the end
   constexpr auto kNoEnd = static_cast<zip_uint64_t>(ZIP_INT64_MAX);
   const zip_int64_t offset =
       zip_source_seek_compute_offset(target.file.position(), kNoEnd, data, length, &target.error);
@@ -118,7 +119,7 @@ extern "C" zip_int64_t glidar_npz_target(void* user, void* data, zip_uint64_t le
 [[noreturn]] void fail(const NpzTarget& target, const char* reason) {
   if (target.failure) std::rethrow_exception(target.failure);
   throw Error(
-      {target.file.path().string(), fmt::format("cannot make the archive: {}", reason), "", ""});
+      {target.file.path().string(), fmt::format("cannot write the archive: {}", reason), "", ""});
 }
 
 using Archive = std::unique_ptr<zip_t, decltype(&zip_discard)>;
@@ -136,9 +137,9 @@ Archive open_archive(NpzTarget& target) {
   return {archive, zip_discard};
 }
 
-/// The head and the numbers are read from where they are when the archive is closed.
+/// Header and numbers are read in place when the archive is closed.
 void add(zip_t* archive, const Array& array, const NpzTarget& target) {
-  // libzip takes pointers to data that it could change; it only reads.
+  // libzip's interface takes non-const pointers but only reads.
   const auto fragment = [](const void* data, std::size_t size) {
     return zip_buffer_fragment_t{static_cast<zip_uint8_t*>(const_cast<void*>(data)), size};
   };
@@ -154,7 +155,8 @@ void add(zip_t* archive, const Array& array, const NpzTarget& target) {
     fail(target, zip_strerror(archive));
   }
   const auto index = static_cast<zip_uint64_t>(added);
-  constexpr zip_uint16_t kFirstJanuary1980 = (1U << 5U) | 1U;  // the same bytes at any time of day
+  constexpr zip_uint16_t kFirstJanuary1980 =
+      (1U << 5U) | 1U;  // a fixed date, so that the bytes do not depend on the time
   if (zip_set_file_compression(archive, index, ZIP_CM_STORE, 0) != 0 ||
       zip_file_set_dostime(archive, index, 0, kFirstJanuary1980, 0) != 0)
     fail(target, zip_strerror(archive));

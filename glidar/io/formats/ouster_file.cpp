@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/ouster_file.hpp>
+
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/json_text.hpp>
 #include <glidar/io/config/ray_file.hpp>
@@ -17,7 +19,7 @@ constexpr std::size_t kMaxRows = 4096;
 constexpr std::uint32_t kMaxOusterColumns = 65536;
 
 [[noreturn]] void fail(const std::string& where, std::string found, std::string allowed) {
-  throw Error({where, std::move(found), std::move(allowed), "give the sensor's own metadata JSON"});
+  throw Error({where, std::move(found), std::move(allowed), "use the sensor's own metadata JSON"});
 }
 
 nlohmann::json parse(const std::filesystem::path& path) {

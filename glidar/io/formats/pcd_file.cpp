@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/pcd_file.hpp>
+
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
 #include <fmt/format.h>
@@ -18,8 +19,8 @@ namespace {
 
 constexpr std::size_t kMaxBlock = std::numeric_limits<std::uint32_t>::max();
 
-/// PCL declares packed colour a float in binary files; in text it has to be the integer, because
-/// most of these bit patterns are denormal floats, which text readers refuse.
+/// PCL declares packed colour as float in binary files; in text it must be the integer, because
+/// most of these bit patterns are denormal floats, which text readers reject.
 char pcd_type(Stored stored, PcdEncoding encoding) {
   if (stored == Stored::packed_rgb) return encoding == PcdEncoding::ascii ? 'U' : 'F';
   if (stored == Stored::i64) return 'I';
@@ -72,9 +73,9 @@ std::vector<std::byte> by_field(std::span<const Field> fields, std::size_t count
   return bytes;
 }
 
-/// lzf's worst case adds one byte to 32 and a few at the end. Its hash table starts as whatever is
-/// in memory, yet the result does not depend on that: an entry counts only if three earlier bytes
-/// match, and every earlier triple has been entered (or is a copy of one that was).
+/// In the worst case lzf adds one byte to 32 and a few at the end. Its hash table starts
+/// uninitialised, but the result does not depend on that: an entry is used only if three earlier
+/// bytes match, and every earlier triple has been entered (or is a copy of one that was).
 void write_compressed(std::span<const Field> fields, std::size_t count, AtomicFile& file) {
   const std::size_t raw_size = row_bytes(fields) * count;
   if (raw_size > kMaxBlock) too_large(file);

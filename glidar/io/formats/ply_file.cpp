@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/ply_file.hpp>
+
 #include <glidar/core/version.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@
 namespace glidar {
 namespace {
 
-/// Readers know normals and colours by these names.
+/// Readers expect these names of normals and colours.
 void append_renamed(const Column& column, const std::array<const char*, 3>& names, Stored stored,
                     std::vector<Field>& fields) {
   for (std::size_t c = 0; c < names.size(); ++c) fields.push_back({names[c], &column, c, stored});
@@ -68,7 +69,8 @@ std::vector<Field> ply_fields(const PointCloud& cloud) {
     } else if (is_colour(column)) {
       append_renamed(column, {"red", "green", "blue"}, Stored::colour_byte, fields);
     } else if (native_type(column) == Stored::i64) {
-      fields.push_back({column.components[0], &column, 0, Stored::f64});  // PLY has no such integer
+      fields.push_back(
+          {column.components[0], &column, 0, Stored::f64});  // PLY has no 64-bit integer
     } else {
       append_fields(column, fields);
     }

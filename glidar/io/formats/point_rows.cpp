@@ -21,19 +21,19 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written in memory order");
 
 /// Small enough that a block of source and target stays in the first-level cache while each field
-/// passes over it.
+/// is copied.
 constexpr std::size_t kBlockRows = 512;
 constexpr std::size_t kTextChunkRows = 4096;
 
-/// Every `stride` bytes from `first`, `count` times.
+/// Target positions: every `stride` bytes from `first`, `count` times.
 struct Places {
   std::byte* first;
   std::size_t stride;
   std::size_t count;
 };
 
-/// The one inner loop of all writers: `from` advances by `step` numbers a point, of which the first
-/// kCount are stored side by side.
+/// The inner loop of all writers: `from` advances by `step` numbers per point, of which the first
+/// kCount are stored contiguously.
 template <class To, std::size_t kCount, class From, class Convert>
 void store_each(const From* from, std::size_t step, const Places& to, Convert convert) {
   std::byte* place = to.first;
@@ -44,7 +44,7 @@ void store_each(const From* from, std::size_t step, const Places& to, Convert co
   }
 }
 
-/// Three at a time, as most columns have them.
+/// Three at a time, because most columns have three components.
 template <class To, class From, class Convert>
 void store_run(const From* from, std::size_t step, std::size_t run, Places to, Convert convert) {
   while (run > 0) {
@@ -114,8 +114,8 @@ void pack_fields(std::span<const Field> same, std::size_t first_row, const Place
       field.column->values);
 }
 
-/// How many fields from the first on are neighbours in one column and stored alike, so that one
-/// pass can move them together.
+/// Number of leading fields that are adjacent in one column and have the same stored type, so that
+/// one pass can copy them together.
 std::size_t run_length(std::span<const Field> fields) {
   std::size_t run = 1;
   while (run < fields.size() && fields[run].column == fields[0].column &&
@@ -224,7 +224,7 @@ GLIDAR_SIMD bool float_is_enough(const Column& column) {
   static_assert(kFirstCoarse_m / 2.0 * kHalfStep <= kFinePosition_m);
   const auto* values = std::get_if<std::vector<double>>(&column.values);
   if (values == nullptr) return true;
-  int coarse = 0;  // no early end, so that the loop is one of vectors
+  int coarse = 0;  // no early exit, so that the loop can be vectorised
   for (const double value : *values) coarse |= static_cast<int>(std::abs(value) >= kFirstCoarse_m);
   return coarse == 0;
 }

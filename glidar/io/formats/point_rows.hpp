@@ -15,7 +15,7 @@
 
 namespace glidar {
 
-/// How a field's number stands in a file, little-endian.
+/// The type of a field in a file, little-endian.
 enum class Stored : std::uint8_t {
   f32,
   f64,
@@ -35,44 +35,45 @@ struct Field {
   Stored stored = Stored::f32;
 };
 
-/// Bytes that a stored number takes.
+/// Size of a stored number in bytes.
 std::size_t size_of(Stored stored);
 
-/// The type in which a column's numbers are kept.
+/// The type of a column in memory.
 Stored native_type(const Column& column);
 
-/// True for rgb as three floats.
+/// True for RGB as three floats.
 bool is_colour(const Column& column);
 
-/// Appends a field per component, in the column's own names and type.
+/// Appends a field per component, with the column's own names and type.
 void append_fields(const Column& column, std::vector<Field>& fields);
 
-/// Appends a field per component of every column: the cloud as it is.
+/// A field per component of every column, with their own names and types.
 std::vector<Field> native_fields(const PointCloud& cloud);
 
-/// How far a file may move a point without a word.
+/// Maximum displacement of a point by rounding that causes no warning.
 inline constexpr double kFinePosition_m = 1e-4;
 
 /// False when rounding to float can move a number of this column by more than kFinePosition_m;
-/// columns that are not of doubles need no more than float.
+/// columns of other types than double never need more.
 bool float_is_enough(const Column& column);
 
-/// Bytes of one point with these fields side by side.
+/// Size of one point with these fields, in bytes.
 std::size_t row_bytes(std::span<const Field> fields);
 
 /// Points first .. first + count - 1, each as row_bytes(fields) bytes, into `rows`.
 void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t count,
                std::span<std::byte> rows);
 
-/// `count` points, point by point, to the file; `progress` is told of them.
+/// `count` points, point by point, to the file; reports to `progress`.
 void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file,
                        const ProgressCallback& progress = {});
 
-/// `count` points as text, a line each: the shortest digits that read back the same; "nan".
+/// `count` points as text, a line each: the shortest digits that represent each number exactly;
+/// "nan".
 void write_text_rows(std::span<const Field> fields, std::size_t count, char separator,
                      AtomicFile& file, const ProgressCallback& progress = {});
 
-/// The fields' names with `separator` between.
+/// The fields' names, joined by `separator`.
 std::string joined_names(std::span<const Field> fields, char separator);
 
 /// Text that cannot break a header line: control characters become spaces.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/preview_file.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
 #include <glidar/io/pictures/chart.hpp>
 #include <glidar/io/pictures/png_image.hpp>
@@ -14,20 +14,20 @@
 namespace glidar {
 namespace {
 
-/// A number of every beam, in colours.
+/// A panel: one value per beam, in colours.
 struct Panel {
   ColourBar bar;
-  const std::vector<double>& values;  ///< one per beam, NaN without a return
+  const std::vector<double>& values;  ///<
   const BeamPicture& beams;
 };
 
 /// All lengths in pixels.
 struct PreviewLayout {
-  std::size_t zoom;  ///< pixels per beam across, so that small images can be seen
-  std::size_t tall;  ///< and upright: scanners have few rows and many columns
+  std::size_t zoom;  ///< horizontal pixels per beam, so that small images are visible
+  std::size_t tall;  ///< vertical pixels per beam, because scanners have few rows and many columns
   double letters;
   std::size_t gap;
-  Box plot;  ///< in its cell
+  Box plot;  ///< the plot's box in its cell
   std::size_t cell_width;
   std::size_t cell_height;
   std::size_t cells_across;
@@ -44,14 +44,14 @@ bool has_axes(const BeamPicture& beams) {
 
 PreviewLayout make_layout(const BeamPicture& beams) {
   constexpr std::size_t kDefault = 512;
-  constexpr std::size_t kMinShape = 8;  // a picture is at most so many times as wide as high
+  constexpr std::size_t kMinShape = 8;  // maximum ratio of width to height
   constexpr std::size_t kTallest = 64;
   const std::size_t cols = std::max(1U, beams.cols);
   const std::size_t rows = std::max(1U, beams.rows);
   PreviewLayout layout{};
   layout.zoom = std::max<std::size_t>(1, kDefault / std::max(cols, rows));
   const std::size_t width = cols * layout.zoom;
-  constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;  // that rows are stretched to
+  constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;  // maximum after stretching rows
   const std::size_t tallest = std::min(kTallest, kMaxPixels / (width * rows));
   layout.tall = std::clamp<std::size_t>(width / (kMinShape * rows), layout.zoom,
                                         std::max(layout.zoom, tallest));
@@ -73,7 +73,7 @@ PreviewLayout make_layout(const BeamPicture& beams) {
   return layout;
 }
 
-/// Rows of a grid have their own elevations; other pictures have even ones.
+/// Rows of a grid have their own elevations; those of other pictures are evenly spaced.
 std::vector<AxisLabel> upright_labels(const BeamPicture& beams, const Box& plot, double letters) {
   const auto height = static_cast<double>(plot.height);
   const double room = 2.2 * letters;
@@ -136,11 +136,11 @@ void draw_panel(Picture& picture, const Panel& panel, const PreviewLayout& layou
                   panel.bar, layout.letters);
 }
 
-/// What the panels show.
+/// The data of the panels.
 struct Measured {
   std::string distance_title;         ///< "depth" or "range"
-  std::vector<double> distance_m;     ///< one per beam, NaN without a return
-  std::vector<double> intensity;      ///< likewise
+  std::vector<double> distance_m;     ///<
+  std::vector<double> intensity;      ///< one per beam, NaN without a return
   std::vector<BeamPicture> pictures;  ///< one per return
 };
 
@@ -148,7 +148,7 @@ Measured measured_of(const CloudFile& job) {
   const PointCloud& cloud = job.cloud;
   const Beams& beams = job.context.beams;
   Measured measured;
-  // the depth of what is behind a scanner would be negative
+  // points behind a scanner would have a negative depth
   const bool is_camera = looks_along_z(beams);
   measured.distance_title = is_camera ? "depth" : "range";
   const std::vector<double>& range_m = job.frame.range_m;
@@ -198,7 +198,8 @@ void write_preview(const CloudFile& job, AtomicFile& file) {
   const Measured measured = measured_of(job);
   const std::vector<Panel> panels = panels_of(measured);
   PreviewLayout layout = make_layout(measured.pictures.front());
-  for (const BeamPicture& beams : measured.pictures) {  // tops of several returns differ in size
+  for (const BeamPicture& beams :
+       measured.pictures) {  // top views of several returns differ in size
     const PreviewLayout other = make_layout(beams);
     layout.cell_width = std::max(layout.cell_width, other.cell_width);
     layout.cell_height = std::max(layout.cell_height, other.cell_height);
@@ -216,7 +217,7 @@ void write_preview(const CloudFile& job, AtomicFile& file) {
   }
   write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
              static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
-             measured.distance_title + " beside intensity"},
+             measured.distance_title + " and intensity"},
             file);
 }
 

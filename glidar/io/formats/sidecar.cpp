@@ -15,7 +15,7 @@
 namespace glidar {
 namespace {
 
-const TextFileKind kSidecar = {"the JSON file that glidar writes beside a cloud", 512, ""};
+const TextFileKind kSidecar = {"the JSON file that glidar writes for a cloud", 512, ""};
 
 /// A count of 32 bits.
 std::uint64_t whole(const nlohmann::json& json) {
@@ -23,7 +23,7 @@ std::uint64_t whole(const nlohmann::json& json) {
   if (json.is_number_unsigned() && json.get<std::uint64_t>() <= kMax) {
     return json.get<std::uint64_t>();
   }
-  throw nlohmann::json::type_error::create(302, shown_json(json) + " is no count", &json);
+  throw nlohmann::json::type_error::create(302, shown_json(json) + " is not a count", &json);
 }
 
 CommandRecord read_command(const nlohmann::json& json, const std::filesystem::path& sidecar) {
@@ -75,7 +75,7 @@ std::string frame_hash(const Frame& frame) {
   add(frame.intensity);
   std::vector<double> ranges_m = frame.range_m;
   for (double& range_m : ranges_m) {
-    if (std::isnan(range_m)) range_m = 0.0;  // not all NaN have the same bytes
+    if (std::isnan(range_m)) range_m = 0.0;  // NaN has several representations
   }
   add(ranges_m);
   return hex(hash.value());
@@ -86,7 +86,7 @@ Sidecar read_sidecar(const std::filesystem::path& cloud) {
   if (!std::filesystem::exists(path)) {
     throw Error({.where = path.string(),
                  .found = "there is no such file",
-                 .allowed = "a cloud with its sidecar beside it",
+                 .allowed = "a cloud with its sidecar in the same folder",
                  .remedy = "write the cloud again, with -o and without --no-sidecar"});
   }
   try {
@@ -94,7 +94,7 @@ Sidecar read_sidecar(const std::filesystem::path& cloud) {
   } catch (const nlohmann::json::exception& error) {
     throw Error({.where = path.string(),
                  .found = std::string("not a sidecar of this version: ") + excerpt(error.what()),
-                 .allowed = "the file that glidar wrote beside the cloud",
+                 .allowed = "the file that glidar wrote for the cloud",
                  .remedy = "write the cloud again"});
   }
 }

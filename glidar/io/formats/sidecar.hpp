@@ -12,11 +12,11 @@
 
 namespace glidar {
 
-/// What a sidecar says of how its cloud was made.
+/// The origin of a cloud, as recorded in its sidecar.
 struct Sidecar {
   std::filesystem::path path;
   std::string version;    ///< of the program
-  CommandRecord command;  ///< its folder as an absolute path; no arguments: not told
+  CommandRecord command;  ///< its folder as an absolute path; no arguments: not recorded
   std::uint32_t frame = 0;
   std::size_t points = 0;                 ///< in the cloud
   std::size_t hits = 0;                   ///< of the frame
@@ -24,18 +24,18 @@ struct Sidecar {
   std::vector<std::string> model_hashes;  ///< one per instance; empty for built-in models
 };
 
-/// A hash, hexadecimal, of what the frame reports: status, range and intensity of every beam.
+/// A hexadecimal hash of the measurement: status, range and intensity of every beam.
 std::string frame_hash(const Frame& frame);
 
-/// All numbers of a sensor with these beams, as JSON: what a sidecar tells of it.
+/// All numbers of a sensor with these beams, as JSON, as in a sidecar.
 std::string sensor_to_json(const Sensor& sensor, const Beams& beams);
 
-/// A folder as seen from a file, so that both can be moved together, and back again.
+/// A folder relative to a file, so that both can be moved together, and the inverse.
 std::string relative_folder(const std::filesystem::path& file, const std::filesystem::path& folder);
 std::filesystem::path resolve_folder(const std::filesystem::path& file, const std::string& seen);
 
-/// Reads the sidecar of a cloud, CLOUD.json beside it. Throws Error when there is none or it is not
-/// one.
+/// Reads the sidecar of a cloud, CLOUD.json. Throws Error when it is missing or not
+/// a sidecar.
 Sidecar read_sidecar(const std::filesystem::path& cloud);
 
 }  // namespace glidar

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/sidecar_file.hpp>
+
 #include <glidar/core/version.hpp>
 #include <glidar/io/config/json_numbers.hpp>
 #include <glidar/io/config/noise_yaml.hpp>
 #include <glidar/io/config/optics_json.hpp>
 #include <glidar/io/config/receiver_yaml.hpp>
 #include <glidar/io/config/weather_yaml.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
 
@@ -18,7 +19,7 @@
 namespace glidar {
 namespace {
 
-// Keys stay in the order of writing. Numbers that JSON has no word for (NaN, infinity) become null.
+// Keys keep their order. Numbers that JSON cannot represent (NaN, infinity) become null.
 using Json = nlohmann::ordered_json;
 
 constexpr double kMilli = 1e-3;
@@ -81,7 +82,7 @@ Json sensor_json(const Sensor& sensor, const Beams& beams) {
           {"camera_info", camera_info_json(sensor.optics)},
           {"rate_hz", sensor.rate_hz},
           {"wavelength_nm", in_unit(sensor.wavelength_m, kNano)},
-          // the quotient has few digits where the product that sensor files are read by has not
+          // the quotient has few digits, unlike the product that reading a sensor file computes
           {"range_offset_m", in_unit(beams.range_offset_m, kMilli) / 1000.0},
           {"limits",
            {{"near_m", sensor.limits.near_m},
@@ -108,7 +109,7 @@ Json sensor_json(const CloudFile& job) {
   return json;
 }
 
-/// As the file holds them, which may be shorter, renamed or fewer than the cloud's.
+/// As stored in the file, which may be shorter, renamed or fewer than the cloud's.
 Json columns_json(std::span<const Field> fields) {
   Json columns = Json::array();
   for (const StoredColumn& stored : stored_columns(fields)) {
@@ -139,7 +140,7 @@ Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
           {"image", image_json(job)}};
 }
 
-/// A factor, or one for each of the model's own axes.
+/// A factor, or one for each of the model's axes.
 Json scale_json(const Instance& instance, const MeshSource& source) {
   if (source.stretch == Eigen::Vector3d::Ones()) return instance.scale;
   return vector_json(instance.scale * source.stretch);
@@ -167,8 +168,8 @@ Json instances_json(const CloudFile& job) {
 }
 
 Json status_json(const Frame& frame) {
-  // Neighbours mostly have the same status: counters of their own keep them from waiting for each
-  // other.
+  // Neighbours mostly have the same status: separate counters avoid dependencies between
+  // consecutive increments.
   constexpr std::size_t kLanes = 4;
   std::array<std::array<std::size_t, 256>, kLanes> counts{};
   for (std::size_t i = 0; i < frame.status.size(); ++i)
@@ -187,12 +188,12 @@ Json command_json(const CommandRecord& command, const std::filesystem::path& pat
   return {{"arguments", command.arguments}, {"folder", relative_folder(path, command.folder)}};
 }
 
-// names and paths may hold bytes that are no UTF-8
+// names and paths may contain bytes that are not UTF-8
 std::string on_one_line(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Indented, but a list of plain values stays on one line, so that a matrix reads as one.
+/// Indented, with lists of plain values on one line, so that matrices are readable.
 void append_text(const Json& value, std::size_t indent, std::string& text) {
   const auto nested = [](const Json& part) { return part.is_structured(); };
   if (!value.is_object() && std::none_of(value.begin(), value.end(), nested)) {

@@ -11,7 +11,7 @@
 namespace glidar {
 namespace {
 
-/// The farthest that rounding to float moves a number of this column.
+/// The maximum change of a number of this column by rounding to float.
 double rounding(const Column& column) {
   double farthest = 0.0;
   for (const double value : std::get<std::vector<double>>(column.values)) {
@@ -55,18 +55,18 @@ std::string_view type_name(Stored stored) {
   return "packed_rgb";
 }
 
-std::string rounding_told(std::span<const Field> fields, std::string_view remedy) {
-  std::string told;
+std::string rounding_warning(std::span<const Field> fields, std::string_view remedy) {
+  std::string moves;
   for (const StoredColumn& stored : stored_columns(fields)) {
     const Column& column = *stored.column;
     if (stored.stored != Stored::f32 || float_is_enough(column)) continue;
     const double moved_m = rounding(column);
     if (!(moved_m > kFinePosition_m)) continue;
-    told += fmt::format("{}its {} by up to {:.2g} m", told.empty() ? "" : ", ",
-                        column.name == "xyz" ? "points" : column.name, moved_m);
+    moves += fmt::format("{}its {} by up to {:.2g} m", moves.empty() ? "" : ", ",
+                         column.name == "xyz" ? "points" : column.name, moved_m);
   }
-  if (told.empty()) return told;
-  return fmt::format("rounding to float32 moves {}; {}", told, remedy);
+  if (moves.empty()) return moves;
+  return fmt::format("rounding to float32 moves {}; {}", moves, remedy);
 }
 
 }  // namespace glidar

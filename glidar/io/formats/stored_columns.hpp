@@ -11,8 +11,8 @@
 
 namespace glidar {
 
-/// A column as a file holds it: fields that are neighbours in one column of the cloud and are
-/// stored alike.
+/// A column of a file: fields that are adjacent in one column of the cloud and have the same
+/// stored type.
 struct StoredColumn {
   const Column* column = nullptr;
   Stored stored = Stored::f32;
@@ -24,8 +24,8 @@ std::vector<StoredColumn> stored_columns(std::span<const Field> fields);
 /// "f32", "f64", "u8", "u16", "u32", "i64", "packed_rgb".
 std::string_view type_name(Stored stored);
 
-/// What to tell of doubles stored as float where that moves a coordinate or depth by more than
-/// kFinePosition_m: how far, and the remedy. Empty when there is nothing to tell.
-std::string rounding_told(std::span<const Field> fields, std::string_view remedy);
+/// The warning for doubles that are stored as float, when that moves a coordinate or depth by more
+/// than kFinePosition_m: the distance and the remedy. Empty otherwise.
+std::string rounding_warning(std::span<const Field> fields, std::string_view remedy);
 
 }  // namespace glidar

@@ -18,10 +18,10 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::size_t kMaxWords = 64;
 
-/// Digits as nanoseconds: "12.5" is 12500000000. Nothing for any other spelling.
+/// Digits as nanoseconds: "12.5" is 12500000000. Empty for any other notation.
 std::optional<std::int64_t> decimal_ns(std::string_view text) {
   constexpr int kRowPlaces = 9;
-  constexpr std::size_t kMaxDigits = 18;  // nine before the point fit with the nine behind
+  constexpr std::size_t kMaxDigits = 18;  // nine before the point and nine after it fit 64 bits
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);
   const std::size_t point = text.find('.');

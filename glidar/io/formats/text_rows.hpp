@@ -12,7 +12,7 @@
 
 namespace glidar {
 
-/// A word and the place of its first character, counted from 1.
+/// A word and the column of its first character, from 1.
 struct Word {
   std::string_view text;
   std::size_t column = 1;
@@ -24,10 +24,10 @@ class TextRows {
   /// `content` must outlive the rows.
   TextRows(std::string file, std::string_view content);
 
-  /// Goes to the next row; false at the end.
+  /// Reads the next row; false at the end.
   bool next();
 
-  /// The parts of the row between commas, trimmed, if it has any commas, else between blanks. At
+  /// The parts of the row, separated by commas and trimmed, or by blanks if there is no comma. At
   /// most 64; a longer row has 65.
   [[nodiscard]] const std::vector<Word>& words() const { return words_; }
   [[nodiscard]] bool has_commas() const { return has_commas_; }
@@ -37,11 +37,11 @@ class TextRows {
   [[noreturn]] void reject(const Word& word, std::string found, std::string allowed,
                            std::string remedy = "") const;
 
-  /// The finite number that the word spells; throws Error when it spells none.
+  /// The word as a finite number; throws Error when it is not one.
   [[nodiscard]] double number(const Word& word) const;
 
-  /// Seconds as nanoseconds, exact for decimals of up to nine places; throws Error when the word is
-  /// no number or beyond 290 years.
+  /// Seconds as nanoseconds, exact for up to nine decimals; throws Error when the word is
+  /// not a number or beyond 290 years.
   [[nodiscard]] std::int64_t time_ns(const Word& word) const;
 
  private:

@@ -24,12 +24,12 @@ constexpr std::array<const char*, 8> kNames = {"t", "x", "y", "z", "qx", "qy", "
 constexpr std::size_t kTum = kNames.size();
 constexpr std::size_t kKitti = 12;
 
-/// Where in a row each of kNames stands.
+/// The position of each of kNames in a row.
 using Columns = std::array<std::size_t, kTum>;
 constexpr Columns kTumColumns = {0, 1, 2, 3, 4, 5, 6, 7};
 
 TextFileKind file_kind() {
-  return {"a trajectory file", kMaxTrajectoryFile_mib, "cut it, or thin it out"};
+  return {"a trajectory file", kMaxTrajectoryFile_mib, "shorten it, or reduce the number of poses"};
 }
 
 void require_count(const TextRows& rows, std::size_t count, const char* what) {
@@ -40,7 +40,7 @@ void require_count(const TextRows& rows, std::size_t count, const char* what) {
               std::to_string(count) + " in every row" + what);
 }
 
-/// Appends the pose, or tells its fault: at the word of that part.
+/// Appends the pose; throws Error at the word of an invalid part.
 void append(const TextRows& rows, const TimedPose& pose, const std::array<Word, 3>& parts,
             std::vector<TimedPose>& poses) {
   const auto fault = find_error(poses.empty() ? nullptr : &poses.back(), pose);
@@ -101,7 +101,7 @@ std::vector<std::int64_t> read_times(const std::filesystem::path& path) {
   return times;
 }
 
-/// When the poses of a KITTI file are, by the options.
+/// The times of the poses of a KITTI file, from the options.
 class KittiClock {
  public:
   KittiClock(const std::string& file, const TrajectoryFileOptions& options)
@@ -145,9 +145,9 @@ void read_matrix_row(const TextRows& rows, std::int64_t t_ns, std::vector<TimedP
   }
   Pose pose = Pose::Identity();
   pose.linear() = matrix.leftCols<3>();
-  constexpr double kTolerance = 1e-3;  // files of four decimals pass
+  constexpr double kTolerance = 1e-3;  // accepts files with four decimals
   if (!is_rigid(pose, kTolerance)) {
-    rows.reject(rows.words()[0], "a matrix whose first three columns are no rotation",
+    rows.reject(rows.words()[0], "a matrix whose first three columns are not a rotation",
                 "a rotation to within 0.001");
   }
   const TimedPose timed{.t_ns = t_ns,
@@ -171,7 +171,7 @@ std::vector<TimedPose> read_quaternions(TextRows& rows, const std::string& file,
                                         const TrajectoryFileOptions& options) {
   if (options.rate_hz || !options.times_file.empty()) {
     throw Error({file, "a file that has times of its own", "a rate or times with KITTI files only",
-                 "leave them out"});
+                 "omit them"});
   }
   const bool csv = rows.has_commas();
   const Columns columns = csv ? named_columns(rows) : kTumColumns;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/transform_file.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ void write_transform(const CloudFile& job, AtomicFile& file) {
       job.cloud.world_from_cloud.inverse() * job.frame.world_from_instance.front();
   const Eigen::Matrix4d& matrix = cloud_from_object.matrix();
   for (Eigen::Index row = 0; row < 4; ++row) {
-    // + 0.0 turns -0 into 0
+    // + 0.0 converts -0 to 0
     file.write(fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", matrix(row, 0) + 0.0,
                            matrix(row, 1) + 0.0, matrix(row, 2) + 0.0, matrix(row, 3) + 0.0));
   }

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/truth_images.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <fmt/format.h>
@@ -29,13 +30,13 @@ void write_pixels(const CloudFile& job, PngKind kind, const std::vector<T>& pixe
             file);
 }
 
-/// The nearest whole number to a share of `full`, 0 for NaN.
+/// The nearest integer to a fraction of `full`, 0 for NaN.
 template <class T>
 T scaled(double share, double full) {
   return static_cast<T>(std::round(full * std::max(0.0, std::min(1.0, share))));
 }
 
-/// Ids as grey, 0 where there is none.
+/// Ids as grey, 0 for no id.
 template <class Grey>
 std::vector<Grey> greys_of(const std::vector<std::uint32_t>& ids) {
   std::vector<Grey> greys(ids.size());
@@ -52,7 +53,7 @@ void write_rgb_png(const CloudFile& job, AtomicFile& file) {
   const auto& incidences = field_values<float>(job, "incidence");
   std::vector<std::uint8_t> pixels(colours.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double light = std::cos(double{incidences[i / 3]});  // NaN where there is nothing
+    const double light = std::cos(double{incidences[i / 3]});  // NaN for no surface
     pixels[i] = std::isnan(light) ? 0 : scaled<std::uint8_t>(colours[i] * light, 255.0);
   }
   write_pixels(job, PngKind::rgb8, pixels, file);
@@ -72,7 +73,7 @@ void write_instance_png(const CloudFile& job, AtomicFile& file) {
   for (const std::uint32_t id : ids) {
     if (id == kInvalidId || (id > 0 && id <= kMaxGrey)) continue;
     throw Error({file.path().string(),
-                 id == 0 ? "an instance has the id 0, which is nothing in this file"
+                 id == 0 ? "an instance has the id 0, which means no surface in this file"
                          : fmt::format("the instance id {} does not fit 16 bits", id),
                  "ids from 1 to 65535",
                  "set 'id' of the model in the scene file, or write a cloud with the column "

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/model/mesh_making.hpp>
+#include <glidar/io/model/builtin_asteroid.hpp>
 #include <glidar/math/random.hpp>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr double kLength_m = 2.0;
 // Proportions of Itokawa-like bodies: clearly longer than wide.
 constexpr std::array<double, 3> kHalfAxes = {1.0, 0.70, 0.60};
 
-/// What a random number shapes; the second word of the Philox key.
+/// Purposes of random numbers; the second word of the Philox key.
 enum class Stream : std::uint32_t { relief, craters };
 constexpr std::uint32_t kShapeSeed = 25143;  // the number of (25143) Itokawa
 
@@ -24,7 +24,7 @@ RandomWords draw(Stream stream, std::uint32_t a, std::uint32_t b, std::uint32_t 
   return philox4x32({a, b, c, d}, {kShapeSeed, static_cast<std::uint32_t>(stream)});
 }
 
-/// A word as a number in -1..1.
+/// A random word as a number in -1..1.
 double centred(std::uint32_t word) {
   return 2.0 * uniform(word) - 1.0;
 }
@@ -39,7 +39,7 @@ double mix(double a, double b, double t) {
 }
 
 /// Gradient noise in about -1..1 on the integer lattice (K. Perlin, "Improving Noise", SIGGRAPH
-/// 2002) with a slope drawn per lattice point.
+/// 2002) with a random gradient per lattice point.
 double noise(const Eigen::Vector3d& p, std::uint32_t octave) {
   const Eigen::Vector3d cell(std::floor(p.x()), std::floor(p.y()), std::floor(p.z()));
   const Eigen::Vector3d inside = p - cell;
@@ -66,7 +66,7 @@ double relief(const Eigen::Vector3d& p) {
     double frequency;
     double amplitude;
   };
-  // The finest wavelength, 1/26 of a half-axis, still spans two edges of the mesh.
+  // The smallest wavelength, 1/26 of a half-axis, is still two edges of the mesh.
   constexpr std::array<Octave, 6> kOctaves = {
       {{1.1, 0.26}, {2.3, 0.10}, {4.9, 0.030}, {9.7, 0.013}, {17.0, 0.007}, {26.0, 0.005}}};
   double height = 0.0;
@@ -87,7 +87,7 @@ Eigen::Vector3d on_ellipsoid(const Eigen::Vector3d& direction) {
   return {kHalfAxes[0] * direction.x(), kHalfAxes[1] * direction.y(), kHalfAxes[2] * direction.z()};
 }
 
-/// A direction uniform on the sphere: the first point of the cube that lies in the ball.
+/// A uniform direction on the sphere: the first random point of the cube inside the unit ball.
 Eigen::Vector3d random_direction(std::uint32_t index) {
   for (std::uint32_t attempt = 0;; ++attempt) {
     const RandomWords words = draw(Stream::craters, index, 0, attempt, 0);
@@ -125,10 +125,10 @@ double soft_min(double a, double b, double width) {
   return std::min(a, b) - overlap * overlap * width / 4.0;
 }
 
-constexpr double kReach = 1.9;       // crater radii to where the blanket of thrown-out rock ends
-constexpr double kCrestWidth = 0.1;  // of the radius; a sharper crest would be a saw on this mesh
+constexpr double kReach = 1.9;       // extent of the ejecta blanket in crater radii
+constexpr double kCrestWidth = 0.1;  // of the radius; a sharper crest would alias on this mesh
 
-/// Adds a crater to the height so far: a bowl that meets the blanket at the rim. It wipes out half
+/// Adds a crater to the height so far: a bowl that meets the blanket at the rim. It removes half
 /// of the older relief inside it. `t` is the distance from its centre in crater radii.
 double cratered(double height, const Crater& crater, double t) {
   const double s = (kReach - t) / (kReach - 1.0);
@@ -176,7 +176,7 @@ PointMesh make_asteroid() {
   for (Eigen::Vector3d& point : mesh.points_m) {
     const Eigen::Vector3d direction = point;
     const Eigen::Vector3d ground = on_ellipsoid(direction);
-    // Moved along its own direction from the centre, so the surface cannot cross itself.
+    // Points move radially, so the surface cannot intersect itself.
     point = ground * (1.0 + relief(ground)) + direction * crater_height(ground, craters);
   }
   const Eigen::Vector3d centre = centre_of_volume(mesh);

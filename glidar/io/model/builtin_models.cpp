@@ -4,7 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
-#include <glidar/io/model/mesh_making.hpp>
+#include <glidar/io/model/builtin_asteroid.hpp>
+#include <glidar/io/model/point_mesh.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +25,7 @@ Material neutral_grey() {
   return material;
 }
 
-/// Regolith: a warm grey that hardly shines.
+/// Regolith: a warm, hardly specular grey.
 Material rock() {
   Material material;
   material.name = "rock";
@@ -43,7 +44,7 @@ Mesh to_mesh(const PointMesh& points, const std::vector<Eigen::Vector3d>& normal
   return mesh;
 }
 
-/// Lengths that a built-in model may be given, m.
+/// Sizes of a built-in model, m.
 struct Sizes {
   Eigen::Vector3d size = Eigen::Vector3d::Constant(2.0);
   double radius = 1.0;
@@ -52,7 +53,7 @@ struct Sizes {
 
 Mesh sphere(const Sizes& sizes) {
   PointMesh ball = icosphere(4);
-  const std::vector<Eigen::Vector3d> normals = ball.points_m;  // those of the unit sphere
+  const std::vector<Eigen::Vector3d> normals = ball.points_m;  // the points of the unit sphere
   for (Eigen::Vector3d& p : ball.points_m) p *= sizes.radius;
   return to_mesh(ball, normals);
 }
@@ -76,7 +77,7 @@ void append_square(Mesh& mesh, const Eigen::Vector3f& centre, const Eigen::Vecto
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// From sides of 2 m to the given ones.
+/// Scales sides of 2 m to the given lengths.
 void resize(const Eigen::Vector3d& size, Mesh& mesh) {
   for (Eigen::Vector3f& p : mesh.positions_m) {
     p = p.cast<double>().cwiseProduct(0.5 * size).cast<float>();
@@ -104,7 +105,7 @@ Mesh box(const Sizes& sizes) {
 }
 
 /// `count` directions evenly around the circle, from +x towards +y; count = 4 * 2^n. Halving
-/// arcs needs only square roots: sines and cosines differ between maths libraries.
+/// arcs needs only square roots: sines and cosines differ between mathematical libraries.
 std::vector<Eigen::Vector2d> circle(std::size_t count) {
   std::vector<Eigen::Vector2d> points = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   while (points.size() < count) {
@@ -147,8 +148,8 @@ Mesh torus(const Sizes& sizes) {
 struct Builtin {
   Mesh (*make)(const Sizes&);
   Material (*material)();
-  int lengths;      ///< how many `size` has; 0: it has no size
-  bool has_radius;  ///< and no size
+  int lengths;      ///< number of lengths of `size`; 0: no size
+  bool has_radius;  ///< instead of a size
   bool has_tube;
 };
 // In the order of builtin_model_names().
@@ -218,8 +219,8 @@ void set_size(std::string_view name, const Builtin& builtin, std::string_view pa
   const std::vector<std::string> keys = size_keys(builtin);
   if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
     const std::string nearest = closest_match(key, keys);
-    refuse(name, "'" + excerpt(key) + "' is no size of this model",
-           keys.empty() ? "no sizes; 'scale' changes that of any model" : joined(keys),
+    refuse(name, "'" + excerpt(key) + "' is not a size of this model",
+           keys.empty() ? "no sizes; 'scale' applies to any model" : joined(keys),
            nearest.empty() ? "" : "did you mean '" + nearest + "'?");
   }
   if (equals == std::string_view::npos) {

@@ -30,7 +30,7 @@ Faces faces_of(const Mesh& mesh) {
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     const Triangle& t = mesh.triangles[f];
     const Eigen::Vector3f& a = mesh.positions_m[t[0]];
-    // Lengths of any size must not over- or underflow when multiplied.
+    // Products of lengths must not overflow or underflow.
     Eigen::Vector3f ab = mesh.positions_m[t[1]] - a;
     Eigen::Vector3f ac = mesh.positions_m[t[2]] - a;
     const float size = std::max(ab.lpNorm<Eigen::Infinity>(), ac.lpNorm<Eigen::Infinity>());
@@ -77,7 +77,7 @@ Eigen::Vector3f unit_or_up(const Eigen::Vector3f& v) {
   return length > 0.0F ? Eigen::Vector3f(v / length) : Eigen::Vector3f::UnitZ();
 }
 
-/// Gives corners their normals, splitting vertices where one has several.
+/// Assigns normals to corners and splits vertices that have several.
 class Smoother {
  public:
   Smoother(Mesh& mesh, double crease_angle_rad)
@@ -114,7 +114,8 @@ class Smoother {
     return unit_or_up(sum);
   }
 
-  /// All within half the crease of one direction: then no two are farther apart than the crease.
+  /// All within half the crease angle of one direction: then no two differ by more than the crease
+  /// angle.
   bool all_near(std::span<const std::uint32_t> fan, const Eigen::Vector3f& mean) const {
     return std::all_of(fan.begin(), fan.end(), [&](std::uint32_t c) {
       const Eigen::Vector3f& n = faces_.normals[c / 3];
@@ -142,7 +143,7 @@ class Smoother {
       made_.push_back({from, from});
       return;
     }
-    // Of very many, only the first are searched for an equal one: the search is quadratic too.
+    // Only the first of very many are searched for an equal one, because the search is quadratic.
     const auto searched =
         made_.begin() + static_cast<std::ptrdiff_t>(std::min(made_.size(), kManyFaces));
     const auto same = std::find_if(made_.begin(), searched, [&](const Made& made) {

@@ -87,7 +87,7 @@ bool looks_like_normal_map(const Texture& image) {
     blue += rgb[2];
     colour += static_cast<std::uint64_t>(std::abs(rgb[2] - rgb[0]) + std::abs(rgb[2] - rgb[1]));
   }
-  constexpr std::uint64_t kBlue = 150;   // z of a normal is mostly above 0.2
+  constexpr std::uint64_t kBlue = 150;   // z of most normals is above 0.2
   constexpr std::uint64_t kColour = 40;  // flat (128, 128, 255) has 254, a grey image 0
   return blue > kBlue * count && colour > kColour * count;
 }

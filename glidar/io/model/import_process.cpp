@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/import_process.hpp>
+#include <glidar/io/model/import_program.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
@@ -30,8 +31,8 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
-constexpr double kQuietSeconds = 0.5;    // faster loads show no progress
-constexpr int kSliceMilliseconds = 100;  // between two looks at the clock
+constexpr double kQuietSeconds = 0.5;    // shorter loads report no progress
+constexpr int kSliceMilliseconds = 100;  // between checks of the time limit
 constexpr int kAnswerFd = 3;
 constexpr int kProgressFd = 4;
 
@@ -46,8 +47,9 @@ double seconds_since(Clock::time_point start) {
                .remedy = ""});
 }
 
-/// What the process gets of the environment: where the dynamic loader looks for libraries, and, if
-/// it is built with sanitizers, their options. A model that takes it over finds no secret there.
+/// The environment of the process: the search path of the dynamic loader and, if
+/// it is built with sanitizers, their options. It contains no secrets that a malicious model could
+/// read.
 std::vector<std::string> environment() {
   std::vector<const char*> names = {"LD_LIBRARY_PATH"};
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -61,7 +63,7 @@ std::vector<std::string> environment() {
   return all;
 }
 
-/// As posix_spawn takes them; refers to the texts.
+/// The strings as posix_spawn requires them; pointers into `texts`.
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
@@ -69,7 +71,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// Its standard streams lead nowhere, descriptors 3 and 4 are ours, all others are closed.
+/// Its standard streams are /dev/null, descriptors 3 and 4 are passed to it, all others are closed.
 class SpawnPlan {
  public:
   SpawnPlan(int answer, int progress) {
@@ -103,7 +105,7 @@ struct ProgressPipe {
   UniqueFd write_end;
 };
 
-/// Moved above the descriptors that the child gets, so that the moves there cannot collide.
+/// Moved above the descriptors of the child, so that duplicating them there cannot collide.
 UniqueFd moved_up(int fd) {
   const UniqueFd low(fd);
   return UniqueFd(::fcntl(low.get(), F_DUPFD_CLOEXEC, kProgressFd + 1));
@@ -132,8 +134,8 @@ bool has_ended(pid_t child) {
   return info.si_pid == child;
 }
 
-/// Reads percent bytes until the process closes its end, which it does by ending.
-/// False when the time ran out first.
+/// Reads percent bytes until the process ends, which closes the pipe.
+/// False when the time limit was exceeded.
 bool wait_for_end(pid_t child, const ProgressPipe& pipe, const ImportRequest& request,
                   const Report& report) {
   const Clock::time_point start = Clock::now();
@@ -145,7 +147,7 @@ bool wait_for_end(pid_t child, const ProgressPipe& pipe, const ImportRequest& re
     pollfd watched{pipe.read_end.get(), POLLIN, 0};
     const int slice = std::min(kSliceMilliseconds, static_cast<int>(left_s * 1000.0) + 1);
     const int ready = ::poll(&watched, 1, slice);
-    // Should a process forked elsewhere hold the pipe's other end, the end itself still tells.
+    // Another fork may hold the pipe's other end, so the end of the process is checked too.
     if (ready == 0 && has_ended(child)) return true;
     if (ready > 0) {
       std::array<unsigned char, 256> percents{};
@@ -171,13 +173,13 @@ std::string signal_name(int signal) {
                .remedy = std::move(remedy)});
 }
 
-/// How a process ended, and what it took.
+/// How a process ended, and the resources it used.
 struct Ending {
   int status = 0;
   rusage usage{};
 };
 
-/// Waits for the process, which is killed first if need be.
+/// Waits for the process, after killing it if necessary.
 Ending end(pid_t child, bool is_killed) {
   if (is_killed) ::kill(child, SIGKILL);
   Ending ending;
@@ -186,7 +188,7 @@ Ending end(pid_t child, bool is_killed) {
   return ending;
 }
 
-/// Exit status of the import program when memory ran out before it could say so in a frame.
+/// Exit status of the import program when it has no memory left to report this in a frame.
 constexpr int kExitNoMemory = 3;
 
 void classify(ImportRun& run, int status) {
@@ -210,7 +212,7 @@ std::uint64_t default_memory_limit(std::uint64_t file_bytes) {
 
 double default_time_limit_s(std::uint64_t file_bytes) {
   constexpr double kMin = 20.0;
-  constexpr double kPerByte = 2e-6;  // fifty times what a slow format takes on a slow machine
+  constexpr double kPerByte = 2e-6;  // fifty times the duration of a slow format on a slow machine
   return kMin + kPerByte * static_cast<double>(file_bytes);
 }
 
@@ -233,7 +235,7 @@ ImportRun run_import(const ImportRequest& request, const Report& report) {
   bool in_time = false;
   try {
     in_time = wait_for_end(child, pipe, request, report);
-  } catch (...) {  // whoever is told of the progress gave up
+  } catch (...) {  // the progress callback threw
     end(child, true);
     throw;
   }
@@ -246,6 +248,13 @@ ImportRun run_import(const ImportRequest& request, const Report& report) {
   return run;
 }
 
+void reject_answer(const std::filesystem::path& model, const std::string& found) {
+  throw Error({.where = model.string(),
+               .found = "the import process returned a malformed answer (" + found + ")",
+               .allowed = "",
+               .remedy = "save the model in another format (PLY, OBJ or glTF)"});
+}
+
 ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
   switch (run.end) {
     case ImportEnd::out_of_time:
@@ -254,12 +263,13 @@ ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
     case ImportEnd::out_of_memory:
       fail(request,
            fmt::format("reading it needs more memory than {} MiB", run.memory_limit_bytes >> 20U),
-           "the file may be broken; else save the model in another format, or make it smaller");
+           "the file may be corrupt; otherwise save the model in another format, or make it "
+           "smaller");
     case ImportEnd::crashed:
       fail(request,
            run.signal != 0 ? "the import process crashed (" + signal_name(run.signal) + ")"
-                           : "the import process gave up without an answer",
-           "the file is damaged or uses what the importer cannot read; save it in another format "
+                           : "the import process ended without an answer",
+           "the file is corrupt or uses an unsupported feature; save it in another format "
            "(PLY, OBJ or glTF)");
     case ImportEnd::answered:
       break;
@@ -270,8 +280,7 @@ ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
     if (frame.kind() == FrameKind::model) return read_model(frame);
     failure = read_failure(frame);
   } catch (const Error& error) {
-    fail(request, "the import process gave a damaged answer (" + error.parts().found + ")",
-         "save the model in another format (PLY, OBJ or glTF)");
+    reject_answer(request.model, error.parts().found);
   }
   fail(request, failure->found, failure->remedy);
 }

@@ -12,8 +12,8 @@
 
 namespace glidar {
 
-/// One run of the import process. Model importers crash on hostile files and on some good ones, so
-/// they work in a process of their own, which may read the model's folder and must stay within
+/// A run of the import process. Model importers crash on malicious and on some valid files, so
+/// they run in a separate process, which may read the model's folder and must stay within
 /// these limits.
 struct ImportRequest {
   std::filesystem::path model;  ///< canonical path
@@ -23,33 +23,31 @@ struct ImportRequest {
       0;  ///< address space; 0: default_memory_limit of the file's size
 };
 
-/// How the process came to its end.
+/// How the process ended.
 enum class ImportEnd : std::uint8_t { answered, crashed, out_of_time, out_of_memory };
 
 struct ImportRun {
   ImportEnd end = ImportEnd::crashed;
-  int signal = 0;   ///< that ended it when crashed; 0: it gave up by itself
-  UniqueFd answer;  ///< memory file at position 0: one frame, a model or a failure
-  std::uint64_t peak_memory_bytes = 0;  ///< resident; the starting process' own if that was more
+  int signal = 0;   ///< that ended it when crashed; 0: it exited without an answer
+  UniqueFd answer;  ///< memory file at position 0, with one frame: a model or a failure
+  std::uint64_t peak_memory_bytes = 0;  ///< resident; that of the starting process if it is larger
   std::uint64_t memory_limit_bytes = 0;
   double seconds = 0.0;
 };
 
-/// 20 s, and 2 s more for every megabyte.
+/// 20 s, plus 2 s per megabyte.
 double default_time_limit_s(std::uint64_t file_bytes);
 
-/// 1 GiB, or 40 times the file for big ones: text formats unfold that much.
+/// 1 GiB, or 40 times the file size if that is larger: text formats expand that much.
 std::uint64_t default_memory_limit(std::uint64_t file_bytes);
-
-/// The import program `glidar-import`: the environment variable GLIDAR_IMPORT_HELPER, beside the
-/// running program, in ../libexec/glidar from there, where it was built, where it is installed.
-/// Throws Error naming these places when it is in none of them.
-std::filesystem::path import_program();
 
 /// Starts the import program and waits for its end. Reports progress as "loading NAME" when it
 /// takes more than half a second (a negative fraction: unknown).
 /// Throws Error only when the program cannot be found or started.
 ImportRun run_import(const ImportRequest& request, const Report& report);
+
+/// Throws Error for an answer of the import process that is malformed or not allowed.
+[[noreturn]] void reject_answer(const std::filesystem::path& model, const std::string& found);
 
 /// The model of a run. Throws Error naming the model, what happened and what to do.
 ImportedModel take_model(const ImportRun& run, const ImportRequest& request);

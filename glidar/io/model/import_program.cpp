@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/import_program.hpp>
+
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/own_folders.hpp>
-#include <glidar/io/model/import_process.hpp>
 
 #include <unistd.h>
 
@@ -42,9 +43,9 @@ fs::path import_program() {
   if (const char* named = std::getenv(kVariable); named != nullptr && *named != '\0') {
     if (runnable(named)) return named;
     throw Error({.where = kVariable,
-                 .found = std::string(named) + " is no program that can be run",
+                 .found = std::string(named) + " is not an executable program",
                  .allowed = std::string("the path of ") + kName,
-                 .remedy = "unset it or mend it"});
+                 .remedy = "unset or correct it"});
   }
   std::string searched;
   for (const fs::path& place : places()) {
@@ -54,7 +55,7 @@ fs::path import_program() {
   throw Error({.where = std::string("program ") + kName,
                .found = "not found in " + searched,
                .allowed = "",
-               .remedy = std::string("install GLIDAR whole, or set ") + kVariable});
+               .remedy = std::string("reinstall GLIDAR, or set ") + kVariable});
 }
 
 }  // namespace glidar

@@ -13,12 +13,8 @@
 namespace glidar {
 namespace {
 
-[[noreturn]] void refuse(const std::string& found) {
-  throw Error({.where = "imported data", .found = found, .allowed = "", .remedy = ""});
-}
-
-// One list of fields serves both directions: `visit(archive, field)` with an archive that either
-// takes bytes out of the field or puts them in.
+// One list of fields for both directions: `visit(archive, field)` with an archive that either
+// writes bytes from the field or reads them into it.
 
 struct Out {
   static constexpr bool kReads = false;
@@ -44,7 +40,7 @@ void visit(A& archive, T& value) {
   archive.raw(&value, sizeof value);
 }
 
-/// Elements of plain numbers: their memory as it is.
+/// Elements of plain numbers: their memory representation.
 template <class T>
 inline constexpr bool kPlain = std::is_arithmetic_v<T>;
 template <class T, int R, int C>
@@ -67,7 +63,7 @@ void visit(A& archive, T& text) {
   std::uint64_t size = text.size();
   visit(archive, size);
   if constexpr (A::kReads) {
-    if (size > archive.frame.remaining()) refuse("a text longer than the data");
+    if (size > archive.frame.remaining()) reject_imported_data("a string longer than the data");
     text.resize(size);
   }
   archive.raw(text.data(), size);
@@ -95,11 +91,11 @@ void visit(A& archive, V& values) {
   std::uint64_t size = values.size();
   visit(archive, size);
   if constexpr (A::kReads) {
-    // A record starts with a text's length, and takes more memory than bytes: a small limit for
-    // them.
+    // A record starts with the length of a string, and needs more memory than bytes: a small limit
+    // for them.
     const std::uint64_t each = kPlain<T> ? sizeof(T) : sizeof(std::uint64_t);
     if (size > archive.frame.remaining() / each || (!kPlain<T> && size > kMaxRecords)) {
-      refuse("an array longer than the data");
+      reject_imported_data("an array longer than the data");
     }
     values.resize(size);
   }
@@ -186,13 +182,13 @@ void write_frame(int fd, FrameKind kind, const T&... values) {
 
 template <class... T>
 void read_frame(FrameReader& frame, FrameKind kind, T&... values) {
-  if (frame.kind() != kind) refuse("a frame of another kind");
+  if (frame.kind() != kind) reject_imported_data("a frame of another type");
   In archive{frame};
   (visit(archive, values), ...);
   frame.finish();
 }
 
-// What the type system does not promise about a model that was read.
+// Checks of a model that the type system does not guarantee.
 
 void check(const TextureUse& use, std::size_t textures) {
   const bool sound = use.texture >= TextureUse::kNone &&
@@ -200,7 +196,7 @@ void check(const TextureUse& use, std::size_t textures) {
                      use.uv_set <= 1 && use.wrap_u <= Wrap::clamp && use.wrap_v <= Wrap::clamp &&
                      use.filter <= Filter::nearest && use.uv_scale_rotate.allFinite() &&
                      use.uv_offset.allFinite();
-  if (!sound) refuse("a material uses a texture in an impossible way");
+  if (!sound) reject_imported_data("a material uses a texture in an impossible way");
 }
 
 bool in_unit_range(const Eigen::Vector3f& colour) {
@@ -212,7 +208,7 @@ void check(const Material& m, std::size_t textures) {
                      in_unit_range(m.specular) && m.shininess >= 0.0F && m.shininess <= 128.0F &&
                      m.opacity >= 0.0F && m.opacity <= 1.0F && m.alpha_cutoff >= 0.0F &&
                      m.alpha_cutoff <= 1.0F && std::isfinite(m.normal_scale);
-  if (!sound) refuse("material '" + m.name + "' has an impossible number");
+  if (!sound) reject_imported_data("material '" + m.name + "' has an impossible number");
   for (const TextureUse* use :
        {&m.diffuse_texture, &m.specular_texture, &m.alpha_texture, &m.normal_texture}) {
     check(*use, textures);
@@ -224,14 +220,14 @@ void check(const Texture& texture) {
   const bool sound = texture.channels >= 1 && texture.channels <= 4 && texels > 0 &&
                      texels <= texture.texels.size() &&
                      texels * texture.channels == texture.texels.size();
-  if (!sound) refuse("texture '" + texture.name + "' has an impossible size");
+  if (!sound) reject_imported_data("texture '" + texture.name + "' has an impossible size");
 }
 
 template <class V>
 void check_finite(const std::vector<V>& values, const char* what) {
   const bool finite =
       std::all_of(values.begin(), values.end(), [](const V& v) { return v.allFinite(); });
-  if (!finite) refuse(std::string(what) + " that are not finite");
+  if (!finite) reject_imported_data(std::string(what) + " that are not finite");
 }
 
 void check(const Mesh& mesh) {
@@ -241,33 +237,36 @@ void check(const Mesh& mesh) {
   check_finite(mesh.uvs[0], "uvs");
   check_finite(mesh.uvs[1], "uvs");
   check_finite(mesh.colours, "colours");
-  if (!mesh.origin_m.allFinite()) refuse("an origin that is not finite");
-  if (mesh.triangles.empty()) refuse("no triangles");
+  if (!mesh.origin_m.allFinite()) reject_imported_data("an origin that is not finite");
+  if (mesh.triangles.empty()) reject_imported_data("no triangles");
 }
 
 void check(const ModelFrame& declared) {
   const double metres = declared.metres_per_unit.value_or(1.0);
   if (!std::isfinite(metres) || !(metres > 0.0) || declared.up.value_or(Axis::z) > Axis::z) {
-    refuse("an impossible unit or up axis");
+    reject_imported_data("an impossible unit or up axis");
   }
 }
 
 void check(const Model& model) {
   check(model.declared);
   check(model.mesh);
-  if (model.materials.size() < slot_count(model.mesh)) refuse("a triangle without a material");
+  if (model.materials.size() < slot_count(model.mesh))
+    reject_imported_data("a triangle without a material");
   for (const Material& material : model.materials) check(material, model.textures.size());
   for (const Texture& texture : model.textures) check(texture);
   for (const ModelPart& part : model.parts) {
     const std::uint64_t end = std::uint64_t{part.first_triangle} + part.triangle_count;
-    if (end > model.mesh.triangles.size()) refuse("part '" + part.name + "' beyond the triangles");
+    if (end > model.mesh.triangles.size())
+      reject_imported_data("part '" + part.name + "' beyond the triangles");
   }
 }
 
 void check(const ImportedModel& imported) {
   check(imported.model);
-  if (imported.files.empty()) refuse("no file that it was read from");
-  if (imported.files.size() != imported.hashes.size()) refuse("files without their hashes");
+  if (imported.files.empty()) reject_imported_data("no source file");
+  if (imported.files.size() != imported.hashes.size())
+    reject_imported_data("files without their hashes");
 }
 
 }  // namespace
@@ -302,7 +301,7 @@ CachedFile read_cached_file(FrameReader& frame) {
   read_frame(frame, FrameKind::cached_file, cached.index, cached.imported);
   check(cached.imported);
   if (cached.imported.libraries.size() != cached.index.states_of_libraries.size())
-    refuse("a cache without its libraries' states");
+    reject_imported_data("a cache without the states of its libraries");
   return cached;
 }
 

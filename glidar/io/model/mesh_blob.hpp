@@ -11,19 +11,19 @@
 
 namespace glidar {
 
-/// Most parts, materials, textures or files of one model.
+/// Maximum number of parts, materials, textures or files of one model.
 inline constexpr std::uint64_t kMaxRecords = std::uint64_t{1} << 20U;
 
-/// The two halves of one binary layout: every field of an ImportedModel in the order of its
+/// Writes the binary format: every field of an ImportedModel in the order of
 /// declaration; counts as uint64, then the raw elements.
 void write_model(int fd, const ImportedModel& imported);
 
-/// Reads what write_model wrote, from a frame whose head is read already. Checks every size, index
-/// and number before the model is handed out, as the writer may have been led astray by a hostile
-/// file; throws Error.
+/// Reads what write_model wrote, from a frame whose header was read already. Checks every size,
+/// index and number before it returns the model, because a malicious file may have compromised the
+/// writer; throws Error.
 ImportedModel read_model(FrameReader& frame);
 
-/// Why the import process gave no model.
+/// Why the import process returned no model.
 struct ImportFailure {
   std::string found;
   std::string remedy;
@@ -32,13 +32,13 @@ struct ImportFailure {
 void write_failure(int fd, const ImportFailure& failure);
 ImportFailure read_failure(FrameReader& frame);
 
-/// What a cached model was made with, beside what ImportedModel lists.
+/// Dependencies of a cached model other than those in ImportedModel.
 struct CacheIndex {
-  std::string importer;  ///< version of everything that shapes the model
-  std::string root;      ///< folder and root that textures were searched in
+  std::string importer;  ///< version of everything that affects the model
+  std::string root;      ///< root of the texture search; its folder follows
   std::string folder;
   std::vector<std::string>
-      states_of_libraries;  ///< one per library; another one makes the file void
+      states_of_libraries;  ///< one per library; a different one invalidates the file
 };
 
 /// A cache file: index, dependencies with their hashes, and model in one frame, whose hash covers

@@ -14,11 +14,11 @@
 namespace glidar {
 namespace {
 
-/// One side of a triangle, as the undirected edge it lies on.
+/// One side of a triangle, as an undirected edge.
 struct Side {
   std::uint32_t low;
   std::uint32_t high;
-  bool upwards;  ///< runs from low to high
+  bool upwards;  ///< directed from low to high
 
   bool operator<(const Side& other) const {
     return std::tie(low, high) < std::tie(other.low, other.high);
@@ -28,7 +28,7 @@ struct Side {
   }
 };
 
-/// Triangles with their corners renamed to places.
+/// Triangles with vertices replaced by the first vertex at the same position.
 std::vector<Triangle> by_place(const Mesh& mesh, const std::vector<std::uint32_t>& place) {
   std::vector<Triangle> triangles = mesh.triangles;
   for (Triangle& t : triangles) {
@@ -77,7 +77,8 @@ void count_duplicates(std::vector<Triangle> triangles, MeshCheck& check) {
 }
 
 void measure(const Mesh& mesh, MeshCheck& check) {
-  // About the middle of the box: far from zero the sum of signed volumes would cancel badly.
+  // Relative to the centre of the box: far from zero, cancellation would make the sum of signed
+  // volumes imprecise.
   const Eigen::Vector3d middle = bounds(mesh).center() - mesh.origin_m;
   constexpr double kFlat = 1e-12;
   for (const Triangle& t : mesh.triangles) {
@@ -120,7 +121,7 @@ void add(const MeshCheck& part, MeshCheck& all) {
 
 MeshCheck check_mesh(const Mesh& mesh) {
   MeshCheck check;
-  // Pieces share no positions, so what is found in each adds up.
+  // Pieces share no positions, so their results can be added.
   for (const MeshPiece& piece : cut_at_origins(mesh)) add(check_mesh(piece.mesh), check);
   if (!mesh.origins.empty()) return check;
   if (mesh.triangles.empty()) return check;

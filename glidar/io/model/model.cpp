@@ -6,8 +6,8 @@
 #include <glidar/io/files/nearest_file.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/io/model/import_process.hpp>
+#include <glidar/io/model/mesh_transform.hpp>
 #include <glidar/io/model/model_cache.hpp>
-#include <glidar/io/model/model_place.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,38 +22,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void require(bool holds, const char* option, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = option, .found = number_text(found), .allowed = allowed, .remedy = ""});
-}
-
 void check(const ModelOptions& options) {
   const double unit = options.metres_per_unit.value_or(1.0);
-  require(std::isfinite(unit) && unit > 0.0, "metres_per_unit", unit, "a finite number above 0");
-  require(options.crease_angle_rad >= 0.0 && options.crease_angle_rad <= std::numbers::pi,
-          "crease_angle_rad", options.crease_angle_rad, "0 to pi");
-  require(options.time_limit_s >= 0.0 && options.time_limit_s <= 1e6, "time_limit_s",
-          options.time_limit_s, "0 (by the file's size) to 1e6");
+  require_number(std::isfinite(unit) && unit > 0.0, "metres_per_unit", unit,
+                 "a finite number above 0");
+  require_number(options.crease_angle_rad >= 0.0 && options.crease_angle_rad <= std::numbers::pi,
+                 "crease_angle_rad", options.crease_angle_rad, "0 to pi");
+  require_number(options.time_limit_s >= 0.0 && options.time_limit_s <= 1e6, "time_limit_s",
+                 options.time_limit_s, "0 (by the file's size) to 1e6");
 }
 
-[[noreturn]] void no_model(const std::string& source, std::string found, std::string remedy) {
+[[noreturn]] void reject_model(const std::string& source, std::string found, std::string remedy) {
   throw Error(
       {.where = source, .found = std::move(found), .allowed = "", .remedy = std::move(remedy)});
 }
 
 fs::path model_file(const std::string& source) {
   if (source.empty() || source.find('\0') != std::string::npos) {
-    no_model("model", "an empty or impossible path", "name a model file or builtin:NAME");
+    reject_model("model", "an empty or invalid path", "name a model file or builtin:NAME");
   }
   std::error_code error;
   fs::path real = fs::canonical(source, error);
   if (error) {
     const std::string nearest = nearest_file(source);
-    no_model(source, "cannot be opened: " + error.message(),
-             nearest.empty() ? "check the path" : "did you mean " + nearest + "?");
+    reject_model(source, "cannot be opened: " + error.message(),
+                 nearest.empty() ? "check the path" : "did you mean " + nearest + "?");
   }
-  if (!fs::is_regular_file(real, error)) no_model(source, "not a file", "name a model file");
-  if (fs::file_size(real, error) == 0 || error) no_model(source, "the file is empty", "");
+  if (!fs::is_regular_file(real, error)) reject_model(source, "not a file", "name a model file");
+  if (fs::file_size(real, error) == 0 || error) reject_model(source, "the file is empty", "");
   return real;
 }
 
@@ -75,12 +71,11 @@ Loaded import(const fs::path& file, const ModelOptions& options, const Report& r
     loaded.imported = take_model(run, request);
   }
   loaded.hash = combined_hash(loaded.imported.hashes);
-  // They are about this run, not about the model.
+  // They depend on the run, not on the model.
   std::vector<std::string> sandbox_notes = std::exchange(loaded.imported.sandbox_notes, {});
   const std::string changed = changed_file(loaded.imported, file);
   if (!changed.empty()) {
-    report.warn(changed +
-                " was changed while it was read; the model is that of its content before");
+    report.warn(changed + " was changed while it was read; the model has its earlier content");
   } else if (entry) {
     const std::string unwritten = write_cache(*entry, loaded.imported, file);
     if (!unwritten.empty()) report.warn(unwritten);
@@ -105,7 +100,7 @@ void place(Model& model, const ModelOptions& options) {
   model.applied = {
       options.metres_per_unit ? options.metres_per_unit : model.declared.metres_per_unit,
       options.up ? options.up : model.declared.up};
-  place_mesh(model.mesh, model.applied, options.centre);
+  apply_model_frame(model.mesh, model.applied, options.centre);
 }
 
 std::string up_text(const std::optional<Axis>& up) {
@@ -113,7 +108,7 @@ std::string up_text(const std::optional<Axis>& up) {
   return up ? kUnitNames.at(static_cast<std::size_t>(*up)) : "";
 }
 
-/// The mesh stretched by these factors: one that is there already, or a new one. Changes nothing
+/// The mesh scaled by these factors: an existing one, or a new one. Changes nothing
 /// when it throws.
 std::uint32_t stretched_mesh(Scene& scene, std::uint32_t mesh, const Eigen::Vector3d& factors) {
   for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
@@ -122,7 +117,7 @@ std::uint32_t stretched_mesh(Scene& scene, std::uint32_t mesh, const Eigen::Vect
   MeshSource source = scene.sources[mesh];
   source.stretch = factors;
   source.unstretched = mesh;
-  Mesh made = stretched(scene.meshes[mesh], factors);
+  Mesh made = scaled_copy(scene.meshes[mesh], factors);
   validate(made);
   scene.sources.reserve(scene.sources.size() + 1);
   scene.meshes.push_back(std::move(made));
@@ -134,7 +129,7 @@ bool is_stretched(const MeshSource& source) {
   return source.stretch != Eigen::Vector3d::Ones();
 }
 
-/// Removes a stretched mesh that no instance has any more.
+/// Removes a scaled mesh without instances.
 void drop_unused(Scene& scene, std::uint32_t mesh) {
   const auto uses = [mesh](const Instance& instance) { return instance.mesh == mesh; };
   if (!is_stretched(scene.sources[mesh]) ||
@@ -219,7 +214,7 @@ void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale)
                  .found = number_text(scale.x()) + ", " + number_text(scale.y()) + ", " +
                           number_text(scale.z()),
                  .allowed = "numbers from 1e-15 to 1e15",
-                 .remedy = "a mirrored model is another model: mirror it in its file"});
+                 .remedy = "mirror the model in its file"});
   }
   Instance& changed = scene.instances.at(instance);
   const std::uint32_t former = changed.mesh;

@@ -16,13 +16,13 @@ namespace glidar {
 enum class Axis : std::uint8_t { x, y, z };
 
 struct ModelOptions {
-  /// What one unit of the file is; none: what the file declares, else 1.
+  /// Length of one unit of the file; none: as the file declares, else 1.
   std::optional<double> metres_per_unit;
-  /// This axis of the file becomes z; none: the one that the file declares, else axes as in it.
+  /// This axis of the file becomes z; none: the one that the file declares, else unchanged axes.
   std::optional<Axis> up;
-  bool centre = false;  ///< move the middle of the model's box to the origin
+  bool centre = false;  ///< move the centre of the model's bounding box to the origin
   double crease_angle_rad =
-      0.785398163397448310;  ///< made normals do not smooth over sharper edges
+      0.785398163397448310;  ///< generated normals do not smooth sharper edges
   bool use_cache = true;
   std::filesystem::path cache_folder;    ///< empty: $XDG_CACHE_HOME/glidar or ~/.cache/glidar
   double time_limit_s = 0.0;             ///< for the import process; 0: 20 s, more for big files
@@ -35,20 +35,20 @@ struct ModelFrame {
   std::optional<Axis> up;
 };
 
-/// A run of triangles that was one mesh of the file.
+/// Consecutive triangles that were one mesh of the file.
 struct ModelPart {
   std::string name;
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
 };
 
-/// A texture that the model names and that could not be used.
+/// A texture of the model that could not be used.
 struct MissingTexture {
-  std::string name;    ///< as the model spells it
-  std::string reason;  ///< not found, outside the model's folder, broken, too large ...
+  std::string name;    ///< as in the model
+  std::string reason;  ///< not found, outside the model's folder, corrupt, too large ...
 };
 
-/// One loaded model: all its meshes with node transforms applied, in one object frame.
+/// A loaded model: all its meshes with node transforms applied, in one object frame.
 /// Triangles keep the order of a depth-first walk over the file's nodes.
 struct Model {
   std::string source;              ///< path or "builtin:NAME"
@@ -60,42 +60,41 @@ struct Model {
   std::vector<Texture> textures;
   std::vector<ModelPart> parts;
   std::vector<MissingTexture> missing_textures;
-  std::vector<std::string> notes;  ///< what was left out or repaired, in words
+  std::vector<std::string> notes;  ///< omitted or repaired parts, in words
   ModelFrame declared = {};        ///< by the file or by the standard of its format
   ModelFrame applied = {};  ///< by load_model(); no unit: 1 was assumed; no up: axes as in the file
   bool from_cache = false;
 };
 
 /// Loads a file of any format that Assimp reads, or a built-in model (make_builtin_model()).
-/// The importer runs in a process of its own (glidar-import) with limits on time and memory, and
+/// The importer runs in a separate process (glidar-import) with limits on time and memory, and
 /// reads only below the model's folder (in a model package with `model.config`, or with `meshes`
 /// and `materials` side by side, below the package's).
 /// Coordinates are those of the file with node transforms. Unit and up axis are those of the
 /// options, else those that the file declares: COLLADA (`unit`, `up_axis`; without them 1 m and y),
 /// FBX (UnitScaleFactor in cm, UpAxis), 3MF and AMF (`unit`; without it 1 mm; z is up), glTF (1 m
 /// and y by its standard); other formats declare nothing, and 1 m and the axes of the file are
-/// assumed. The mesh's origin is away from zero only along axes on which the model is, so that no
-/// single-precision coordinate of the file is rounded; parts that are far from each other have
-/// origins of their own (Mesh::origins). Normals of STL are its
-/// facets' and count as missing; points and lines are left out and told in notes.
-/// Missing textures and notes are told through report, and progress when it takes over half a
-/// second: "loading NAME" with a fraction, negative while unknown.
-/// Throws Error: unknown format, broken, no triangles, time or memory limit, import process
-/// crashed.
+/// assumed. The mesh's origin differs from zero only along axes where the model does not contain
+/// zero, so that no single-precision coordinate of the file is rounded; parts that are far from
+/// each other have origins of their own (Mesh::origins). Normals of STL are those of its facets and
+/// count as missing; points and lines are omitted and listed in notes. Missing textures and notes
+/// are reported, and progress when it takes over half a second: "loading NAME" with a fraction,
+/// negative while unknown. Throws Error: unknown format, corrupt file, no triangles, time or memory
+/// limit, import process crashed.
 Model load_model(const std::string& source, const ModelOptions& options, const Report& report);
 
 /// Appends the model's mesh, materials and textures to the scene and one instance of it with
-/// identity pose and its place in the scene, counted from 1, as its id; the caller may change both.
+/// identity pose and its number in the scene, from 1, as its id; the caller may change both.
 /// Returns the instance's index.
 std::size_t add_model(Scene& scene, Model model);
 
 /// Scales an instance along its model's own axes: p_world = pose * (scale_x x, scale_y y, scale_z
-/// z). Three equal factors become Instance::scale. For others the scene gets a stretched copy of
-/// the mesh, with the normals of the stretched surface, which instances of equal factors share, and
-/// Instance::scale is 1. A stretched mesh that no instance has any more is removed, which changes
+/// z). Three equal factors become Instance::scale. For others the scene gets a scaled copy of
+/// the mesh, with the normals of the scaled surface, which instances with equal factors share, and
+/// Instance::scale is 1. A scaled mesh without instances is removed, which changes
 /// the indices of meshes after it.
 /// Throws Error, and changes nothing, unless all are from kMinScale to kMaxScale, and the
-/// stretched mesh is within reach.
+/// scaled mesh fits single precision.
 void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale);
 
 /// The factors of set_scale().

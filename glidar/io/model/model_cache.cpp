@@ -6,6 +6,7 @@
 #include <glidar/core/version.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/model/import_process.hpp>
+#include <glidar/io/model/import_program.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tells a new version of an installed program or library without reading it; empty: not there.
+/// Identifies a version of an installed program or library without reading it; empty: missing.
 std::string file_state(const fs::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0) return "";
@@ -28,7 +29,7 @@ std::string file_state(const fs::path& path) {
                      info.st_mtim.tv_nsec);
 }
 
-/// The import program as installed, and where it looks for libraries before all other places. The
+/// The installed import program, and the path that it searches for libraries first. The
 /// libraries themselves are known once it has run.
 std::string importer_version() {
   const std::string state = file_state(import_program());
@@ -47,12 +48,12 @@ bool still_absent(const std::string& path, const ModelFolder& folder) {
   return confine(path, folder).access != Access::granted;
 }
 
-/// True when importing now would read the very same bytes.
+/// True when importing now would read identical bytes.
 bool holds(const CachedFile& cached, const CacheEntry& entry, const fs::path& canonical_model) {
   const CacheIndex& index = cached.index;
   const ImportedModel& imported = cached.imported;
   ModelFolder folder = model_folder(canonical_model);
-  folder.also.assign(imported.texture_folders.begin(), imported.texture_folders.end());
+  folder.material_folders.assign(imported.texture_folders.begin(), imported.texture_folders.end());
   if (index.importer != entry.importer || index.importer.empty() ||
       imported.files.front() != canonical_model.string() || index.root != folder.root.string() ||
       index.folder != folder.folder.string() ||
@@ -66,13 +67,6 @@ bool holds(const CachedFile& cached, const CacheEntry& entry, const fs::path& ca
     if (find_texture(lookup.name, folder) != lookup) return false;
   }
   return changed_file(imported, canonical_model).empty();
-}
-
-[[noreturn]] void refuse_answer(const fs::path& canonical_model, const std::string& found) {
-  throw Error({.where = canonical_model.string(),
-               .found = "the import process gave a damaged answer (" + found + ")",
-               .allowed = "",
-               .remedy = "save the model in another format (PLY, OBJ or glTF)"});
 }
 
 }  // namespace
@@ -106,23 +100,23 @@ std::optional<CachedModel> read_cache(const CacheEntry& entry, const fs::path& c
     std::string hash = combined_hash(cached.imported.hashes);
     return CachedModel{std::move(cached.imported), std::move(hash)};
   } catch (const Error&) {
-    return std::nullopt;  // damaged or of an older layout: it is made anew
+    return std::nullopt;  // corrupt or of an older format: import again
   }
 }
 
 std::string changed_file(const ImportedModel& imported, const fs::path& canonical_model) {
   const ModelFolder folder = model_folder(canonical_model);
   if (imported.files.front() != canonical_model.string()) {
-    refuse_answer(canonical_model, "it is about another model");
+    reject_answer(canonical_model, "it is for another model");
   }
   for (const std::string& place : imported.texture_folders) {
-    if (!is_inside(place, folder.root)) refuse_answer(canonical_model, "a folder outside");
+    if (!is_inside(place, folder.root)) reject_answer(canonical_model, "a folder outside");
   }
   std::string changed;
   for (std::size_t i = 0; i < imported.files.size() && changed.empty(); ++i) {
     const std::string& file = imported.files[i];
     const ConfinedFile confined = confine(file, folder);
-    if (confined.access == Access::outside) refuse_answer(canonical_model, "a file outside");
+    if (confined.access == Access::outside) reject_answer(canonical_model, "a file outside");
     const auto hash = confined.path == file ? hash_file(file) : std::nullopt;
     if (!hash || hex(*hash) != imported.hashes[i]) changed = file;
   }

@@ -12,16 +12,16 @@
 
 namespace glidar {
 
-/// One model's file in the cache folder.
+/// The file of one model in the cache folder.
 struct CacheEntry {
   CacheFolder folder;
   std::string name;
-  std::string importer;  ///< version of the import program; another one makes the file void
+  std::string importer;  ///< version of the import program; a different one invalidates the file
   std::uint64_t limit_bytes = 0;  ///< of all entries together
 };
 
-/// Where this model with these options is cached. Not an error, but none, when there is no folder
-/// to be had (no $XDG_CACHE_HOME, no home), and, with a warning, when the folder may not be used.
+/// The cache entry of a model with these options; empty when there is no folder
+/// (no $XDG_CACHE_HOME, no home), and, with a warning, when the folder must not be used.
 /// Throws Error when the variable that limits the cache is not a number.
 std::optional<CacheEntry> cache_entry(const std::filesystem::path& canonical_model,
                                       const ModelOptions& options, const Report& report);
@@ -31,25 +31,25 @@ struct CachedModel {
   std::string hash;  ///< over the content of its files
 };
 
-/// The cached model, if the file is whole, the import program and its libraries (Assimp) are the
-/// same as then, every file that the model was read from has the same content, every absent one is
-/// still absent and every texture search still ends the same way.
+/// The cached model, if the file is valid, the import program and its libraries (Assimp) are
+/// unchanged, every file that the model was read from has the same content, every absent one is
+/// still absent and every texture search still has the same result.
 std::optional<CachedModel> read_cache(const CacheEntry& entry,
                                       const std::filesystem::path& canonical_model);
 
-/// The first file that no longer has the content that the import process read (or says it read);
-/// empty: all have. The import process may be led astray by a hostile model, so its word alone
-/// stores nothing: a model is cached only when the content found here is the content that it names.
-/// Throws Error when it lists files or folders that it may not read.
+/// The first file that no longer has the content that the import process claims to have read;
+/// empty: none. A malicious model may compromise the import process, so its claim alone
+/// is not sufficient: a model is cached only when the files have the hashes that it reports.
+/// Throws Error when it lists files or folders that it must not read.
 std::string changed_file(const ImportedModel& imported,
                          const std::filesystem::path& canonical_model);
 
-/// One hash over all: the model file first, the others in the order of their hashes, so that
+/// One hash of all files: the model file first, the others in the order of their hashes, so that
 /// renaming the folder changes nothing.
 std::string combined_hash(std::vector<std::string> hashes);
 
-/// Stores the model, whose files are unchanged. Returns why not, in words, or "".
-/// A cache that cannot be written is no error.
+/// Stores the model, whose files are unchanged. Returns the reason for a failure, or "".
+/// Failures are not errors.
 std::string write_cache(const CacheEntry& entry, const ImportedModel& imported,
                         const std::filesystem::path& canonical_model);
 

@@ -16,7 +16,7 @@ bool is_inside(const fs::path& path, const fs::path& root) {
 ModelFolder model_folder(const fs::path& canonical_model) {
   const fs::path folder = canonical_model.parent_path();
   const fs::path parent = folder.parent_path();
-  std::error_code ignored;  // a folder that cannot be looked at is no package
+  std::error_code ignored;  // an inaccessible folder is not a package
   const bool package =
       fs::is_regular_file(parent / "model.config", ignored) ||
       (folder.filename() == "meshes" && fs::is_directory(parent / "materials", ignored));
@@ -28,9 +28,9 @@ ConfinedFile confine(const fs::path& wanted, const ModelFolder& folder) {
   const fs::path path = folder.folder / wanted;
   const fs::path lexical = path.lexically_normal();
   std::error_code error;
-  // Behind a link, "link/.." is the parent of what it points to.
+  // After a symbolic link, "link/.." is the parent of the link's target.
   fs::path real = fs::canonical(path, error);
-  // Files name folders that are not there ("..\\source\\..\\wood.png"): without them it may be.
+  // Models refer to missing folders ("..\\source\\..\\wood.png"); the normalised path may exist.
   if (error && is_inside(lexical, folder.root)) real = fs::canonical(lexical, error);
   if (error) return {is_inside(lexical, folder.root) ? Access::absent : Access::outside, {}};
   if (!is_inside(real, folder.root)) return {Access::outside, {}};
@@ -45,7 +45,7 @@ std::string reason(Access access) {
     case Access::absent:
       return "not found";
     case Access::outside:
-      return "outside the model's folder, beyond which nothing is read; copy it in there";
+      return "outside the model's folder, which is not allowed; copy it into that folder";
     case Access::not_a_file:
       return "not a file";
   }

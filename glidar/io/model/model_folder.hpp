@@ -9,17 +9,17 @@
 
 namespace glidar {
 
-/// Where a model may read from.
+/// The folders that a model may read.
 struct ModelFolder {
   std::filesystem::path folder;  ///< of the model file itself, canonical
-  std::filesystem::path root;    ///< nothing outside is ever opened; `folder` or its parent
-  std::vector<std::filesystem::path> also;  ///< more folders to look for textures in: those of the
-                                            ///< material files that the model names
+  std::filesystem::path root;    ///< no file outside is ever opened; `folder` or its parent
+  std::vector<std::filesystem::path> material_folders;  ///< more folders to search for textures:
+                                                        ///< those of the model's material files
 };
 
 /// The folders of a model, given its canonical path. The root is the model's own folder, except in
-/// a model package (as Gazebo's), where it is the parent: when the parent holds a `model.config`,
-/// or the model lies in a folder `meshes` that has a folder `materials` beside it.
+/// a model package (as Gazebo's), where it is the parent: when the parent contains a
+/// `model.config`, or the model is in a folder `meshes` next to a folder `materials`.
 ModelFolder model_folder(const std::filesystem::path& canonical_model);
 
 /// True when `path` is `root` or below it; both absolute and normalised.
@@ -33,10 +33,10 @@ struct ConfinedFile {
 };
 
 /// Resolves a path (relative ones from the model's folder) with all its symbolic links, and grants
-/// it only if it is a regular file inside the root.
+/// access only if it is a regular file inside the root.
 ConfinedFile confine(const std::filesystem::path& wanted, const ModelFolder& folder);
 
-/// In words, for messages; empty when granted.
+/// The reason for a denial, for messages; empty when granted.
 std::string reason(Access access);
 
 }  // namespace glidar

@@ -48,7 +48,7 @@ Winding winding_of(const MeshCheck& check, bool closed) {
   return check.signed_volume_m3 > 0.0 ? Winding::outward : Winding::inward;
 }
 
-/// "declared by the file", or how what was applied differs from it.
+/// "declared by the file", or how the applied value differs from it.
 template <class Value, class Text>
 std::string origin_of(const std::optional<Value>& declared, const std::optional<Value>& applied,
                       const Text& text) {

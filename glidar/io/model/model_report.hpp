@@ -13,12 +13,12 @@
 
 namespace glidar {
 
-/// Which way the triangles of a model face.
+/// Orientation of the triangles of a model.
 enum class Winding : std::uint8_t {
   outward,       ///< closed, all fronts outside
   inward,        ///< closed, all fronts inside
-  inconsistent,  ///< neighbours turn opposite ways
-  undecided      ///< consistent, but not closed: no outside to compare with
+  inconsistent,  ///< neighbours have opposite orientations
+  undecided      ///< consistent, but not closed: inside and outside are undefined
 };
 
 /// "outward", "inward", "inconsistent", "undecided".
@@ -29,9 +29,9 @@ struct MaterialSummary {
   std::uint64_t triangles = 0;
   std::string diffuse_texture;  ///< names; empty: none
   std::string specular_texture;
-  std::string normal_texture;  ///< normal map, or height map turned into one
+  std::string normal_texture;  ///< normal map, or converted height map
   std::string alpha_texture;
-  bool cut_out = false;  ///< lets rays through where its opacity is below alpha_cutoff
+  bool cut_out = false;  ///< transparent where its opacity is below alpha_cutoff
 };
 
 struct TextureSummary {
@@ -41,7 +41,7 @@ struct TextureSummary {
   std::uint32_t channels = 0;
 };
 
-/// What `glidar info` tells of a model, as plain data. Lengths in metres after scaling.
+/// The data that `glidar info` prints about a model. Lengths in metres after scaling.
 struct ModelReport {
   std::string source;
   std::string format;
@@ -59,18 +59,18 @@ struct ModelReport {
   std::vector<MaterialSummary> materials;
   std::vector<TextureSummary> textures;  ///< found
   std::vector<MissingTexture> missing_textures;
-  std::vector<std::string> notes;       ///< NaN parts, points and lines left out, repairs
+  std::vector<std::string> notes;       ///< omitted parts with NaN, points and lines; repairs
   double metres_per_unit = 1.0;         ///< applied
   std::optional<double> unit_declared;  ///< metres, by the file
-  std::string unit_guess;  ///< a sentence: where the unit is from or, where it is assumed, a guess
-  std::string up;          ///< a sentence: which axis became z, and who said so
+  std::string unit_guess;  ///< a sentence: the source of the unit or, if assumed, a guess
+  std::string up;          ///< a sentence: which axis became z, and the source of that
 };
 
 ModelReport inspect(const Model& model);
 
-/// A guess from the longest side of the box, as sensors see things of centimetres to a hundred
-/// metres: from 0.02 to 200 it may well be metres; from there to 200,000 millimetres are likely;
-/// below 0.02 and above nothing is likely.
+/// A guess from the longest side of the bounding box, because scenes have sizes of centimetres to a
+/// hundred metres: from 0.02 to 200 metres are plausible; up to 200,000 millimetres are likely;
+/// otherwise no unit is likely.
 std::string guess_unit(double longest_side_m);
 
 }  // namespace glidar

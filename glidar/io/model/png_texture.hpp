@@ -9,7 +9,7 @@
 namespace glidar {
 
 /// Reads a PNG file as 8 bit texels, grey or rgb, with alpha where the file has it. Throws Error
-/// when it is missing, broken or larger than 16384 pixels a side or 256 MiB of texels.
+/// when it is missing, corrupt or larger than 16384 pixels per side or 256 MiB of texels.
 Texture read_png_texture(const std::filesystem::path& file);
 
 }  // namespace glidar

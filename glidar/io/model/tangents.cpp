@@ -72,7 +72,7 @@ std::vector<bool> used_plainly(const Mesh& mesh, const std::vector<FaceTangent>&
   return plain;
 }
 
-/// Gives corners of mirrored faces their own vertices where unmirrored ones use them too.
+/// Splits vertices that mirrored and unmirrored faces share.
 /// Returns for every vertex whether its uvs are mirrored.
 std::vector<bool> split_mirrored(Mesh& mesh, const std::vector<FaceTangent>& faces) {
   const std::vector<bool> plain = used_plainly(mesh, faces);

@@ -8,10 +8,10 @@
 
 namespace glidar {
 
-/// Makes vertex tangents from normals and one uv set, as MikkTSpace does in spirit (Mikkelsen,
-/// Simulation of wrinkled surfaces revisited, 2008): per corner the face's +u direction, laid into
-/// the plane of the vertex normal, summed by angle. A vertex between faces of mirrored and
-/// unmirrored uvs gets one vertex for each. Needs normals and uvs; triangles and their order stay.
+/// Computes vertex tangents from normals and one uv set, similar to MikkTSpace (Mikkelsen,
+/// Simulation of wrinkled surfaces revisited, 2008): per corner the face's +u direction, projected
+/// onto the plane of the vertex normal, weighted by angle. A vertex between faces of mirrored and
+/// unmirrored uvs is split. Requires normals and uvs; triangles keep their order.
 void make_tangents(Mesh& mesh, std::size_t uv_set);
 
 }  // namespace glidar

@@ -50,7 +50,7 @@ bool is_absolute(const std::string& path) {
   return path.front() == '/' || (path.size() > 1 && path[1] == ':');
 }
 
-/// The spellings to look for, the model's own first.
+/// The names to search for, the model's own first.
 std::vector<std::string> spellings(const std::string& name) {
   std::string tidy = trimmed(name);
   std::replace(tidy.begin(), tidy.end(), '\\', '/');
@@ -66,13 +66,13 @@ std::vector<std::string> spellings(const std::string& name) {
   add(tidy);
   add(percent_decoded(tidy));
   for (std::size_t i = 0, count = all.size(); i < count; ++i) add(base_name(all[i]));
-  // Material files put options before the name, and importers leave those that they do not know.
+  // Material files put options before the name, and importers keep those that they do not know.
   const std::size_t option = tidy.find(" -");
   if (option != std::string::npos) add(tidy.substr(tidy.find_last_of(' ') + 1));
   return all;
 }
 
-/// A file of this base name in any letter case; the first in byte order of several.
+/// A file with this base name, ignoring letter case; the first in byte order of several.
 std::optional<fs::path> any_case(const fs::path& place, const std::string& base) {
   std::error_code error;
   std::optional<fs::path> best;
@@ -89,14 +89,14 @@ bool has_scheme(const std::string& name) {
   return name.find("://") != std::string::npos && !name.starts_with("file://");
 }
 
-/// Folders to look in, in this order.
+/// Folders to search, in this order.
 std::vector<fs::path> places(const ModelFolder& folder) {
   std::vector<fs::path> all;
   for (const std::string_view place : kPlaces) {
     if (!place.starts_with("..") || folder.root != folder.folder)
       all.push_back(folder.folder / place);
   }
-  all.insert(all.end(), folder.also.begin(), folder.also.end());
+  all.insert(all.end(), folder.material_folders.begin(), folder.material_folders.end());
   return all;
 }
 

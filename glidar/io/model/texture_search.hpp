@@ -8,24 +8,24 @@
 
 namespace glidar {
 
-/// What the search for a texture came to.
+/// The result of a texture search.
 struct TextureLookup {
-  std::string name;    ///< as the model spells it
+  std::string name;    ///< as in the model
   std::string found;   ///< canonical path of the file; empty: none
-  std::string reason;  ///< why none, in words
+  std::string reason;  ///< reason for a failure, in words
 
   bool operator==(const TextureLookup&) const = default;
 };
 
-/// The text with %20 and the like replaced by the characters that they stand for.
+/// The text with percent-encoding such as %20 decoded.
 std::string percent_decoded(const std::string& text);
 
-/// Looks for the file that a model means by a texture name, never outside the model's root.
-/// The name is tidied (spaces around it, backslashes, `file://`, %20), absolute and `C:\` paths are
-/// cut to their base name, and it is looked for as given, then by its base name, in the model's
-/// folder, `textures/`, `materials/textures/` and, in a model package, `../materials/textures/`
-/// and `../textures/`, then beside the material files; at last in the same places in any letter
-/// case.
+/// Searches for the file of a texture name, never outside the model's root.
+/// The name is normalised (surrounding spaces, backslashes, `file://`, %20), absolute and `C:\`
+/// paths are cut to their base name, and it is searched as given, then by its base name, in the
+/// model's folder, `textures/`, `materials/textures/` and, in a model package,
+/// `../materials/textures/` and `../textures/`, then in the folders of material files; finally in
+/// the same folders ignoring letter case.
 TextureLookup find_texture(const std::string& name, const ModelFolder& folder);
 
 }  // namespace glidar

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
-/// Mixes three words well enough for a table (multipliers of splitmix64, Steele et al. 2014).
+/// Hashes three words (multipliers of splitmix64, Steele et al. 2014).
 std::uint64_t mixed(const Eigen::Vector3f& p) {
   std::uint64_t h = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -32,7 +32,7 @@ bool same_vertex(const Mesh& m, std::size_t a, std::size_t b) {
          same_bits(m.colours, a, b);
 }
 
-/// For every vertex the first one that `same` calls equal; equal ones must share their position.
+/// For every vertex the first one that is equal by `same`; equal ones must have the same position.
 template <class Same>
 std::vector<std::uint32_t> first_equal(const std::vector<Eigen::Vector3f>& positions, Same same) {
   const std::size_t slots = std::bit_ceil(positions.size() * 2 + 1);

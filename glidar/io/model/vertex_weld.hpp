@@ -9,15 +9,15 @@
 
 namespace glidar {
 
-/// For every vertex the first vertex at the very same position (compared bit by bit; no tolerance,
-/// so that the smallest model keeps its shape).
+/// For every vertex the first vertex at the same position (compared bit by bit, without tolerance,
+/// so that small models keep their shape).
 std::vector<std::uint32_t> first_at_position(const std::vector<Eigen::Vector3f>& positions);
 
-/// Merges vertices whose every attribute is the same bit by bit and drops those that no triangle
-/// uses. Triangles and their order stay. Vertices keep the order of their first use in the array.
+/// Merges vertices whose attributes are all bit-identical and removes those that no triangle
+/// uses. Triangles keep their order. Vertices keep the order of their first use in the array.
 void weld_vertices(Mesh& mesh);
 
-/// The mesh with only the vertices `kept` (ascending order not needed), in that order.
+/// The mesh with only the vertices `kept` (in any order), in that order.
 /// `renumbered[old]` is the new index of each old vertex that a triangle uses.
 void keep_vertices(Mesh& mesh, const std::vector<std::uint32_t>& kept,
                    const std::vector<std::uint32_t>& renumbered);

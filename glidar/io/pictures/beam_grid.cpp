@@ -14,8 +14,8 @@ namespace glidar {
 namespace {
 
 constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
-constexpr double kEven_rad = 1e-3;  // a row is level to so much
-constexpr double kEvenSteps = 0.5;  // and its columns are where they belong to so many steps
+constexpr double kEven_rad = 1e-3;  // tolerance of a row's elevation
+constexpr double kEvenSteps = 0.5;  // tolerance of a column's azimuth, in steps
 
 double wrapped(double angle_rad) {
   return angle_rad - kFullTurn_rad * std::round(angle_rad / kFullTurn_rad);
@@ -25,8 +25,8 @@ double wrapped(double angle_rad) {
 struct Angles {
   std::size_t rows;
   std::size_t cols;
-  std::size_t first_col;            ///< that comes first here, the others follow in turn
-  std::vector<double> azimuth_rad;  ///< NaN where there is no beam
+  std::size_t first_col;  ///< the first column of the picture; the others follow cyclically
+  std::vector<double> azimuth_rad;  ///< NaN for no beam
   std::vector<double> elevation_rad;
 };
 
@@ -40,7 +40,8 @@ Angles angles_of(const Beams& beams, std::size_t first_beam) {
   return angles;
 }
 
-/// The steps of azimuth from column to column in all rows; NaN next to no beam and at a row's end.
+/// The azimuth steps between columns in all rows; NaN next to a missing beam and at the end of a
+/// row.
 std::vector<double> steps_of(const Angles& angles) {
   std::vector<double> steps(angles.azimuth_rad.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
@@ -50,7 +51,7 @@ std::vector<double> steps_of(const Angles& angles) {
   return steps;
 }
 
-/// NaN when there are no numbers.
+/// The median; NaN without numbers.
 double median(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -59,14 +60,14 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The usual step, and the column after which the azimuth jumps to where the first column goes on:
-/// a sector that the head enters in the middle. The last column when there is no jump.
+/// The typical step, and the column after which the azimuth jumps:
+/// a sector in which the frame starts in the middle. The last column when there is no jump.
 struct Steps {
   double mean_rad = 0.0;
   std::size_t jump_col = 0;
 };
 
-/// A step of 0 when there are none.
+/// The step is 0 without beams.
 Steps usual_steps(const Angles& angles) {
   const std::vector<double> steps = steps_of(angles);
   const double usual_rad = median(steps);
@@ -86,7 +87,7 @@ Steps usual_steps(const Angles& angles) {
   return found;
 }
 
-/// Begins every row with the column after the jump.
+/// Rotates every row to begin with the column after the jump.
 void begin_after(Angles& angles, std::size_t jump_col) {
   angles.first_col = (jump_col + 1) % angles.cols;
   for (std::vector<double>* values : {&angles.azimuth_rad, &angles.elevation_rad}) {
@@ -98,14 +99,14 @@ void begin_after(Angles& angles, std::size_t jump_col) {
   }
 }
 
-/// A row's azimuth in column 0, by its first beam, and its elevation.
+/// A row's azimuth in column 0, extrapolated from its first beam, and its elevation.
 struct Row {
   double azimuth_rad = 0.0;
   double elevation_rad = 0.0;
   std::size_t number = 0;
 };
 
-/// Empty unless the row is level and even.
+/// Empty unless the row has one elevation and even steps.
 std::optional<Row> row_of(const Angles& angles, std::size_t number, double step_rad) {
   std::optional<Row> row;
   for (std::size_t col = 0; col < angles.cols; ++col) {
@@ -136,7 +137,8 @@ std::vector<Row> rows_of(const Angles& angles, double step_rad) {
   return rows;
 }
 
-/// Pixels count to the right, where azimuths are smaller; pixel 0 looks along `zero_rad`.
+/// Pixel numbers increase to the right, where azimuths decrease; pixel 0 has the azimuth
+/// `zero_rad`.
 struct Extent {
   double zero_rad;
   std::int64_t first;  ///< the leftmost pixel
@@ -166,7 +168,7 @@ Extent extent_of(const std::vector<Row>& rows, double step_rad, std::size_t cols
   return {zero_rad, first, most - least + count, false};
 }
 
-/// Fills in which beam each pixel shows.
+/// Sets the beam of each pixel.
 void place_beams(const Angles& angles, const std::vector<Row>& rows, const Extent& extent,
                  double step_rad, std::uint32_t first_beam, BeamPicture& picture) {
   for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -11,9 +11,9 @@
 
 namespace glidar {
 
-/// Rows of one elevation with even steps of azimuth, shifted so that all rows have the same azimuth
-/// in a column, highest row on top; empty when the beams are not like that.
-/// A whole turn begins behind the sensor; of a part the picture is as wide as all rows together.
+/// A grid of rows with one elevation each and even steps of azimuth, shifted so that all rows have
+/// the same azimuth in a column, highest row on top; empty for other beams. A full rotation begins
+/// behind the sensor; for a sector the picture covers all rows.
 std::optional<BeamPicture> make_grid_picture(const Beams& beams, std::uint32_t first_beam);
 
 }  // namespace glidar

@@ -17,8 +17,8 @@
 namespace glidar {
 namespace {
 
-constexpr double kLonger = 900.0;  // pixels of scattered pictures
-constexpr double kShorter = 90.0;  // at least
+constexpr double kLonger = 900.0;  // longer side of scattered pictures, pixels
+constexpr double kShorter = 90.0;  // minimum of the shorter side, pixels
 
 /// One beam in a scattered picture, in the units of its edges.
 struct Mark {
@@ -28,7 +28,8 @@ struct Mark {
   double range_m;  ///< infinite: no return
 };
 
-/// Sizes the picture about the edges; units are as wide as high unless that is too slim to be seen.
+/// Sets the size of the picture. Scales are equal along both axes unless the picture would be too
+/// narrow.
 void size_picture(BeamPicture& picture) {
   const double width = std::abs(picture.right - picture.left);
   const double height = picture.top - picture.bottom;
@@ -41,7 +42,7 @@ void size_picture(BeamPicture& picture) {
   picture.beams.assign(std::size_t{picture.rows} * picture.cols, BeamPicture::kNoBeam);
 }
 
-/// A dot that leaves no gaps between evenly spread beams, as far as it stays small.
+/// The dot size that leaves no gaps between evenly distributed beams, up to a maximum.
 std::int64_t dot_pixels(const BeamPicture& picture, std::size_t beams) {
   constexpr double kMin = 3.0;
   constexpr double kMax = 15.0;
@@ -49,7 +50,7 @@ std::int64_t dot_pixels(const BeamPicture& picture, std::size_t beams) {
   return std::lround(std::clamp(1.2 * std::sqrt(share), kMin, kMax));
 }
 
-/// A square of pixels from its left and top, as far as it is inside.
+/// A square of pixels, clipped to the picture.
 void fill_dot(BeamPicture& picture, std::int64_t left, std::int64_t top, std::int64_t dot,
               std::uint32_t beam) {
   const auto cols = static_cast<std::int64_t>(picture.cols);
@@ -62,7 +63,7 @@ void fill_dot(BeamPicture& picture, std::int64_t left, std::int64_t top, std::in
   }
 }
 
-/// A dot around every mark, the farthest first, so that the nearest stays visible.
+/// Draws a dot for every beam, the farthest first, so that the nearest is visible.
 void draw_marks(BeamPicture& picture, std::vector<Mark>& marks, std::int64_t dot) {
   std::stable_sort(marks.begin(), marks.end(),
                    [](const Mark& a, const Mark& b) { return a.range_m > b.range_m; });
@@ -76,7 +77,7 @@ void draw_marks(BeamPicture& picture, std::vector<Mark>& marks, std::int64_t dot
   }
 }
 
-/// Numbers with a margin, and at least `least` apart.
+/// Numbers with a margin, and minimum of the shorter side, pixels `least` apart.
 std::pair<double, double> edges_of(double low, double high, double least) {
   const double margin = std::max(0.03 * (high - low), 0.5 * (least - (high - low)));
   return {low - margin, high + margin};
@@ -105,7 +106,7 @@ BeamPicture make_angle_picture(const Beams& beams, std::span<const double> range
   return picture;
 }
 
-/// The scanner and its returns from above, but for the odd one far away.
+/// The scanner and its returns from above, without distant outliers.
 BeamPicture make_top_picture(const Beams& beams, std::span<const double> range_m,
                              std::uint32_t first) {
   std::vector<Mark> marks;

@@ -15,7 +15,7 @@ namespace {
 
 using Align = TextPlace::Align;
 
-/// The next round number from here up: 1, 2 or 5 times a power of ten, or a round part of a turn.
+/// The next round number: 1, 2 or 5 times a power of ten, or a round angle.
 double round_step(double least, bool in_degrees) {
   constexpr std::array kParts = {10.0, 15.0, 30.0, 45.0, 60.0, 90.0};
   if (in_degrees && least > 5.0) {
@@ -37,7 +37,7 @@ std::size_t line_px(double size_px) {
   return std::max<std::size_t>(1, whole(size_px / 16.0));
 }
 
-/// Numbers between the ends of a bar, as far from these as their texts need.
+/// Labels between the ends of a bar, with enough distance to these.
 std::vector<AxisLabel> bar_labels(const ColourBar& bar, double width, double size_px) {
   const auto [low, high] = scale_ends(bar.scale, bar.unit);
   if (!(bar.scale.span() > 0.0)) return {};
@@ -51,7 +51,7 @@ std::vector<AxisLabel> bar_labels(const ColourBar& bar, double width, double siz
   return labels;
 }
 
-/// Cuts the corners off the end of a bar, so that it points outwards.
+/// Cuts the corners of the bar's end, so that it becomes an arrow.
 void cut_arrow(Picture& picture, const Box& bar, bool at_left) {
   const double half = 0.5 * static_cast<double>(bar.height);
   for (std::size_t row = 0; row < bar.height; ++row) {
@@ -61,13 +61,13 @@ void cut_arrow(Picture& picture, const Box& bar, bool at_left) {
   }
 }
 
-/// The text, or as much of its beginning as has room, with an ellipsis.
+/// The text, truncated with an ellipsis if necessary.
 std::string cut_text(const std::string& text, double width, double size_px) {
   if (text_width(text, size_px) <= width) return text;
   std::string cut = text;
   while (!cut.empty() && text_width(cut + "...", size_px) > width) {
     cut.pop_back();
-    // not within a letter of several bytes
+    // not within a multi-byte character
     while (!cut.empty() && (static_cast<unsigned char>(text[cut.size()]) & 0xC0U) == 0x80U)
       cut.pop_back();
   }
@@ -97,7 +97,7 @@ std::vector<AxisLabel> axis_labels(const PlotAxis& axis, double pixels, double r
   if (!(high > low) || !(pixels > 0.0)) return {};
   const double step = round_step(room_px * (high - low) / pixels, axis.in_degrees);
   std::vector<AxisLabel> labels;
-  const double slack = 1e-9 * (high - low);  // an end that is round is labelled
+  const double slack = 1e-9 * (high - low);  // labels an end at a round number despite rounding
   const auto first = static_cast<std::int64_t>(std::ceil((low - slack) / step));
   const auto last = static_cast<std::int64_t>(std::floor((high + slack) / step));
   for (std::int64_t i = first; i <= last; ++i) {
@@ -136,7 +136,8 @@ void draw_across_axis(Picture& picture, const Box& plot, const PlotAxis& axis, d
          {whole(x - 0.5 * static_cast<double>(line)), plot.y + plot.height, line,
           whole(0.4 * size_px)},
          kInk);
-    const double half = 0.5 * text_width(label.text, size_px);  // labels stay beside the plot
+    const double half =
+        0.5 * text_width(label.text, size_px);  // labels stay within the height of the plot
     const double place = std::clamp(x, left + std::min(half - size_px, 0.0),
                                     left + width - std::min(half - size_px, 0.0));
     draw_text(picture, {place, bottom + 1.0 * size_px, Align::centre}, label.text, {size_px, kInk});
@@ -239,7 +240,7 @@ void draw_colour_bar(Picture& picture, const Box& place, const ColourBar& bar, d
   if (bar.scale.span() > 0.0) {
     draw_text(picture, {left, text_y, Align::left}, low, style);
     draw_text(picture, {left + width, text_y, Align::right}, high, style);
-  } else {  // one number has one colour
+  } else {  // a single value has one colour
     draw_text(picture, {left + 0.5 * width, text_y, Align::centre}, high, style);
   }
   draw_text(picture, {left + 0.5 * width, title_y, Align::centre}, bar.title, style);

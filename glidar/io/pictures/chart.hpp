@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to the project.
+// Private to the project: axes, colour bars and legends of pictures.
 
 #include <glidar/io/pictures/colour_scale.hpp>
 #include <glidar/io/pictures/picture.hpp>
@@ -12,7 +12,7 @@
 
 namespace glidar {
 
-/// Colours of what is around the data.
+/// Colours of everything but the data.
 inline constexpr Colour kCanvas = {17, 17, 20};
 inline constexpr Colour kPlotGround = {26, 26, 31};
 inline constexpr Colour kNoReturn = {44, 44, 52};
@@ -25,35 +25,35 @@ struct PlotAxis {
   std::string title;  ///< with its unit
   double first = 0.0;
   double last = 1.0;
-  bool in_degrees = false;  ///< labels are parts of a turn
+  bool in_degrees = false;  ///< labels are at round angles
 };
 
-/// A mark of an axis.
+/// A tick of an axis.
 struct AxisLabel {
-  double share = 0.0;  ///< of the way from the first edge to the last
+  double share = 0.0;  ///< position between the first edge (0) and the last (1)
   std::string text;
 };
 
-/// Round numbers along an axis of so many pixels, with room for labels of a size.
+/// Ticks at round numbers along an axis of `pixels`, with `room_px` for each label.
 std::vector<AxisLabel> axis_labels(const PlotAxis& axis, double pixels, double room_px);
 
-/// Space that the parts of a plot need, in pixels, by the size of the letters.
+/// Space for the parts of a plot, in pixels, by font size.
 double across_axis_height(double size_px);
 double upright_axis_width(double size_px);
 double colour_bar_height(double size_px);
 double legend_entry_height(double size_px);
 
-/// Marks, numbers and the title below the plot.
+/// Draws ticks, labels and the title below the plot.
 void draw_across_axis(Picture& picture, const Box& plot, const PlotAxis& axis, double size_px);
-/// Likewise at its left, where `labels` are counted from the top; the title is above the plot.
+/// Draws the vertical axis left of the plot, `labels` from the top; the title is above the plot.
 void draw_upright_axis(Picture& picture, const Box& plot, const std::string& title,
                        const std::vector<AxisLabel>& labels, double size_px);
-/// Lines through the plot at the labels.
+/// Draws lines through the plot at the labels.
 void draw_grid(Picture& picture, const Box& plot, const std::vector<AxisLabel>& across,
                const std::vector<AxisLabel>& upright);
 
-/// An arrowhead in the plot: a sensor at x, y (pixels) that looks along dx, dy; a disc where these
-/// are too short to tell.
+/// An arrowhead in the plot: a sensor at x, y (pixels) with the boresight dx, dy; a disc if these
+/// are too short.
 struct SensorMark {
   double x;
   double y;
@@ -62,11 +62,11 @@ struct SensorMark {
 };
 void draw_sensor(Picture& picture, const Box& plot, const SensorMark& mark, double size_px);
 
-/// How a fraction of a scale becomes a colour.
+/// A colour map: a function from a fraction of the scale to a colour.
 using Ramp = Colour (*)(double);
 
-/// A bar of all colours with the numbers that they mean below it and its title below these; ends
-/// that stand for values beyond are arrows.
+/// A bar of all colours, with values below it and the title below these; ends
+/// with clipped values are arrows.
 struct ColourBar {
   std::string title;
   std::string unit;
@@ -75,19 +75,19 @@ struct ColourBar {
 };
 void draw_colour_bar(Picture& picture, const Box& place, const ColourBar& bar, double size_px);
 
-/// A colour and what it means.
+/// A colour and its meaning.
 struct LegendEntry {
   Colour colour;
   std::string text;
 };
 
-/// As many entries, from the first, as a legend of this size has room for, long texts cut off; the
-/// last one then says how many others there are.
+/// The first entries that fit a legend of this size, with long texts truncated; the
+/// last one then states the number of omitted entries.
 std::vector<LegendEntry> fitted_legend(const std::vector<LegendEntry>& entries, double width,
                                        double height, double size_px);
-/// The height that a legend needs in this width.
+/// The height of a legend for this width.
 double legend_height(const std::vector<LegendEntry>& entries, double width, double size_px);
-/// Entries in columns, row by row.
+/// Draws the entries in columns, row by row.
 void draw_legend(Picture& picture, const Box& place, const std::vector<LegendEntry>& entries,
                  double size_px);
 

@@ -11,9 +11,10 @@
 namespace glidar {
 namespace {
 
-constexpr double kPercentile = 0.01;   // left out at each end
-constexpr double kNearby = 0.25;       // of the span: an extreme so near is the end
-constexpr double kSameNumber = 0.001;  // of the values, where there is no span
+constexpr double kPercentile = 0.01;  // fraction of values beyond each end
+constexpr double kNearby =
+    0.25;  // of the span: maximum distance of an extreme that replaces the percentile
+constexpr double kSameNumber = 0.001;  // the same relative to the values, without a span
 
 }  // namespace
 
@@ -61,7 +62,7 @@ std::string scale_number(double value, double span) {
   std::string text = fmt::format("{:.{}f}", std::abs(value), decimals);
   if (std::max(std::abs(value), span) >= kMax || text.size() > kLongest)
     return (value < 0.0 ? "\u2212" : "") + fmt::format("{:.3g}", std::abs(value));
-  if (text.find_first_not_of("0.") == std::string::npos) return "0";  // rounded to nothing
+  if (text.find_first_not_of("0.") == std::string::npos) return "0";  // rounded to zero
   if (text.find('.') != std::string::npos && text.find('e') == std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);
     if (text.back() == '.') text.pop_back();

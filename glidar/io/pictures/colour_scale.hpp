@@ -10,25 +10,25 @@
 
 namespace glidar {
 
-/// Which numbers a picture's colours stand for. The one scale of all pictures: PNG files, the
+/// The colour scale of all pictures: PNG files, the
 /// window, Python and reports.
 struct ColourScale {
   enum class Start : std::uint8_t { lowest, zero };
 
   double low = 0.0;
   double high = 0.0;
-  bool clips_low = false;   ///< some values are below `low`; they have its colour
+  bool clips_low = false;   ///< some values are below `low` and have its colour
   bool clips_high = false;  ///< some values are above `high`
-  bool has_values = false;  ///< false: there is no finite value, and low and high are 0
+  bool has_values = false;  ///< false: no finite value; low and high are 0
 
-  /// 0 at `low`, 1 at `high`; values beyond count as the ends. A scale without a span is 0 up
+  /// 0 at `low`, 1 at `high`; clamped. A scale without a span is 0 up
   /// to `low` and 1 above.
   [[nodiscard]] double fraction(double value) const;
   [[nodiscard]] double span() const { return high - low; }
 };
 
-/// A scale that a few odd values do not spoil: the 1st to the 99th percentile of the finite values
-/// (nearest rank, outwards). An end is the true extreme instead when that is no more than a quarter
+/// A scale that is robust to outliers: the 1st to the 99th percentile of the finite values
+/// (nearest rank, outwards). An end is the extreme value instead when that is at most a quarter
 /// of the percentiles' span, or a thousandth of the values, away. With Start::zero it begins at 0.
 ColourScale make_colour_scale(std::span<const double> values,
                               ColourScale::Start start = ColourScale::Start::lowest);

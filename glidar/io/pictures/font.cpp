@@ -22,13 +22,13 @@ const stbtt_fontinfo& font() {
   static const stbtt_fontinfo kFont = [] {
     stbtt_fontinfo info{};
     [[maybe_unused]] const int is_read = stbtt_InitFont(&info, font_bytes().data(), 0);
-    assert(is_read != 0);  // the bytes are our own
+    assert(is_read != 0);  // the embedded font is valid
     return info;
   }();
   return kFont;
 }
 
-/// How many bytes a character of UTF-8 has by its first byte; 0: none begins with it.
+/// The length of a UTF-8 character by its first byte; 0: invalid first byte.
 std::size_t length_of(unsigned char first) {
   if (first < 0x80U) return 1;
   if (first >= 0xC2U && first < 0xE0U) return 2;
@@ -37,7 +37,7 @@ std::size_t length_of(unsigned char first) {
   return 0;
 }
 
-/// Takes the first character off the text (RFC 3629); kReplacement for a byte that is none.
+/// Removes the first character from the text (RFC 3629); kReplacement for an invalid byte.
 char32_t take_character(std::string_view& text) {
   const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::size_t length = length_of(byte(0));
@@ -51,7 +51,7 @@ char32_t take_character(std::string_view& text) {
   return is_whole ? code : kReplacement;
 }
 
-/// Calls visit(glyph, pen) for each character, `pen` being where it starts; returns the whole
+/// Calls visit(glyph, pen) for each character, where `pen` is its start; returns the total
 /// width.
 template <class Visit>
 double each_glyph(std::string_view text, double size_px, const Visit& visit) {
@@ -68,7 +68,7 @@ double each_glyph(std::string_view text, double size_px, const Visit& visit) {
   return pen;
 }
 
-/// Mixes ink into a pixel by how much of it is covered.
+/// Blends ink into a pixel by its coverage.
 void mix(Colour& pixel, const Colour& ink, std::uint8_t cover) {
   const auto channel = [cover](std::uint8_t below, std::uint8_t above) {
     return static_cast<std::uint8_t>((below * (255 - cover) + above * cover + 127) / 255);

@@ -9,7 +9,7 @@
 namespace glidar {
 namespace {
 
-constexpr double kNearest_m = 1e-3;  ///< what is nearer to the camera's plane is not imaged
+constexpr double kNearest_m = 1e-3;  ///< near plane
 
 /// Points p with normal.dot(p) >= offset are on the side that is kept.
 struct Plane {
@@ -27,13 +27,13 @@ std::array<Plane, 4> sides_of(const RectifiedCamera& camera) {
            {{0.0, -camera.fy, camera.height - 1.0 - camera.cy}}}};
 }
 
-/// Corners of a convex polygon, and room for those of the next.
+/// Vertices of a convex polygon, and a buffer for the clipped one.
 struct Polygon {
   std::vector<Eigen::Vector3d> corners;
   std::vector<Eigen::Vector3d> next;
 };
 
-/// Cuts off what is below the plane (Sutherland and Hodgman 1974).
+/// Clips the polygon at a plane (Sutherland and Hodgman 1974).
 void clip(Polygon& polygon, const Plane& plane) {
   polygon.next.clear();
   for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
@@ -55,7 +55,7 @@ void extend(Eigen::AlignedBox2d& box, const Polygon& polygon, const RectifiedCam
   }
 }
 
-/// The share of a box that another one in it does not cover; of a flat box, of its length.
+/// The fraction of a box that an inner box does not cover; for a flat box, of its length.
 double share_outside(const Eigen::AlignedBox2d& whole, const Eigen::AlignedBox2d& inside) {
   double covered = 1.0;
   for (int axis = 0; axis < 2; ++axis) {
@@ -82,7 +82,7 @@ std::optional<ImageBox> image_box(const PlacedMesh& placed, const RectifiedCamer
     extend(inside, polygon, camera);
   }
   if (inside.isEmpty()) return std::nullopt;
-  // cut corners may be outside by a rounding error
+  // clipped vertices may be outside by rounding
   const Eigen::Vector2d last(camera.width - 1.0, camera.height - 1.0);
   inside.min() = inside.min().cwiseMax(0.0).cwiseMin(last);
   inside.max() = inside.max().cwiseMax(0.0).cwiseMin(last);

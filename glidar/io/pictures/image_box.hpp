@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/io: the part of an image that a mesh covers.
+// Private to glidar/io: bounding boxes of meshes in images.
 
 #include <glidar/core/mesh.hpp>
 #include <glidar/core/pose.hpp>
@@ -13,7 +13,7 @@
 
 namespace glidar {
 
-/// Rectified camera (x right, y down, z forward), in pixels; whole coordinates are pixel centres.
+/// Rectified camera (x right, y down, z forward), in pixels; integer coordinates are pixel centres.
 struct RectifiedCamera {
   double fx = 0.0;
   double fy = 0.0;
@@ -37,13 +37,13 @@ struct PlacedMesh {
 /// The box of a mesh in an image.
 struct ImageBox {
   Eigen::AlignedBox2d inside;  ///< pixels, from the first pixel's centre to the last one's
-  /// Share of the projection's box that is outside; almost 1 for a mesh that reaches behind the
-  /// camera, whose projection is as large as the plane of the image.
+  /// Fraction of the projection's box outside the image; almost 1 for a mesh that extends behind
+  /// the camera, whose projection is as large as the plane of the image.
   double truncated = 0.0;
 };
 
-/// The tight box of what is in front of the camera and in the image, hidden or not; empty when
-/// there is nothing of the mesh.
+/// The tight box of the mesh's part in front of the camera and in the image, ignoring occlusion;
+/// empty when there is none.
 std::optional<ImageBox> image_box(const PlacedMesh& placed, const RectifiedCamera& camera);
 
 }  // namespace glidar

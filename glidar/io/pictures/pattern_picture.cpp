@@ -18,20 +18,20 @@ namespace {
 constexpr double kLetters = 18.0;
 constexpr std::size_t kWide = 1080;
 constexpr std::size_t kTall = 720;
-constexpr std::size_t kLeft = 90;  // room for the labels
+constexpr std::size_t kLeft = 90;  // space for the labels
 constexpr std::size_t kTop = 50;
 constexpr std::size_t kRight = 40;
 constexpr std::size_t kBottom = 160;
 constexpr double kRadian_deg = 180.0 / std::numbers::pi;
 
-/// Where a beam looks, in degrees to the left and up, and its place on the colour scale.
+/// The direction of a beam in degrees to the left and up, and its value on the colour scale.
 struct PatternMark {
   double left_deg;
   double up_deg;
   double value;
 };
 
-/// The angles of one side of the plot.
+/// The range of angles along one axis of the plot.
 struct PatternSide {
   double low_deg = 0.0;
   double high_deg = 0.0;
@@ -42,14 +42,14 @@ struct PatternSide {
   }
 };
 
-/// Every so many rows and columns of an image, so that dots stay apart.
+/// Stride of rows and columns of an image, so that dots do not overlap.
 std::size_t stride_of(const Beams& beams) {
   constexpr std::size_t kMaxAcross = 64;
   const bool image = beams.times_ns.empty() && beams.rows > 1;
   return image ? std::max<std::size_t>(1, std::max(beams.rows, beams.cols) / kMaxAcross) : 1;
 }
 
-/// The darkest colours would be lost before the ground.
+/// Without the darkest colours, which are invisible on the background.
 Colour mark_colour(double t) {
   constexpr double kDarkest = 0.2;
   return viridis(kDarkest + (1.0 - kDarkest) * t);
@@ -75,11 +75,11 @@ std::vector<PatternMark> marks_of(const Beams& beams) {
                        value_of(beams, i)});
     }
   }
-  if (marks.empty()) throw Error({"picture of the beams", "there are none", "", ""});
+  if (marks.empty()) throw Error({"picture of the beams", "the sensor has no beams", "", ""});
   return marks;
 }
 
-/// The range of one angle with a margin; a single line gets one of its own.
+/// The range of one angle with a margin; a fixed range for a single line.
 PatternSide side_of(const std::vector<PatternMark>& marks, double PatternMark::*angle) {
   const auto [low, high] = std::minmax_element(
       marks.begin(), marks.end(),
@@ -88,7 +88,7 @@ PatternSide side_of(const std::vector<PatternMark>& marks, double PatternMark::*
   return {(*low).*angle - margin_deg, (*high).*angle + margin_deg, 0};
 }
 
-/// Degrees are as wide as high unless one side is much longer.
+/// Equal scales along both axes, unless one side is much longer.
 void size_sides(PatternSide& across, PatternSide& upright) {
   constexpr double kMaxStretch = 4.0;
   const double width_deg = across.high_deg - across.low_deg;
@@ -102,7 +102,8 @@ void size_sides(PatternSide& across, PatternSide& upright) {
 void draw_axes(Picture& picture, const Box& plot, const PatternSide& across,
                const PatternSide& upright) {
   fill(picture, plot, kPlotGround);
-  const PlotAxis azimuth{"azimuth", across.high_deg, across.low_deg, true};  // left is left
+  const PlotAxis azimuth{"azimuth", across.high_deg, across.low_deg,
+                         true};  // left in the picture is left of the sensor
   const std::vector<AxisLabel> elevations =
       axis_labels({"", upright.high_deg, upright.low_deg, true}, static_cast<double>(plot.height),
                   2.0 * kLetters);
@@ -124,7 +125,7 @@ void draw_marks(Picture& picture, const std::vector<PatternMark>& marks, const B
   }
 }
 
-/// Firing times and rings have no odd values: all are shown.
+/// Firing times and rings have no outliers: the scale shows all values.
 ColourScale scale_of(const std::vector<PatternMark>& marks) {
   const auto [low, high] = std::minmax_element(
       marks.begin(), marks.end(),
@@ -138,7 +139,7 @@ void write_pattern_picture(const Beams& beams, const std::filesystem::path& path
   const std::vector<PatternMark> marks = marks_of(beams);
   std::array sides = {side_of(marks, &PatternMark::left_deg), side_of(marks, &PatternMark::up_deg)};
   size_sides(sides[0], sides[1]);
-  constexpr std::size_t kMinWidth = 360;  // that holds the colour bar
+  constexpr std::size_t kMinWidth = 360;  // for the colour bar
   const std::size_t width = std::max(sides[0].pixels, kMinWidth);
   const Box plot{kLeft + (width - sides[0].pixels) / 2, kTop, sides[0].pixels, sides[1].pixels};
   Picture picture = make_picture(kLeft + width + kRight, kTop + plot.height + kBottom, kCanvas);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to the project.
+// Private to the project: pictures of beam patterns.
 
 #include <glidar/core/beams.hpp>
 
@@ -10,9 +10,10 @@
 
 namespace glidar {
 
-/// A PNG of where the beams look: azimuth (left of the boresight is left) and elevation in degrees,
-/// with axes, coloured by firing time, or by ring when all fire at once. Of images a part of the
-/// pixels is drawn. Throws Error when there is no beam or the file cannot be written.
+/// Writes a PNG of the beam directions: azimuth (left of the boresight is left) and elevation in
+/// degrees, with axes, coloured by firing time, or by ring when all fire at the same time. For
+/// images a part of the pixels is drawn. Throws Error when there is no beam or the file cannot be
+/// written.
 void write_pattern_picture(const Beams& beams, const std::filesystem::path& path);
 
 }  // namespace glidar

@@ -15,7 +15,7 @@ struct Colour {
 
   bool operator==(const Colour&) const = default;
 };
-static_assert(sizeof(Colour) == 3, "written to files as it is");
+static_assert(sizeof(Colour) == 3, "written to files as in memory");
 
 /// Pixels row by row from the top.
 struct Picture {
@@ -33,7 +33,7 @@ struct Box {
 
 Picture make_picture(std::size_t width, std::size_t height, Colour background);
 
-/// The part of the box that is inside the picture.
+/// Fills the part of the box that is inside the picture.
 void fill(Picture& picture, const Box& box, Colour colour);
 
 /// The colour map viridis (Nathaniel Smith and Stefan van der Walt, CC0), from dark (0) to bright
@@ -43,14 +43,14 @@ Colour viridis(double t);
 /// From black (0) to white (1).
 Colour grey(double t);
 
-/// From a grey that shows on the dark ground of a plot (0) to white (1).
+/// From a grey that is visible on the dark background of a plot (0) to white (1).
 Colour light_grey(double t);
 
 /// The colour of a hue from 0 to 1: red, yellow, green, cyan, blue, magenta, red.
 Colour hue(double turn);
 
-/// Colours of things that are counted, neighbours far apart: twelve chosen ones that show on dark
-/// ground, then hues a golden section of the circle apart.
+/// Colours of categories, with large differences between consecutive ones: twelve fixed ones that
+/// are visible on a dark background, then hues at golden-ratio steps.
 Colour category_colour(std::uint32_t number);
 
 }  // namespace glidar

@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kCompressionLevel = 4;  // twice as fast as libpng's default, a few percent larger
 
-/// What the callbacks see. libpng is C: neither exceptions nor destructors may be jumped over, so
-/// errors are kept here and thrown after it has returned.
+/// Data of the callbacks. libpng uses longjmp, which must not skip exceptions or destructors, so
+/// errors are stored here and thrown after it has returned.
 struct Writing {
   AtomicFile& file;
   std::exception_ptr failure;
@@ -58,7 +58,7 @@ void put_text(png_structp png, png_infop info, const std::string& description) {
 
 struct PixelForm {
   int bits;    ///< of a channel
-  int colour;  ///< as libpng names it
+  int colour;  ///< libpng's constant
   std::size_t bytes;
 };
 
@@ -77,7 +77,7 @@ PixelForm form_of(PngKind kind) {
   }
 }
 
-/// False after an error. Nothing in here has a destructor that a jump could miss.
+/// False after an error. Nothing in this function has a destructor that longjmp could skip.
 bool encode(png_structp png, png_infop info, const PngImage& image, png_bytepp rows) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   const PixelForm form = form_of(image.kind);
@@ -95,7 +95,7 @@ std::vector<png_bytep> rows_of(const PngImage& image) {
   const std::size_t stride = std::size_t{image.width} * form_of(image.kind).bytes;
   std::vector<png_bytep> rows(image.height);
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    // libpng only reads them
+    // libpng only reads the pixels
     rows[row] = const_cast<png_bytep>(
         reinterpret_cast<png_const_bytep>(image.pixels.data() + row * stride));
   }
@@ -119,7 +119,7 @@ void write_png(const PngImage& image, AtomicFile& file) {
   if (writing.failure) std::rethrow_exception(writing.failure);
   if (!written) {
     throw Error(
-        {file.path().string(), fmt::format("cannot make the PNG: {}", writing.message), "", ""});
+        {file.path().string(), fmt::format("cannot write the PNG: {}", writing.message), "", ""});
   }
 }
 

@@ -13,16 +13,16 @@ namespace glidar {
 
 enum class PngKind : std::uint8_t { grey8, grey16, rgb8, rgb16, rgba8 };
 
-/// Pixels row by row from the top, without padding; numbers of 16 bits in memory order.
+/// Pixels row by row from the top, without padding; 16-bit numbers in memory order.
 struct PngImage {
   PngKind kind = PngKind::rgb8;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::span<const std::byte> pixels;
-  std::string description;  ///< text kept in the file; empty: none
+  std::string description;  ///< text stored in the file; empty: none
 };
 
-/// Throws Error when it cannot be stored.
+/// Writes a PNG. Throws Error when it cannot be written.
 void write_png(const PngImage& image, AtomicFile& file);
 
 }  // namespace glidar

@@ -13,9 +13,9 @@
 namespace glidar {
 namespace {
 
-constexpr Colour kNothing = {150, 150, 156};  // echoes of no object, and what has no class
+constexpr Colour kNothing = {150, 150, 156};  // returns of no object, and objects without a class
 
-/// The darkest colours would not show on dark ground.
+/// Without the darkest colours, which are invisible on the background.
 Colour bright_ramp(double t) {
   constexpr double kDarkest = 0.18;
   return viridis(kDarkest + (1.0 - kDarkest) * t);
@@ -25,7 +25,7 @@ Colour near_bright_ramp(double t) {
   return bright_ramp(1.0 - t);
 }
 
-/// A column's number of each shown point.
+/// The value of a column for each shown point.
 std::vector<double> field_values(const CloudFile& job, const ShownPoints& shown,
                                  std::string_view column) {
   std::vector<double> numbers;
@@ -54,7 +54,7 @@ PointColours colour_by_ring(const CloudFile& job, const ShownPoints& shown) {
                  "height, range, intensity, class or instance", "rings are channels of LiDARs"});
   }
   const std::vector<double> rings = field_values(job, shown, "ring");
-  ColourScale scale{};  // every ring is shown: none is odd
+  ColourScale scale{};  // rings have no outliers
   if (!rings.empty()) {
     const auto [low, high] = std::minmax_element(rings.begin(), rings.end());
     scale = {.low = *low, .high = *high, .has_values = true};
@@ -73,7 +73,7 @@ std::string instance_name(const Scene& scene, std::uint32_t id) {
                                                                : found->name;
 }
 
-/// Numbers with their names, the commonest first.
+/// Numbers with their names, the most frequent first.
 std::vector<LegendEntry> legend_of(const std::map<std::uint32_t, std::size_t>& counts,
                                    const std::map<std::uint32_t, LegendEntry>& entries) {
   std::vector<std::pair<std::uint32_t, std::size_t>> order(counts.begin(), counts.end());
@@ -84,11 +84,11 @@ std::vector<LegendEntry> legend_of(const std::map<std::uint32_t, std::size_t>& c
   return legend;
 }
 
-/// What a number of the column means.
+/// The legend entry of a number in the column.
 LegendEntry entry_of(const Scene& scene, std::uint32_t number, bool is_class) {
   if (number == kInvalidId) return {kNothing, "no object"};
   if (!is_class) return {category_colour(number), instance_name(scene, number)};
-  // number 0 is what has no class
+  // number 0 means no class
   return {number == 0 ? kNothing : category_colour(number - 1), class_name(scene, number)};
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to the project.
+// Private to the project: colours of points in pictures of clouds.
 
 #include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/pictures/chart.hpp>
@@ -19,14 +19,15 @@ struct ShownPoints {
   std::vector<std::size_t> entries;       ///< of the cloud, one per point
 };
 
-/// Colours of points and what they mean: a bar, or a legend for classes and instances.
+/// Colours of points and their key: a bar, or a legend for classes and instances.
 struct PointColours {
   std::vector<Colour> colours;  ///< one per point
   std::optional<ColourBar> bar;
-  std::vector<LegendEntry> legend;  ///< the commonest first
+  std::vector<LegendEntry> legend;  ///< the most frequent first
 };
 
-/// Colours by what the options say. Throws Error when a camera is to be coloured by ring.
+/// Colours points as options.picture specifies. Throws Error when a camera is to be coloured by
+/// ring.
 PointColours colour_points(const CloudFile& job, const ShownPoints& shown);
 
 }  // namespace glidar

@@ -11,14 +11,14 @@
 namespace glidar {
 namespace {
 
-constexpr double kHalfView = 0.4142135623730951;  // tan of half the upright angle of view, 45 deg
+constexpr double kHalfView = 0.4142135623730951;  // tan of half the vertical field of view, 45 deg
 
 PointImage make_image(std::size_t width, std::size_t height) {
   return {width, height, std::vector(width * height, PointImage::kNoPoint),
           std::vector(width * height, std::numeric_limits<double>::infinity()), 0};
 }
 
-/// A square of pixels about a place, where nothing is in front of it yet.
+/// Draws a square of pixels where no nearer point was drawn.
 struct Dot {
   double x;
   double y;
@@ -35,14 +35,14 @@ void draw_dot(PointImage& image, const Dot& dot, std::uint32_t point) {
     for (std::int64_t x = std::max<std::int64_t>(left, 0); x < std::min(left + dot.size, width);
          ++x) {
       const auto pixel = static_cast<std::size_t>(y * width + x);
-      if (dot.depth >= image.depths[pixel]) continue;  // of equal ones the first stays
+      if (dot.depth >= image.depths[pixel]) continue;  // the first of equal depths is kept
       image.depths[pixel] = dot.depth;
       image.points[pixel] = point;
     }
   }
 }
 
-/// The side of dots that cover this share of the image, were they spread evenly.
+/// The size of dots that would cover this fraction of the image if evenly distributed.
 double dot_side(const PointImage& image, std::size_t points, double share) {
   const double pixels = static_cast<double>(image.points.size());
   return std::sqrt(share * pixels / static_cast<double>(std::max<std::size_t>(points, 1)));
@@ -53,9 +53,9 @@ bool is_within(const PointImage& image, double x, double y) {
          y < static_cast<double>(image.height);
 }
 
-/// The middle part of the points along an axis.
+/// The range of the points along an axis, without outliers.
 std::array<double, 2> middle_of(std::span<const Eigen::Vector3d> points_m, Eigen::Index axis) {
-  constexpr double kLeftOut = 0.05;  // at each end
+  constexpr double kLeftOut = 0.05;  // fraction omitted at each end
   std::vector<double> values;
   values.reserve(points_m.size());
   for (const Eigen::Vector3d& point : points_m) values.push_back(point[axis]);
@@ -74,7 +74,7 @@ struct ViewAxes {
 ViewAxes axes_along(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d ahead = direction.normalized();
   Eigen::Vector3d right = ahead.cross(Eigen::Vector3d::UnitZ());
-  if (right.norm() < 1e-9) right = -Eigen::Vector3d::UnitY();  // straight down or up: x is up
+  if (right.norm() < 1e-9) right = -Eigen::Vector3d::UnitY();  // vertical view: x is up
   right.normalize();
   return {ahead, right, ahead.cross(right)};
 }
@@ -156,7 +156,7 @@ Perspective fit_perspective(std::span<const Eigen::Vector3d> points_m, std::size
         std::max({distance_m, std::abs(axes.right.dot(corner)) / (shape * kHalfView) - along,
                   std::abs(axes.down.dot(corner)) / kHalfView - along});
   }
-  constexpr double kMargin = 1.08;  // for points about the box and the size of dots
+  constexpr double kMargin = 1.08;  // for points at the border and the size of dots
   return {box.center() - kMargin * distance_m * ahead, box.center(), width, height};
 }
 
@@ -165,7 +165,7 @@ PointImage draw_perspective(std::span<const Eigen::Vector3d> points_m, const Per
   const double typical_m = (view.target_m - view.eye_m).norm();
   const double even = dot_side(image, points_m.size(), 0.3);
   const double side = std::clamp(even, 1.5, 4.0);
-  const double smallest = even < 1.0 ? 1.0 : 2.0;  // dense clouds need no dots to be seen
+  const double smallest = even < 1.0 ? 1.0 : 2.0;  // dense clouds need no larger dots
   constexpr double kMax = 7.0;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const Eigen::Vector3d place = view.project(points_m[i]);
@@ -183,7 +183,7 @@ PointImage draw_perspective(std::span<const Eigen::Vector3d> points_m, const Per
 std::vector<double> shade_edges(const PointImage& image) {
   constexpr double kStrength = 12.0;
   constexpr double kDarkest = 0.35;
-  constexpr double kSteps = 16.0;  // finer ones are not seen, but make files nearly twice as large
+  constexpr double kSteps = 16.0;  // finer steps are invisible and nearly double the file size
   const auto width = static_cast<std::int64_t>(image.width);
   const auto height = static_cast<std::int64_t>(image.height);
   const std::int64_t reach = std::max<std::int64_t>(1, width / 1000);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to the project.
+// Private to the project: images of point clouds.
 
 #include <glidar/core/pose.hpp>
 
@@ -14,18 +14,18 @@
 
 namespace glidar {
 
-/// Which point each pixel shows, row by row from the top.
+/// The visible point of each pixel, row by row from the top.
 struct PointImage {
   static constexpr std::uint32_t kNoPoint = 0xFFFFFFFFU;
 
   std::size_t width = 0;
   std::size_t height = 0;
-  std::vector<std::uint32_t> points;  ///< kNoPoint where none is
-  std::vector<double> depths;         ///< infinite there; smaller is in front
-  std::size_t outside = 0;            ///< points that the image does not show the place of
+  std::vector<std::uint32_t> points;  ///< kNoPoint for none
+  std::vector<double> depths;         ///< infinite for no point; smaller is in front
+  std::size_t outside = 0;            ///< number of points outside the image
 };
 
-/// A view straight down on points in a frame with z up: x to the right, y up, equal scales.
+/// A view from above on points in a frame with z up: x to the right, y up, equal scales.
 struct TopView {
   double left_m = 0.0;
   double right_m = 1.0;
@@ -33,12 +33,12 @@ struct TopView {
   double top_m = 1.0;
 };
 
-/// The view of this shape (width over height) that shows all points and `also_m`, but for the odd
-/// point far away.
+/// The view with this aspect ratio (width over height) that shows all points and `also_m`, except
+/// distant outliers.
 TopView fit_top_view(std::span<const Eigen::Vector3d> points_m, const Eigen::Vector3d& also_m,
                      double shape);
 
-/// The highest point wins; each is a dot of so many pixels. Depth is minus the height.
+/// Draws points as dots; the highest point is visible. Depth is minus the height.
 PointImage draw_top_view(std::span<const Eigen::Vector3d> points_m, const TopView& view,
                          std::size_t width, std::size_t height);
 
@@ -49,19 +49,19 @@ struct Perspective {
   std::size_t width = 1;
   std::size_t height = 1;
 
-  /// Column, row and depth of a point; no depth above 0: it is not before the camera.
+  /// Column, row and depth of a point; depth <= 0: behind the camera.
   [[nodiscard]] Eigen::Vector3d project(const Eigen::Vector3d& point_m) const;
 };
 
-/// The camera behind, above and to the right that sees most of the points.
+/// A camera behind, above and to the right of the sensor that sees most of the points.
 Perspective fit_perspective(std::span<const Eigen::Vector3d> points_m, std::size_t width,
                             std::size_t height);
 
-/// The nearest point wins; near points are larger.
+/// Draws points as dots, near ones larger; the nearest point is visible.
 PointImage draw_perspective(std::span<const Eigen::Vector3d> points_m, const Perspective& view);
 
-/// How much of its colour each pixel keeps: less behind an edge in depth ("eye-dome lighting",
-/// Boucheny, PhD thesis, Grenoble 2009), so that shapes stand out. Pixels without a point are 1.
+/// The brightness factor of each pixel: smaller behind a depth edge ("eye-dome lighting",
+/// Boucheny, PhD thesis, Grenoble 2009), which emphasises shapes. Pixels without a point have 1.
 std::vector<double> shade_edges(const PointImage& image);
 
 }  // namespace glidar

@@ -124,14 +124,14 @@ TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
   });
   EXPECT_THAT(text, HasSubstr((folder / "a.txt").string()));
   EXPECT_THAT(text, HasSubstr("File too large"));
-  EXPECT_THAT(text, HasSubstr("nothing of this file was left behind"));
+  EXPECT_THAT(text, HasSubstr("no part of this file remains"));
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
 TEST(AtomicFile, TellsAMissingOrUnwritableFolder) {
   const testing::TestFolder folder;
   EXPECT_THAT(error_text([&] { AtomicFile file(folder / "none/a.txt"); }),
-              HasSubstr("No such file or directory; make the folder first"));
+              HasSubstr("No such file or directory; create the folder first"));
   EXPECT_THAT(error_text([&] { AtomicFile file("/proc/a.txt"); }),
               HasSubstr("/proc/a.txt: cannot create a file in this folder"));
   EXPECT_THAT(error_text([&] { AtomicFile file(folder.path()); }), HasSubstr("is a folder"));

@@ -138,7 +138,7 @@ TEST(PointFieldLayout, AutowareIsRefusedForSeveralReturns) {
     apply_layout(made.cloud, "autoware", made.sensor, made.beams);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the sensor tells 2 returns"));
+    EXPECT_THAT(error.what(), HasSubstr("the sensor reports 2 returns"));
   }
 }
 

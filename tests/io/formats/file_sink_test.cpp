@@ -243,7 +243,7 @@ TEST(FileSink, AColumnOfWrongSizeOrTypeIsTold) {
               HasSubstr("column xyz has 59 numbers; allowed: 60"));
   made.cloud.columns[0].values = std::vector<float>(60, 0.0F);
   EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.pcd"); }),
-              HasSubstr("column xyz is of another type; allowed: three doubles a point"));
+              HasSubstr("column xyz has another type; allowed: three doubles per point"));
 }
 
 TEST(FileSink, AnErrorLeavesTheOldFilesAsTheyWere) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/kitti_files.hpp>
 
 #include <gtest/gtest.h>
+#include <glidar/io/formats/kitti_folder.hpp>
 
 #include <sstream>
 #include <string>

@@ -151,7 +151,7 @@ TEST(TrajectoryFileErrors, MatricesThatAreNoRotationsAreRefused) {
   const TestFolder folder;
   const auto file = folder.write("k", "1 0 0 0 0 1 0 0 0 0 1 0\n2 0 0 0 0 1 0 0 0 0 1 0\n");
   EXPECT_EQ(error_of(folder, [&] { load_trajectory_file(file, {.rate_hz = 10.0}); }),
-            "k:2:1: a matrix whose first three columns are no rotation; allowed: a rotation to "
+            "k:2:1: a matrix whose first three columns are not a rotation; allowed: a rotation to "
             "within 0.001");
 }
 
@@ -160,7 +160,7 @@ TEST(TrajectoryFileErrors, ARateForAFileWithTimesIsRefused) {
   const auto file = folder.write("t", kGood);
   EXPECT_EQ(error_of(folder, [&] { load_trajectory_file(file, {.rate_hz = 10.0}); }),
             "t: a file that has times of its own; allowed: a rate or times with KITTI files only; "
-            "leave them out");
+            "omit them");
 }
 
 TEST(TrajectoryFileErrors, MissingFilesNameTheNearest) {
@@ -177,8 +177,8 @@ TEST(TrajectoryFileErrors, HugeFilesAndRowsAreRefusedAtOnce) {
   const auto file = folder.write("huge", kGood);
   std::filesystem::resize_file(file, (std::uintmax_t{512} << 20U) + 1);
   EXPECT_EQ(error_of(folder, [&] { load_trajectory_file(file); }),
-            "huge: a file of more than 512 MiB; allowed: a trajectory file of at most 512 MiB; cut "
-            "it, or thin it out");
+            "huge: a file of more than 512 MiB; allowed: a trajectory file of at most 512 MiB; "
+            "shorten it, or reduce the number of poses");
   std::string row;
   for (int i = 0; i < 1'000'000; ++i) row += "1 ";
   const auto wide = folder.write("wide", row);

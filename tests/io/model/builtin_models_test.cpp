@@ -120,7 +120,7 @@ TEST(BuiltinModels, NormalsAreUnitAndOnTheFrontOfEveryTriangle) {
 
 // The corners lie on the unit sphere, so the volume is below the ball's. No edge is longer than e,
 // so no plane of a triangle is nearer to the centre than sqrt(1 - e^2 / 3), and the ball of that
-// radius lies within.
+// radius is within.
 TEST(BuiltinModels, SphereHasTheVolumeOfItsPolyhedron) {
   const Mesh& mesh = mesh_of("sphere");
   double longest = 0.0;
@@ -220,11 +220,11 @@ TEST(BuiltinModels, DefaultSizesGiveTheSameBytes) {
 TEST(BuiltinModels, WrongSizesAreErrors) {
   const std::map<std::string, std::string> errors = {
       {"box:sise=2",
-       "builtin:box:sise=2: 'sise' is no size of this model; allowed: size; did you "
+       "builtin:box:sise=2: 'sise' is not a size of this model; allowed: size; did you "
        "mean 'size'?"},
       {"asteroid:size=2",
-       "builtin:asteroid:size=2: 'size' is no size of this model; allowed: no "
-       "sizes; 'scale' changes that of any model"},
+       "builtin:asteroid:size=2: 'size' is not a size of this model; allowed: no "
+       "sizes; 'scale' applies to any model"},
       {"box:size=1,2", "builtin:box:size=1,2: 2 numbers; allowed: one number, or 3"},
       {"box:size=1,0,1",
        "builtin:box:size=1,0,1: a size of '0'; allowed: metres above 0, up to "

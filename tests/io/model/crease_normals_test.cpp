@@ -86,7 +86,7 @@ TEST(CreaseNormals, TheAngleDecides) {
   EXPECT_EQ(below.positions_m.size(), 6U);
   Mesh above = fold(0.8);
   make_normals(above, 0.75);
-  EXPECT_EQ(above.positions_m.size(), 8U);  // the two vertices of the crease have a twin
+  EXPECT_EQ(above.positions_m.size(), 8U);  // the two vertices of the crease are split
   EXPECT_LT((above.normals[above.triangles[0][1]] - Eigen::Vector3f::UnitZ()).norm(), 1e-6F);
 }
 

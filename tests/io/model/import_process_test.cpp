@@ -21,7 +21,7 @@ constexpr double kTimeLimit_s = 600.0;  // no script takes so long, however busy
 using ::testing::HasSubstr;
 using testing::TestFolder;
 
-/// Puts a shell script in the place of the import program.
+/// Replaces the import program by a shell script.
 class ImportProcess : public ::testing::Test {
  protected:
   ~ImportProcess() override { ::unsetenv("GLIDAR_IMPORT_HELPER"); }
@@ -60,8 +60,8 @@ TEST_F(ImportProcess, AHangIsEnded) {
 }
 
 TEST_F(ImportProcess, SilenceAndGarbageAreErrors) {
-  EXPECT_THAT(error(with_script("exit 0")), HasSubstr("damaged answer"));
-  EXPECT_THAT(error(with_script("head -c 500 /dev/zero >&3")), HasSubstr("damaged answer"));
+  EXPECT_THAT(error(with_script("exit 0")), HasSubstr("malformed answer"));
+  EXPECT_THAT(error(with_script("head -c 500 /dev/zero >&3")), HasSubstr("malformed answer"));
   EXPECT_THAT(error(with_script("exit 2")), HasSubstr("without an answer"));
   EXPECT_THAT(error(with_script("exit 3")), HasSubstr("more memory than 1024 MiB"));
 }
@@ -72,7 +72,7 @@ TEST_F(ImportProcess, ItsWordsGoNowhere) {
   const std::string text = error(with_script("echo noise; echo noise >&2"));
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_THAT(text, HasSubstr("damaged answer"));
+  EXPECT_THAT(text, HasSubstr("malformed answer"));
 }
 
 TEST_F(ImportProcess, NoOtherDescriptorIsHandedOn) {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/import_program.hpp>
 #include <glidar/io/model/model_cache.hpp>
 
 #include <glidar/io/files/content_hash.hpp>
@@ -220,7 +221,7 @@ TEST_F(ModelCache, AFileThatIsReplacedWhileItIsReadIsNotCached) {
   EXPECT_NE(after.hash, old_hash);
 }
 
-/// A hostile model may have taken over the import process, which then says what it likes.
+/// A malicious model may compromise the import process, which then returns arbitrary data.
 TEST_F(ModelCache, TheWordOfTheImportProcessAloneStoresNothing) {
   ImportedModel imported;
   imported.files = {file_.string()};

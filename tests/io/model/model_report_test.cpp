@@ -59,7 +59,7 @@ TEST(ModelReport, OneTurnedTriangleIsInconsistent) {
 TEST(ModelReport, CountsWhatIsWrong) {
   Model model;
   model.materials.resize(1);
-  // 3 stands where 0 is, 4 is used by nobody, 5 lies between 0 and 1
+  // 3 has the position of 0, 4 is unused, 5 is between 0 and 1
   model.mesh.positions_m = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 0}, {9, 9, 9}, {1, 0, 0}};
   model.mesh.triangles = {{0, 1, 2}, {3, 2, 1}, {0, 5, 1}, {0, 1, 3}};
   const ModelReport report = inspect(model);

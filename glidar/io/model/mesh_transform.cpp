@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/model/model_place.hpp>
+#include <glidar/io/model/mesh_transform.hpp>
 
 #include <glidar/core/error.hpp>
 
@@ -56,7 +56,7 @@ void require_unit(double metres_per_unit) {
                .remedy = ""});
 }
 
-/// The normal of the stretched surface: the inverse transpose of the stretch.
+/// The normal of the scaled surface: multiplied by the inverse transpose.
 Eigen::Vector3f stretched_normal(const Eigen::Vector3f& normal, const Eigen::Vector3d& factors) {
   const Eigen::Vector3d stretched = normal.cast<double>().cwiseQuotient(factors);
   const double length = stretched.stableNorm();
@@ -71,7 +71,7 @@ void stretch_tangent(Eigen::Vector4f& tangent, const Eigen::Vector3d& factors) {
 
 }  // namespace
 
-void place_mesh(Mesh& mesh, const ModelFrame& frame, bool centre) {
+void apply_model_frame(Mesh& mesh, const ModelFrame& frame, bool centre) {
   const double scale = frame.metres_per_unit.value_or(1.0);
   require_unit(scale);
   if (frame.up && *frame.up != Axis::z) turn_mesh(mesh, *frame.up);
@@ -92,7 +92,7 @@ void place_mesh(Mesh& mesh, const ModelFrame& frame, bool centre) {
   for_origins(mesh, [&](Eigen::Vector3d& origin_m) { origin_m -= middle; });
 }
 
-Mesh stretched(const Mesh& mesh, const Eigen::Vector3d& factors) {
+Mesh scaled_copy(const Mesh& mesh, const Eigen::Vector3d& factors) {
   Mesh result = mesh;
   for_origins(result,
               [&](Eigen::Vector3d& origin_m) { origin_m = origin_m.cwiseProduct(factors); });

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/io: the parts that built-in models are made of. They use only + - * / and sqrt
-// in double, which IEEE 754 rounds the same everywhere, so a mesh has the same bytes on every
-// machine.
+// Private to glidar/io: meshes of built-in models in double precision. The functions use only + - *
+// / and sqrt in double, which IEEE 754 rounds the same everywhere, so a mesh has the same bytes on
+// every machine.
 
 #include <glidar/core/mesh.hpp>
 
@@ -13,7 +13,7 @@
 
 namespace glidar {
 
-/// Points in double with the triangles that join them.
+/// Points in double precision and triangles.
 struct PointMesh {
   std::vector<Eigen::Vector3d> points_m;
   std::vector<Triangle> triangles;
@@ -33,11 +33,8 @@ PointMesh icosphere(int levels);
 
 /// Unit vertex normals of a closed smooth mesh: edge products divided by the squared edge lengths
 /// (N. Max, "Weights for Computing Vertex Normals from Facet Normals", Journal of Graphics Tools
-/// 4(2), 1999). Like angle weights they do not depend on how a flat face is cut, and they need no
-/// arc cosine.
+/// 4(2), 1999). Like angle weights they do not depend on the triangulation of a flat face, and they
+/// need no arc cosine.
 std::vector<Eigen::Vector3d> smooth_normals(const PointMesh& mesh);
-
-/// A cratered rock about 2 m long in x, of 81,920 triangles; its centre of volume is the origin.
-PointMesh make_asteroid();
 
 }  // namespace glidar

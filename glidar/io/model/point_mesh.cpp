@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/model/mesh_making.hpp>
+#include <glidar/io/model/point_mesh.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace glidar {
 namespace {
 
-/// The three corners as a triangle whose front looks away from the origin.
+/// The three points as a triangle whose front faces away from the origin.
 Triangle outwards(const std::vector<Eigen::Vector3d>& points, const Triangle& corners) {
   const auto& [i, j, k] = corners;
   const Eigen::Vector3d normal = (points[j] - points[i]).cross(points[k] - points[i]);
@@ -29,7 +29,7 @@ std::vector<Eigen::Vector3d> icosahedron_corners() {
   return corners;
 }
 
-/// A face is any three corners that are one edge apart.
+/// A face is any three points at a distance of one edge.
 PointMesh icosahedron() {
   PointMesh mesh{icosahedron_corners(), {}};
   const auto joined = [&](std::uint32_t i, std::uint32_t j) {
@@ -45,7 +45,7 @@ PointMesh icosahedron() {
   return mesh;
 }
 
-/// Every triangle becomes four; new points are pushed out to the unit sphere.
+/// Splits every triangle into four; new points are projected to the unit sphere.
 void split(PointMesh& mesh) {
   std::unordered_map<std::uint64_t, std::uint32_t> middles;
   middles.reserve(mesh.triangles.size() * 3 / 2);
