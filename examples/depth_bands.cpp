@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Figure 3 of the 2016 paper: how depths fall into bands when a picture has few steps for them, and
-// what hugging planes and more bits do about it. Prints a table of the errors and draws a rock's
-// cloud from the side, into the file named (depth_bands.png).
+// how tight-fitting planes and more bits improve it. Prints a table of the errors and draws a
+// rock's cloud from the side, into the file named (depth_bands.png).
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/model/builtin_models.hpp>
@@ -37,7 +37,7 @@ glidar::Scene make_rock() {
   return scene;
 }
 
-/// What the picture would tell if it had one channel for the depth: the more significant byte of
+/// The depth if the image had one channel for it: the more significant byte of
 /// two is that of 256 steps between the same planes.
 Depths one_channel(const Woods2016Framebuffer& picture) {
   const double step_m = (picture.far_m - picture.near_m) / 256.0;
@@ -51,7 +51,7 @@ Depths one_channel(const Woods2016Framebuffer& picture) {
 }
 
 Depths two_channels(const Woods2016Framebuffer& picture, const glidar::Beams& beams) {
-  Depths depths{.how = "16 bits, planes that hug",
+  Depths depths{.how = "16 bits, tight-fitting planes",
                 .step_m = (picture.far_m - picture.near_m) / 65536.0,
                 .depth_m = std::vector<double>(beams.size())};
   std::vector<float> intensity(beams.size());

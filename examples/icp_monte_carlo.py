@@ -5,7 +5,7 @@
 
 A depth camera sees a target from a new place in every trial. Registration by small_gicp and Open3D finds the camera's
 pose against points of the target's model, from starts that are turned and shifted by the steps of a grid, once with
-the exact cloud and once with a noisy one. The errors stand beside the Cramer-Rao bound that GLIDAR works out for the
+the exact cloud and once with a noisy one. The errors are compared with the Cramer-Rao bound that GLIDAR computes for the
 very same view, and beside the estimate that knows every point's plane, which attains it (docs/studies/icp.md).
 """
 
@@ -31,7 +31,7 @@ except ImportError as missing:
              "pip install . -r scripts/requirements.txt")
 from study_tools import Progress, axis_angle, displaced, surface_points, wilson_percent
 
-open3d.utility.set_max_threads(1)  # likewise
+open3d.utility.set_max_threads(1)  # for reproducible results
 SATELLITE = str(Path(__file__).resolve().parent.parent / "models" / "satellite" / "satellite.obj")
 TARGETS = {"asteroid": "builtin:asteroid", "satellite": SATELLITE}
 # Starts: turned so far about the target's middle, and shifted by so many of its radii.
@@ -173,7 +173,7 @@ def view(random, target):
 
 
 class View:
-    """What a frame tells, about the target's middle: clouds, planes, and the information in them."""
+    """The data of a frame relative to the target's centre: clouds, planes, and their Fisher information."""
 
     def __init__(self, target, frame):
         self.target, self.pose = target, frame.world_from_sensor
@@ -209,14 +209,14 @@ class View:
         return displaced(step[:3], step[3:], self.target.middle)
 
     def error(self, found):
-        """The motion by which `found` differs from the truth, and the six numbers that small ones are made of."""
+        """The transform between `found` and the ground truth, and its six parameters."""
         motion = found @ np.linalg.inv(self.pose)
         shift = motion[:3, :3] @ self.target.middle + motion[:3, 3] - self.target.middle
         return motion, np.concatenate([axis_angle(motion[:3, :3]), shift])
 
 
 def outcome(target, points, pose, found, error_m):
-    """Why it failed, if it did, by how the cloud lies on the model: about as well as in truth, worse, or not at all."""
+    """The reason for a failure, from the fit of the cloud to the model: as good as with the true pose, worse, or none."""
     if error_m < CONVERGED * target.radius:
         return "converged"
 

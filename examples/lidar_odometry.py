@@ -5,7 +5,7 @@
 
 A VLP-16 drives through a street. It turns ten times a second, and every beam sees the street from where the sensor is
 when it fires. KISS-ICP finds the trajectory from the scans alone: with its deskewing, which is given every point's time;
-without; and from scans that GLIDAR's truth has deskewed. Errors are against the trajectory that was driven.
+without; and from scans that are deskewed with the ground truth. Errors are relative to the true trajectory.
 """
 
 import argparse
@@ -36,7 +36,7 @@ EXAMPLE = """examples:
 
 
 def box(size):
-    """Corners and triangles of a box that stands on the ground."""
+    """Vertices and triangles of a box on the ground."""
     signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0, 1)])
     faces = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
     triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
@@ -61,7 +61,7 @@ def beside(pose, side, away_m, along_m=0.0):
 
 
 def street(seed=3):
-    """Houses, parked cars, trees and lamps along the road of `route`, on flat ground."""
+    """Houses, parked cars, trees and street lights along the road of `route`, on flat ground."""
     random, scene = np.random.default_rng(seed), glidar.Scene()
     wall, paint, bark = ({"*": {"diffuse": [grey] * 3}} for grey in (0.5, 0.3, 0.2))
     scene.add_model("builtin:plane", name="ground", scale=150.0, pose=glidar.pose([60, 30, 0]),
@@ -70,7 +70,7 @@ def street(seed=3):
     for pose, side in itertools.product(route(np.arange(-1.0, 30.0, 1.1)), (-1, 1)):
         house, car, tree = (beside(pose, side, away_m, along_m) for away_m, along_m in (
             (random.uniform(11, 15), 0.0), (4.0, random.uniform(-3, 3)), (6.0, random.uniform(-3, 3))))
-        # What would stand on the road, where that comes back, is left out.
+        # Objects on the road, where it returns to the same place, are omitted.
         house_free, car_free, tree_free = (np.linalg.norm(road - place[:2, 3], axis=1).min() > least_m
                                            for place, least_m in ((house, 8.0), (car, 2.8), (tree, 4.0)))
         if house_free:
@@ -120,7 +120,7 @@ class Scan:
     """A turn of the sensor."""
 
     xyz: np.ndarray  # in the sensor's frame of each point's own time
-    deskewed: np.ndarray  # where a sensor that stands still at the turn's start would have seen them
+    deskewed: np.ndarray  # as measured by a sensor that stays at the pose of the scan's start
     phase: np.ndarray  # of the turn, 0 to 1
 
 
@@ -150,7 +150,7 @@ class Run:
     times_s: np.ndarray
     errors_m: np.ndarray  # of positions, trajectories being aligned
     drift_percent: float  # of the way, over each second
-    turn_deg_m: float  # likewise
+    turn_deg_m: float  # rotation error per distance
 
     def ate_m(self):
         return np.sqrt((self.errors_m**2).mean())
@@ -161,7 +161,7 @@ class Run:
 RUNS = {
     "no deskewing": ("xyz", False, 0.5),
     "KISS-ICP's deskewing": ("xyz", True, 1.0),
-    "deskewed by the truth": ("deskewed", False, 0.0),
+    "deskewed by the ground truth": ("deskewed", False, 0.0),
 }
 
 
@@ -189,7 +189,7 @@ def judged(name, poses, trajectory, times_s, apart):
 
 
 def write(folder, runs, scans):
-    """Trajectories as TUM and KITTI have them, aligned with the truth, and scans as KITTI has them."""
+    """Trajectories in the TUM and KITTI formats, aligned with the ground truth, and scans in KITTI's format."""
     folder.mkdir(parents=True, exist_ok=True)
     for run in runs:
         name = run.name.replace(" ", "_").replace("'", "")
@@ -207,7 +207,7 @@ def flags_of(arguments):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=20, help="of the drive [20]")
     parser.add_argument("--sensor", default="VLP-16", help="as glidar sensors lists them [VLP-16]")
-    parser.add_argument("--street", type=int, default=3, help="seed of what stands beside the road [3]")
+    parser.add_argument("--street", type=int, default=3, help="seed of the objects beside the road [3]")
     parser.add_argument("--seed", type=int, default=1, help="of the sensor's noise [1]")
     parser.add_argument("--ground-truth", action="store_true", help="the sensor without its noise")
     parser.add_argument("--write", metavar="FOLDER", help="writes trajectories (TUM, KITTI) and scans (KITTI)")
@@ -226,7 +226,7 @@ def main(arguments=None):
         from odometry_pictures import draw  # needs matplotlib
     sensor = glidar.load_sensor(flags.sensor)
     if sensor.kind != "spinning":
-        sys.exit(f"lidar_odometry: {flags.sensor} does not spin; `glidar sensors` tells which do, such as VLP-16")
+        sys.exit(f"lidar_odometry: {flags.sensor} is not a spinning sensor; `glidar sensors` lists them, such as VLP-16")
     sensor = sensor.ground_truth() if flags.ground_truth else sensor
     scans, trajectory = drive(street(flags.street), sensor, flags.seconds, flags.seed)
     runs = [odometry(name, scans, trajectory, sensor.rate_hz) for name in RUNS]

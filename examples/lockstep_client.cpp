@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   std::uint16_t kind = 0;
   std::memcpy(&kind, reply[0].data<char>() + 6, sizeof(kind));
   if (kind != 2) return std::puts(reply[1].to_string().c_str()), 1;  // the error in words
-  std::vector<double> xyz(reply[1].size() / sizeof(double));         // f8, as reply[0] says
+  std::vector<double> xyz(reply[1].size() / sizeof(double));         // f8, as reply[0] states
   std::memcpy(xyz.data(), reply[1].data(), reply[1].size());
   double nearest_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 2; k < xyz.size(); k += 3) nearest_m = std::min(nearest_m, xyz[k]);

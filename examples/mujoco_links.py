@@ -74,7 +74,7 @@ class Glidar:
                 return zmq_socket.recv_multipart()
             if self.program.poll() is not None:
                 break
-        raise Trouble("glidar ended or does not answer; what it says is above")
+        raise Trouble("glidar ended or does not answer; see its messages above")
 
 
 class Lockstep(Glidar):
@@ -87,7 +87,7 @@ class Lockstep(Glidar):
         line = self.program.stdout.readline()
         if not line.startswith("listening at "):
             self.__exit__()
-            raise Trouble("glidar did not start; what it says is above")
+            raise Trouble("glidar did not start; see its messages above")
         self.number = 0  # of the frame: its noise
         self.socket = self.context.socket(zmq.REQ)
         self.socket.connect(line.split()[-1])
@@ -151,7 +151,7 @@ class Protocol2015(Glidar):
         """The hits, N x 3 along the sensor's axes (x right, y down, z forward)."""
         w, x, y, z = sensor.quaternion
         attitude = (z, y, -x, w)  # takes inertial vectors into the body, here to x left, y up
-        attitude_of_target = target.quaternion * (1, -1, -1, -1)  # likewise
+        attitude_of_target = target.quaternion * (1, -1, -1, -1)  # the inverse
         numbers = (*attitude_of_target, *(target.position - sensor.position), *attitude)
         self.poses.send(b"v" + struct.pack("<Q11d", t_ns, *numbers))
         message = self.receive(self.clouds)[0]

@@ -128,7 +128,7 @@ class Steering:
         return FROM_M + (TO_M - FROM_M) * part * part * (3 - 2 * part)
 
     def thrust(self, time_s, target, rate):
-        """(force, torque) along the chaser's axes; `rate` likewise."""
+        """(force, torque) along the chaser's axes; `rate` is about the same axes."""
         away = target - [0, 0, self.wanted_m(time_s)]
         speed = np.zeros(3) if self.before is None else (away - self.before) / PERIOD_S
         self.before = away

@@ -17,7 +17,7 @@ def draw_map(panel, runs, scans):
         world = points @ pose[:3, :3].T + pose[:3, 3]
         world = world[(world[:, 2] > 0.4) & (np.linalg.norm(points, axis=1) < 40)]
         panel.plot(world[:, 0], world[:, 1], ",", color="0.6", rasterized=True)
-    panel.plot(*truth.ground_truth[:, :2, 3].T, "k-", linewidth=2.5, label="truth")
+    panel.plot(*truth.ground_truth[:, :2, 3].T, "k-", linewidth=2.5, label="ground truth")
     for run, colour in zip(runs, COLOURS, strict=True):
         found = aligned(run.poses[:, :3, 3], run.ground_truth[:, :3, 3]) @ run.poses
         panel.plot(*found[:, :2, 3].T, "-", color=colour, linewidth=1, label=run.name)
@@ -34,7 +34,7 @@ def draw_scan(panel, runs, scans):
     scan = scans[int(np.abs(np.diff(headings)).argmax())]
     keep = (scan.deskewed[:, 2] > -1.2) & (np.abs(scan.deskewed[:, :2]).max(axis=1) < 25)
     panel.plot(*scan.xyz[keep, :2].T, ".", color="tab:red", markersize=1.5, label="as it comes")
-    panel.plot(*scan.deskewed[keep, :2].T, ".", color="tab:green", markersize=1.5, label="deskewed by the truth")
+    panel.plot(*scan.deskewed[keep, :2].T, ".", color="tab:green", markersize=1.5, label="deskewed by the ground truth")
     panel.set(xlim=(-25, 25), ylim=(-25, 25), aspect="equal", xlabel="x, m", ylabel="y, m")
     panel.legend(fontsize=7, loc="upper left", markerscale=4)
     panel.set_title("a turn of the sensor, in a bend", fontsize=9)

@@ -88,7 +88,7 @@ def displaced(axis_angle_rad, shift_m, middle_m=(0, 0, 0)):
 
 
 def aligned(positions, truth):
-    """The rigid motion that carries positions onto the truth with the least sum of squares (Umeyama, "Least-squares
+    """The rigid transform from positions to the ground truth with the least sum of squares (Umeyama, "Least-squares
     estimation of transformation parameters between two point patterns", PAMI 13 (1991), equations 40 to 42, no scale)."""
     middle, true_middle = positions.mean(axis=0), truth.mean(axis=0)
     u, _, vt = np.linalg.svd((truth - true_middle).T @ (positions - middle))
@@ -100,7 +100,7 @@ def aligned(positions, truth):
 
 
 def position_errors(poses, truth):
-    """Distances of positions from the truth once the trajectories are aligned (N); their root mean square is the
+    """Distances of positions from the ground truth after aligning the trajectories (N); their root mean square is the
     absolute trajectory error (Sturm et al., "A benchmark for the evaluation of RGB-D SLAM systems", IROS 2012)."""
     motion = aligned(poses[:, :3, 3], truth[:, :3, 3])
     return np.linalg.norm(poses[:, :3, 3] @ motion[:3, :3].T + motion[:3, 3] - truth[:, :3, 3], axis=1)

@@ -65,7 +65,7 @@ def hardening_faults(dynamic, segments, symbols):
 
 
 def jump_target_faults(content):
-    """What is wrong with the marks of jump targets. The note that says that a whole program has them is not asked for:
+    """Errors in the marks of jump targets. The note that a whole program has them is not required:
     the startup code of Debian 12 has none, so no program there gets it."""
     machine = int.from_bytes(content[18:20], "little")
     if machine == X86_64 and content.count(ENDBR64) < FEWEST_MARKS:

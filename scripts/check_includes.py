@@ -85,7 +85,7 @@ def check_include(root, path, include, public):
 
 
 def check_own_header(root, path, includes):
-    """NAME.cpp that has a NAME.hpp includes it first, which proves that it stands alone."""
+    """NAME.cpp that has a NAME.hpp includes it first, which proves that it is self-contained."""
     own = str(Path(path).with_suffix(".hpp"))
     if not path.endswith(".cpp") or layer_of(path) is None or not (root / own).is_file():
         return None

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares the renderers, to the bit, on all models below folders.
+"""Checks that the renderers are bit-identical on all models below folders.
 
 usage: PYTHONPATH=build/dev/python build/venv/bin/python scripts/compare_renderers.py [OPTION...] FOLDER...
 
@@ -92,7 +92,7 @@ def main():
     parser.add_argument("--side", type=int, default=256, help="pixels of a view's side")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--renderers", nargs="+", default=["rays", "raster"], help="the first is the reference")
-    parser.add_argument("--verbose", action="store_true", help="say why files are not read")
+    parser.add_argument("--verbose", action="store_true", help="print why files are not read")
     options = parser.parse_args()
     random = np.random.default_rng(options.seed)
     files = models_below(options.folders)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Feeds the import of models with damaged ones: `glidar info` must read or refuse each in time and end by itself.
+"""Feeds corrupt models to the import: `glidar info` must read or reject each within the time limit.
 
 usage: fuzz_models.py [--seconds S] [--seed N] [--keep FOLDER] GLIDAR FOLDER...
 Damages files of the folders, one after the other: changed, cut, repeated and inserted bytes, in texts also
@@ -37,7 +37,7 @@ def seeds(folders):
 
 
 def damaged(data, draw):
-    """The bytes with one to eight faults."""
+    """The bytes with one to eight errors."""
     data = bytearray(data)
     for _ in range(draw.randint(1, 8)):
         at = draw.randrange(len(data) + 1)
@@ -97,8 +97,8 @@ def main():
                 kept = options.keep / f"broken{original.suffix}"
                 shutil.copy(model, kept)
                 sys.exit(f"fuzz_models: {kept}, damaged {original}: {found}")
-    told = ", ".join(f"{counts[name]} {name}" for name in ("read", "refused", "helper died"))
-    print(f"models: {sum(counts.values())} files from {len(models)} models in {options.seconds:.0f} s: {told}; no fault found")
+    summary = ", ".join(f"{counts[name]} {name}" for name in ("read", "refused", "helper died"))
+    print(f"models: {sum(counts.values())} files from {len(models)} models in {options.seconds:.0f} s: {summary}; no error found")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import hostile
 
 
 class HostileClients:
-    """For a run with over, findings, endpoint, port and connect(); each client goes on until the run is over."""
+    """For a run with over, findings, endpoint, port and connect(); each client continues until the run is over."""
 
     def hostile_clients(self):
         return [self.send_garbage, self.send_endless, self.subscribe_without_end, self.hold_connections, self.flood,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Kills a small campaign (SIGKILL to its process group) at random moments and lets it go on. After every kill all files
+"""Kills a small campaign (SIGKILL to its process group) at random moments and resumes it. After every kill all files
 that a receipt lists must have its hashes; whenever the campaign is complete, it must have the bytes of one that was not
 disturbed. Moments are calls that write, sync, rename, open or close files, since the folder changes by these alone; a kill
 at a write leaves half of it.
@@ -46,7 +46,7 @@ class Campaign:
         self.faults = Faults(os.environ[STATE], folder)
 
     def run(self, name, at=0):
-        """Runs or goes on in a process and process group of its own, which ends at a call; its exit code."""
+        """Runs or resumes in a process and process group of its own, which is killed at a call; returns its exit code."""
         self.faults.arm("any", at, "kill")
         child = os.fork()
         if child == 0:
@@ -121,7 +121,7 @@ def main():
         sys.exit(NO_LIBRARY)
     folder = Path(tempfile.mkdtemp(prefix="glidar-kills-")) if STATE not in os.environ else None
     if folder:  # once more, with the library
-        state = folder / "faults"
+        state = folder / "fault_injection"
         os.environ.update(Faults(state, folder).environment)
         os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
     folder = Path(os.environ[STATE]).parent

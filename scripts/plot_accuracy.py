@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Range errors over the distance, of GLIDAR and of a ray caster in single precision (Open3D 0.20, which uses Embree).
 
-A sphere of 1 m, built of triangles, fills the picture of a camera from every distance. The truth is the nearest
+A sphere of 1 m, built of triangles, fills the picture of a camera from every distance. The ground truth is the nearest
 intersection of each beam with all triangles in extended precision (80 bits), by the formula of Moeller and Trumbore
 (1997), which neither of them uses in this precision.
 """

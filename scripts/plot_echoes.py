@@ -37,7 +37,7 @@ class Stage:
         self.folder = folder
 
     def shoot(self, planes, optics, light, more="", surface="{type: lambert}", seed=1):
-        """Columns of what a camera at the origin sees. A plane is (distance, edge: it lies where x
+        """Columns of a camera at the origin. A plane is (distance, edge: it is where x
         is above, tilt in radians about y)."""
         models = "".join(
             f"  - {{model: 'builtin:plane', scale: {REACH_M}, pose: {{position: [{edge + REACH_M * math.cos(tilt)!r}"
@@ -98,7 +98,7 @@ def lit_part(rings):
 
 
 def two_planes(stage, place, apart_m, receiver, rings=8):
-    """Told ranges of a beam whose edge between planes at 50 m and behind stands at a place."""
+    """Reported ranges of a beam with an edge between planes at 50 m and behind at a given position."""
     cloud = stage.shoot([(50.0, -0.1 * place, 0.0), (50.0 + apart_m, -REACH_M, 0.0)], LINE, STRONG,
                         beam(4, 0, rings) + f"receiver: {{pulse_ns: 5, {receiver}}}")
     return cloud["range"] - 50.0
@@ -149,7 +149,7 @@ def signal_decades(light):
 
 
 def backscatter(surface):
-    """Relative to a white matt surface seen square on."""
+    """Relative to a white diffuse surface at normal incidence."""
     def measure(stage, tilt_deg):
         cloud = stage.shoot(tilted(math.radians(tilt_deg)), LINE, STRONG, surface=surface)
         return float(cloud["intensity"][0]) * (50 / 1e5) ** 2
@@ -216,17 +216,17 @@ CASES = [
           Series("1 mrad, exit 40 mm", width_mm(1, 40), lambda z: math.hypot(40, z))]),
     Case("lit part of a beam at an edge", "share of the signal", "edge / w", PLACES,
          [Series("217 sub-rays", lit_part(8), lit_law), Series("7 sub-rays", lit_part(1), lit_law)]),
-    Case("mixed: planes 0.3 m apart", "told behind the front one, mm", "edge / w", PLACES,
+    Case("mixed: planes 0.3 m apart", "reported behind the front one, mm", "edge / w", PLACES,
          [Series("217 sub-rays", mixed, mixed_law)]),
-    Case("two halves, pulse of 5 ns", "told apart, m", "apart, m", APART,
+    Case("two halves, pulse of 5 ns", "separation of reported echoes, m", "apart, m", APART,
          [Series("as the pulse can", told_apart(0), lambda x: x * (x > APART_M)),
           Series("separation_m: 1", told_apart(1), lambda x: x * (x > 1))]),
-    Case("returns, planes 2 m apart", "told behind the front one, m", "edge / w", PLACES,
+    Case("returns, planes 2 m apart", "reported behind the front one, m", "edge / w", PLACES,
          [Series("last", told_as("last"), lambda x: 2.0),
           Series("strongest", told_as("strongest"),
                  lambda x: 2.0 * ((50 / 52) ** 2 * (1 - lit_law(x)) > lit_law(x))),
           Series("first", told_as("first"), lambda x: 0.0)]),
-    Case("range walk, leading edge, 5 ns", "told - true, mm", "log10 of S", [0, 0.1, 0.3, 0.6, 1, 1.5, 2, 3, 4],
+    Case("range walk, leading edge, 5 ns", "reported - true, mm", "log10 of S", [0, 0.1, 0.3, 0.6, 1, 1.5, 2, 3, 4],
          [Series("", walk_mm, lambda d: -1e3 * SIGMA_M * math.sqrt(2 * d * math.log(10)))]),
     Case("echo on a tilted plane", "sigma, m; 20 mrad at 50 m", "tilt, deg", DEGREES[:-1],
          [Series("", echo_sigma,
@@ -241,16 +241,16 @@ CASES = [
           Series("overlap", signal_decades(
               "{reference_reflectance: 0.01, reference_range_m: 100, overlap: [[0, 0], [50, 1]]}"),
                  lambda z: math.log10(100 * (100 / z) ** 2 * min(1, z / 50)))]),
-    Case("backscatter", "over white matt, square on", "incidence, deg", DEGREES,
+    Case("backscatter", "over white diffuse, normal incidence", "incidence, deg", DEGREES,
          [Series("lambert", backscatter("{type: lambert}"), lambda t: math.cos(math.radians(t))),
           Series("oren_nayar, 30 deg", backscatter("{type: oren_nayar, roughness_deg: 30}"),
                  oren_nayar_law),
           Series("phong, 0.4, 20", backscatter("{type: phong, specular_share: 0.4, exponent: 20}"),
                  phong_law)]),
-    Case("backscatter: glossy, 10 deg", "over white matt, square on", "incidence, deg", DEGREES,
+    Case("backscatter: glossy, 10 deg", "over white diffuse, normal incidence", "incidence, deg", DEGREES,
          [Series("", backscatter("{type: glossy, matt_share: 0.05, lobe_gain: 2, width_deg: 10}"),
                  glossy_law)]),
-    Case("backscatter: retro, 30 deg", "log10 over white matt", "incidence, deg", DEGREES,
+    Case("backscatter: retro, 30 deg", "log10 over white diffuse", "incidence, deg", DEGREES,
          [Series("", retro_decades, lambda t: math.log10(300) - (t / 30) ** 2 / math.log(10))]),
     Case("detection", "share of pulses seen", "range, m", FAR,
          [Series("noise_sigma 0.33", share_seen(0.33), seen_law(0.33)),

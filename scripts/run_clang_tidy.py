@@ -70,13 +70,13 @@ def run(database, file, *options):
 
 
 def check_each(build, members):
-    """What clang-tidy says of the files, one by one."""
+    """The findings of clang-tidy for the files, one at a time."""
     results = [run(build, file) for file, _, _ in members]
     return "".join(text for status, text in results if status != 0)
 
 
 def check(build, members, key):
-    """What clang-tidy says of a group of files; "" if nothing. Leaves a stamp then."""
+    """The findings of clang-tidy for a group of files; writes a stamp when there are none."""
     text = check_each(build, members) if len(members) == 1 or not check_together(build, members, key) else ""
     if not text:
         (build / "tidy" / key).touch()
@@ -85,7 +85,7 @@ def check(build, members, key):
 
 def check_together(build, members, key):
     """Whether a source that includes all files passes. If not, they are to be checked one by one: some may not go
-    together, and findings are told best of the file itself."""
+    together, and findings are clearest for a single file."""
     first, directory, command = members[0]
     # below a folder with the settings of the tests, if they are tests
     folder = build / "tidy" / first.relative_to(ROOT).parts[0] / key

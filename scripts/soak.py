@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Asks much of glidar stream for a long time, in lock-step and as in 2015 at once: steady and reconnecting clients, some
-that vanish or send nonsense, and a subscriber that never reads. Tells latencies, missed clouds and memory over time. With
+that vanish or send nonsense, and a subscriber that never reads. Reports latencies, missed clouds and memory over time. With
 --hostile also peers that send garbage, endless messages and floods, ask for too much, and hold connections.
 
 Exit code 1 unless memory is flat, every request was answered, and every reply was the first one's bytes again.
@@ -336,7 +336,7 @@ def main(arguments=None):
     parser.add_argument("--hostile", action="store_true", help="with peers that keep to no rules")
     flags = parser.parse_args(arguments)
     if flags.seconds < 10:
-        parser.error("--seconds: at least 10, or memory says nothing")
+        parser.error("--seconds: at least 10, otherwise memory is not meaningful")
     with tempfile.TemporaryDirectory() as folder:
         soak = Soak(folder, flags.seconds, flags.hostile)
         try:

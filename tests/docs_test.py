@@ -54,16 +54,7 @@ class Pages(unittest.TestCase):
         self.run_page("docs/woods2016.md")
 
 
-class Links(unittest.TestCase):
-    def test_links_of_all_pages_lead_to_files(self):
-        count = 0
-        for page in [*DOCS.rglob("*.md"), *ROOT.glob("*.md")]:
-            text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
-            for target in re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", text):
-                count += 1
-                self.assertTrue((page.parent / target).exists(), f"{page}: {target}")
-        self.assertGreater(count, 50)
-
+class Index(unittest.TestCase):
     def test_the_index_lists_every_page(self):
         index = (DOCS / "README.md").read_text(encoding="utf-8")
         for page in DOCS.rglob("*.md"):

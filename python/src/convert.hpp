@@ -24,8 +24,8 @@ using Numbers = nb::ndarray<const T, nb::shape<-1>, nb::c_contig, nb::device::cp
 template <class T, int kColumns>
 using Table = nb::ndarray<const T, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
 
-/// Pose k of an array. What is as rigid as float32 can tell is made exactly so; a pose of double is
-/// taken as it is. Throws Error naming the array and the place otherwise.
+/// Pose k of an array. A pose that is rigid within float32 precision is made exactly rigid; a pose
+/// of double is taken as it is. Throws Error naming the array and the place otherwise.
 Pose pose_of(const PoseArray& poses, std::size_t k, const std::string& name);
 
 inline Matrix4 matrix_of(const Pose& pose) {

@@ -26,7 +26,7 @@
 namespace glidar::python {
 namespace {
 
-constexpr std::size_t kMaxSpareBeams = std::size_t{1} << 24U;  // some 2 GiB with all truth
+constexpr std::size_t kMaxSpareBeams = std::size_t{1} << 24U;  // about 2 GiB with all ground truth
 
 /// One column of a frame as an array of rows x cols, or rows x cols x components; None when the
 /// frame did not keep it.

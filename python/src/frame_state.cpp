@@ -57,20 +57,20 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("beam_poses.world_from_sensor", frame.beam_poses.world_from_sensor);
   visit("beam_poses.world_from_object", frame.beam_poses.world_from_object);
   auto& truth = frame.ground_truth;
-  visit("truth.range_m", truth.range_m);
-  visit("truth.instance", truth.instance);
-  visit("truth.primitive", truth.primitive);
-  visit("truth.depth_m", truth.depth_m);
-  visit("truth.normal", truth.normal);
-  visit("truth.shading_normal", truth.shading_normal);
-  visit("truth.cos_incidence", truth.cos_incidence);
-  visit("truth.cos_shading", truth.cos_shading);
-  visit("truth.barycentrics", truth.barycentrics);
-  visit("truth.colour", truth.colour);
-  visit("truth.diffuse", truth.diffuse);
-  visit("truth.reflectance", truth.reflectance);
-  visit("truth.object_point_m", truth.object_point_m);
-  visit("truth.noise_scale", truth.noise_scale);
+  visit("ground_truth.range_m", truth.range_m);
+  visit("ground_truth.instance", truth.instance);
+  visit("ground_truth.primitive", truth.primitive);
+  visit("ground_truth.depth_m", truth.depth_m);
+  visit("ground_truth.normal", truth.normal);
+  visit("ground_truth.shading_normal", truth.shading_normal);
+  visit("ground_truth.cos_incidence", truth.cos_incidence);
+  visit("ground_truth.cos_shading", truth.cos_shading);
+  visit("ground_truth.barycentrics", truth.barycentrics);
+  visit("ground_truth.colour", truth.colour);
+  visit("ground_truth.diffuse", truth.diffuse);
+  visit("ground_truth.reflectance", truth.reflectance);
+  visit("ground_truth.object_point_m", truth.object_point_m);
+  visit("ground_truth.noise_scale", truth.noise_scale);
 }
 
 /// Every column that the frame kept, (N, k), as views of its memory.

@@ -15,7 +15,7 @@
 namespace glidar::python {
 namespace {
 
-/// A story in words, and what it is told from.
+/// A trace as text and as data.
 struct Told {
   PointTrace story;
   std::string text;

@@ -28,7 +28,7 @@ class Watch {
 
   /// Throws Interrupted when a handler raised an error.
   void look();
-  /// Ends the work with this error where that can be raised; else Python only tells it.
+  /// Ends the computation with this error if it can be raised; otherwise Python only prints it.
   void give_up(nb::python_error& error) const;
   ProgressCallback progress() {
     return [this](double /*fraction*/) { look(); };
@@ -53,7 +53,7 @@ auto unlocked(const Work& work) {
   }
 }
 
-/// Tells Python's function log(severity, message), which may be None.
+/// Calls Python's function log(severity, message), which may be None.
 Report report_to(const nb::object& log, Watch& watch);
 
 }  // namespace glidar::python

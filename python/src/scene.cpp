@@ -25,7 +25,7 @@
 namespace glidar::python {
 namespace {
 
-/// What Python says of how a model is to be read.
+/// Options from Python for reading a model.
 ModelOptions model_options(const nb::dict& given) {
   ModelOptions options;
   options.metres_per_unit = entry<double>(given, "metres_per_unit");
@@ -62,7 +62,7 @@ SceneHandle parse(const std::string& text, const nb::object& log,
       unlocked([&](Watch& watch) { return parse_scene(text, report_to(log, watch), folder); }));
 }
 
-/// Whatever is added to a scene whose instances move stands still.
+/// An instance that is added to a scene with motion is stationary.
 void add_still(SceneHandle& handle) {
   if (handle.motion.empty()) return;
   const Scene& scene = *handle.scene;
@@ -101,7 +101,7 @@ nb::dict mesh_of(const SceneHandle& handle, std::size_t index) {
   return arrays;
 }
 
-/// What a mesh is made of; arrays of one row per vertex but for the triangles.
+/// The arrays of a mesh, with one row per vertex or triangle.
 struct MeshArrays {
   Table<double, 3> vertices;
   Table<std::uint32_t, 3> triangles;

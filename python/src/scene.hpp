@@ -37,12 +37,12 @@ struct MountedSensor {
 /// changes are made to a copy while anybody else has it.
 struct SceneHandle {
   std::shared_ptr<Scene> scene = std::make_shared<Scene>();
-  std::vector<Trajectory> motion;      ///< one per instance; empty: all stand still
+  std::vector<Trajectory> motion;      ///< one per instance; empty: all are stationary
   std::vector<MountedSensor> sensors;  ///< of the scene file; none: it names none
   std::optional<Pose> world_from_rig;
   bool looks_at = false;  ///< see SceneFile
   std::optional<Trajectory> rig_motion;
-  std::vector<std::string> files;  ///< the scene file and those that it names, but for models
+  std::vector<std::string> files;  ///< the scene file and the files that it names, except models
   std::map<std::pair<std::string, unsigned>, std::shared_ptr<PreparedScene>> prepared;
 
   /// The scene, to be changed.

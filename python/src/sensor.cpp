@@ -33,7 +33,7 @@ using Shared = std::shared_ptr<SensorHandle>;
 void require_memory(const Sensor& sensor) {
   const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
   if (pinhole == nullptr) return;
-  constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
+  constexpr double kBytesPerBeam = 250.0;  // beam, ground truth, measurement and cloud together
   constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
   const double needed = kBytesPerBeam * pinhole->intrinsics.width * pinhole->intrinsics.height;
   const double there =

@@ -11,7 +11,7 @@
 
 namespace glidar::python {
 
-/// A sensor as Python holds it, which never changes, and the beams of the frames last asked for.
+/// A Python sensor, which is immutable, and the beams of the most recently used frames.
 class SensorHandle {
  public:
   explicit SensorHandle(Sensor sensor);

@@ -29,7 +29,7 @@ constexpr std::size_t kTogether = 8;
 struct Simulator {
   std::shared_ptr<PreparedScene> prepared;
   std::shared_ptr<SensorHandle> sensor;
-  std::vector<Trajectory> motion;        ///< of the scene's instances; empty: they stand still
+  std::vector<Trajectory> motion;        ///< of the scene's instances; empty: they are stationary
   std::optional<Trajectory> rig_motion;  ///< of the scene file
   std::optional<Pose> world_from_rig;    ///< of the scene file
   bool looks_at = false;                 ///< see SceneFile

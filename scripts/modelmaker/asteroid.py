@@ -91,7 +91,7 @@ def bilinear(grid, x, y):
 def bake_face(face, point_grid, normal_grid):
     """Albedo and tangent-space normals of one tile, row 0 on top.
 
-    The normal of the fine surface is told in the frame that a renderer interpolates over the mesh.
+    The normal of the fine surface is stored in the tangent frame that a renderer interpolates over the mesh.
     """
     step = (np.arange(-1, TILE + 1) + 0.5 - GUTTER) / (TILE - 2 * GUTTER)
     s, t = np.meshgrid(step, step, indexing="xy")

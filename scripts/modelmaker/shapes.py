@@ -148,7 +148,7 @@ def strut(name, start_m, end_m, radius_m, material, sides=8):
 
 
 def disc(name, radius_m, segments, material, uv_per_m):
-    """A single sheet at z = 0, front to +z; its texture lies flat on it. Not closed."""
+    """A plane at z = 0, front to +z, with a flat texture. Not closed."""
     angles = 2.0 * np.pi * np.arange(segments) / segments
     rim = [[radius_m * np.cos(a), radius_m * np.sin(a), 0.0] for a in angles]
     part = Part(name, np.array([[0.0, 0.0, 0.0]] + rim))

@@ -169,7 +169,7 @@ def tree(seed=3, leaves=620):
 
 
 def lamp():
-    """A lamp post, its arm towards -y."""
+    """A street light, its arm towards -y."""
     return [lathe("post", [(0.0, 0.0), (0.11, 0.0), (0.10, 0.9), (0.06, 1.0), (0.045, 6.2), (0.0, 6.25)], 10,
                   "steel"),
             strut("arm", (0, 0.05, 6.1), (0, -1.5, 6.45), 0.035, "steel"),

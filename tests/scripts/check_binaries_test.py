@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The check of programs and libraries lets a good one pass and names every kind of fault."""
+"""The check of programs and libraries accepts a good one and reports every type of error."""
 
 import shutil
 import platform
@@ -37,7 +37,7 @@ class CheckBinaries(unittest.TestCase):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def complaints(self, *options, name="glidar", **words):
-        """What the check says of a program that is compiled with these options, without its path."""
+        """The output of the check for a program that is compiled with these options, without its path."""
         program = self.folder / name
         subprocess.run(["cc", *options, "-x", "c", "-", "-o", program], input=CODE, text=True, check=True)
         count, complaints = check_binaries.check([self.folder], **words)

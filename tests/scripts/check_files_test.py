@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The check of files lets a good file pass and names the line of every kind of fault."""
+"""The check of files accepts a good file and reports the line of every type of error."""
 
 import sys
 import unittest

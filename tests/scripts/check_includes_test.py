@@ -27,7 +27,7 @@ GOOD = {
 
 class CheckIncludes(unittest.TestCase):
     def complaints(self, changes):
-        """What the check says of the good tree with these files put in its place."""
+        """The output of the check for the good tree with these files replaced."""
         with tempfile.TemporaryDirectory() as folder:
             for path, text in {**GOOD, **changes}.items():
                 file = Path(folder) / path

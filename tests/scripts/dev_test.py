@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""`./dev` installs exactly the packages that are missing, and installs GLIDAR where it is told. It runs in a copy of its own, and in PATH there are only
+"""`./dev` installs exactly the packages that are missing, and installs GLIDAR in the given folder. It runs in a separate copy, and in PATH there are only
 programs that record how they were called, so that nothing of the machine changes."""
 
 import os

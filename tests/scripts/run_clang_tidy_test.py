@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The runner of clang-tidy checks sources together where they go together, and finds the faults of each."""
+"""The runner of clang-tidy checks compatible sources together, and reports the findings of each."""
 
 import shutil
 import sys
