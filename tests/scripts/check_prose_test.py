@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The check of wording names the line of every discouraged word, reads prose only, and its list of exceptions shrinks."""
+"""The check of wording reports every discouraged word with its line, reads only prose, and its list of exceptions shrinks."""
 
 import io
 import sys
@@ -80,6 +80,19 @@ class Pending(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("good.md is clean", out)
         self.assertNotIn("bad.md", out)
+
+    def test_sources_on_the_list_are_skipped_and_not_clean_without_the_option(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "bad.py").write_text("# told\n", encoding="utf-8")
+            (folder / "pending.txt").write_text("bad.py\n", encoding="utf-8")
+            for arguments, files in (([], []), (["--sources"], ["bad.py"])):
+                with mock.patch.multiple(check_prose, ROOT=folder, PENDING=folder / "pending.txt", tracked=lambda _, f=files: f):
+                    self.assertEqual(check_prose.main(arguments), 0)
+
+    def test_the_check_skips_the_files_that_list_the_words(self):
+        self.assertTrue(all((ROOT / path).is_file() for path in check_prose.WORD_LISTS))
+        self.assertFalse(check_prose.WORD_LISTS & set(check_prose.tracked({".py"})))
 
     def test_update_removes_clean_files_only(self):
         code, out, listed = self.run_check("--update")
