@@ -91,7 +91,7 @@ std::array<unsigned, 2> png_size(const std::string& png) {
   return {number(16), number(20)};
 }
 
-TEST(PointColours, OfNumbersHaveABarAndOfThingsALegend) {
+TEST(PointColours, HaveABarForNumbersAndALegendForCategories) {
   for (const ColourBy by :
        {ColourBy::height, ColourBy::range, ColourBy::intensity, ColourBy::ring}) {
     const PointColours colours = colours_by(make(), by);
@@ -102,7 +102,7 @@ TEST(PointColours, OfNumbersHaveABarAndOfThingsALegend) {
   EXPECT_FALSE(colours_by(make(), ColourBy::object_class).bar.has_value());
 }
 
-TEST(PointColours, HaveTheScaleOfTheirNumbers) {
+TEST(PointColours, HaveAColourBarWithTheirRange) {
   const PointColours height = colours_by(make(), ColourBy::height);
   EXPECT_EQ(height.bar->scale.low, 0.0);
   EXPECT_EQ(height.bar->scale.high, 2.0);
@@ -123,7 +123,7 @@ TEST(PointColours, NameClassesAndInstances) {
   EXPECT_NE(instances.colours[0], instances.colours[2]);
 }
 
-TEST(Legend, NamesAsManyAsHaveRoomAndCountsTheOthers) {
+TEST(Legend, ListsEntriesThatFitAndCountsTheOthers) {
   std::vector<LegendEntry> entries;
   for (int i = 0; i < 100; ++i) entries.push_back({{1, 2, 3}, "class number " + std::to_string(i)});
   const std::vector<LegendEntry> fitted = fitted_legend(entries, 400.0, 90.0, 10.0);
@@ -135,7 +135,7 @@ TEST(Legend, NamesAsManyAsHaveRoomAndCountsTheOthers) {
             "class number 1");
 }
 
-TEST(Legend, CutsLongNamesBetweenLetters) {
+TEST(Legend, TruncatesLongNamesBetweenCharacters) {
   std::string name;
   for (int i = 0; i < 200; ++i) name += "\u00e9";  // two bytes each
   const std::vector<LegendEntry> fitted = fitted_legend({{{1, 2, 3}, name}}, 400.0, 90.0, 10.0);
@@ -146,18 +146,18 @@ TEST(Legend, CutsLongNamesBetweenLetters) {
   EXPECT_EQ(text.size() % 2, 1U) << "whole letters and three points";
 }
 
-TEST(PointColours, AreGreyWhereThereIsNoNumber) {
+TEST(PointColours, AreGreyForMissingValues) {
   const PointColours intensity = colours_by(make(), ColourBy::intensity);
   EXPECT_EQ(intensity.bar->scale.high, 3.0);
   EXPECT_NE(intensity.colours[1], intensity.colours[0]);
 }
 
-TEST(PointColours, OfACamerasRingsDoNotExist) {
+TEST(PointColours, RejectRingsOfACamera) {
   EXPECT_THAT(error_text([] { colours_by(make(true), ColourBy::ring); }),
               HasSubstr("ring: a camera has no rings; allowed: height, range, intensity, class"));
 }
 
-TEST(CloudPicture, HasTheSizeAskedFor) {
+TEST(CloudPicture, HasTheRequestedSize) {
   Made made = make();
   made.options.picture.width = 640;
   made.options.picture.height = 480;
@@ -201,7 +201,7 @@ Made one_point(bool is_camera, const std::vector<double>& xyz) {
   return made;
 }
 
-TEST(CloudPicture, OfNothingIsDrawnWithoutPoints) {
+TEST(CloudPicture, IsDrawnWithoutPoints) {
   Made made = one_point(false, {5.0, 2.0, 0.0});
   const Colour point = colours_by(make(), ColourBy::object_class).colours[0];
   for (const char* name : {"a.bev.png", "a.view.png"}) {
@@ -213,7 +213,7 @@ TEST(CloudPicture, OfNothingIsDrawnWithoutPoints) {
   }
 }
 
-TEST(CloudPicture, HasAheadToTheRightAndLeftUpForEverySensor) {
+TEST(CloudPicture, ShowsForwardToTheRightAndLeftUpForEverySensor) {
   const Colour point = colours_by(make(), ColourBy::object_class).colours[0];
   const Made lidar = one_point(false, {5.0, 2.0, 0.0});   // x ahead, y to the left
   const Made camera = one_point(true, {-2.0, 0.0, 5.0});  // x to the right, z ahead
@@ -225,7 +225,7 @@ TEST(CloudPicture, HasAheadToTheRightAndLeftUpForEverySensor) {
   EXPECT_NEAR(of_lidar.row, of_camera.row, 1.0);
 }
 
-TEST(CloudPicture, RefusesSizesAndEyesThatCannotBe) {
+TEST(CloudPicture, RejectsInvalidSizesAndEyes) {
   Made made = make();
   made.options.picture.eye_m = made.options.picture.target_m = Eigen::Vector3d(1.0, 2.0, 3.0);
   EXPECT_THAT(error_text([&] { written(made, "a.view.png"); }),

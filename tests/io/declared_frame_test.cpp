@@ -97,7 +97,7 @@ std::filesystem::path model_3mf(const TestFolder& folder, const std::string& sta
 
 constexpr const char* k3mf = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
 
-TEST(DeclaredFrame, TheUnitOf3mfIsFoundHoweverItsXmlIsWritten) {
+TEST(DeclaredFrame, TheUnitOf3mfIsFoundInAnyXmlNotation) {
   const std::string space = std::string(k3mf) + " ";
   const std::string big_comment = "<!-- " + std::string(70000, 'x') + " -->";
   const std::vector<std::string> starts = {
@@ -120,7 +120,7 @@ TEST(DeclaredFrame, TheUnitOf3mfIsFoundHoweverItsXmlIsWritten) {
             0.001);
 }
 
-TEST(DeclaredFrame, ThePartOf3mfThatRelationshipsNameIsRead) {
+TEST(DeclaredFrame, ThePartNamedByThe3mfRelationshipsIsRead) {
   const TestFolder temp;
   const auto file =
       model_3mf(temp, "<model unit=\"foot\" " + std::string(k3mf) + ">", "3D/part.model");
@@ -138,7 +138,7 @@ TEST(DeclaredFrame, UnitsOfAmfAreFoundBehindComments) {
   }
 }
 
-TEST(DeclaredFrame, NumbersAndNamesOfColladaAreReadWithoutTheSpaceAroundThem) {
+TEST(DeclaredFrame, NumbersAndNamesOfColladaAreTrimmed) {
   const TestFolder temp;
   const Model model =
       load(temp.write(
@@ -157,7 +157,7 @@ TEST(DeclaredFrame, NumbersAndNamesOfColladaAreReadWithoutTheSpaceAroundThem) {
   EXPECT_EQ(commented.declared.up, Axis::z);
 }
 
-TEST(DeclaredFrame, AUselessUnitOfColladaIsNotedAsWrittenAndTheUpAxisIsKept) {
+TEST(DeclaredFrame, AnInvalidColladaUnitIsReportedAndTheUpAxisIsApplied) {
   const TestFolder temp;
   for (const char* meter : {"1e50", "-1", "nan", "inf", "one", ""}) {
     const Model model = load(temp.write("a.dae", collada("<unit meter=\"" + std::string(meter) +
@@ -180,7 +180,7 @@ TEST(DeclaredFrame, AnUnknownUpAxisOfColladaIsNoted) {
   EXPECT_THAT(model.notes, Contains(HasSubstr("unknown up axis 'UP': its axes are kept")));
 }
 
-TEST(DeclaredFrame, ColladaInAnArchiveIsThatOfItsManifest) {
+TEST(DeclaredFrame, ColladaInAnArchiveIsFoundByItsManifest) {
   const TestFolder temp;
   const std::string root = collada("<unit meter=\"0.25\"/><up_axis>Z_UP</up_axis>");
   const std::string other = collada("<unit meter=\"4\"/>");
@@ -264,7 +264,7 @@ TEST(DeclaredFrame, UnitsOfAmfAreApplied) {
               HasSubstr("\"ell\" in node <unit> has incorrect value"));
 }
 
-TEST(DeclaredFrame, FormatsThatDeclareNothingStayAsTheyAre) {
+TEST(DeclaredFrame, FormatsWithoutDeclarationsAreUnchanged) {
   const TestFolder temp;
   const Model model =
       load(temp.write("a.obj", "v 1 2 3\nv 4 2 3\nv 1 7 9\nf 1 2 3\n"), as_declared());
@@ -273,7 +273,7 @@ TEST(DeclaredFrame, FormatsThatDeclareNothingStayAsTheyAre) {
   EXPECT_EQ(corner(model, 0), Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST(DeclaredFrame, ReportsSayWhereUnitAndUpAxisAreFrom) {
+TEST(DeclaredFrame, ReportsStateTheSourceOfUnitAndUpAxis) {
   const TestFolder temp;
   const auto file = temp.write("a.dae", collada("<unit meter=\"0.01\"/><up_axis>Y_UP</up_axis>"));
   const ModelReport declared = inspect(load(file, as_declared()));
@@ -287,7 +287,7 @@ TEST(DeclaredFrame, ReportsSayWhereUnitAndUpAxisAreFrom) {
             "1 m assumed, the file declares none; plausible as metres: 1 m across");
 }
 
-TEST(DeclaredFrame, OfRealFiles) {
+TEST(DeclaredFrame, AreCorrectForRealFiles) {
   GLIDAR_NEEDS_DATA();
   struct Case {
     const char* path;
@@ -321,7 +321,7 @@ TEST(DeclaredFrame, OfRealFiles) {
   }
 }
 
-TEST(DeclaredFrame, SizesOfRealFilesAreThoseWrittenInThem) {
+TEST(DeclaredFrame, SizesOfRealFilesAreThoseThatTheyDeclare) {
   GLIDAR_NEEDS_DATA();
   const auto size = [](const char* path) -> Eigen::Vector3d {
     return bounds(load(data_folder() / path, as_declared()).mesh).sizes();

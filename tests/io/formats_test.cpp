@@ -56,14 +56,14 @@ std::string pcd_head(const char* data) {
          data + "\n";
 }
 
-TEST(PcdFile, AsciiIsThisText) {
+TEST(PcdFile, AsciiHasTheExpectedText) {
   FileSinkOptions options;
   options.pcd = PcdEncoding::ascii;
   EXPECT_EQ(written(two_points(), "a.pcd", options),
             pcd_head("ascii") + "0.5 -1.25 3 0.1\nnan nan nan 0\n");
 }
 
-TEST(PcdFile, BinaryIsFloatsPointByPoint) {
+TEST(PcdFile, BinaryHasFloatsPointByPoint) {
   const std::string found = written(two_points(), "a.pcd");
   const std::string head = pcd_head("binary");
   ASSERT_EQ(found.size(), head.size() + 32);
@@ -98,7 +98,7 @@ TEST(PcdFile, CompressedDoesNotGrowMuchOnNoise) {
   EXPECT_LT(written(made, "a.pcd", options).size(), binary + binary / 16);
 }
 
-TEST(PcdFile, FarNumbersStayFloatWhichAllReadersKnow) {
+TEST(PcdFile, LargeCoordinatesStayFloatForAllReaders) {
   CloudFixture made = make_fixture(1, 2);
   for (const char* name : {"normal", "colour", "instance", "ring", "status"})
     drop_column(made.cloud, name);
@@ -106,7 +106,7 @@ TEST(PcdFile, FarNumbersStayFloatWhichAllReadersKnow) {
   EXPECT_THAT(written(made, "a.pcd"), HasSubstr("FIELDS x y z intensity depth\nSIZE 4 4 4 4 4\n"));
 }
 
-TEST(PlyFile, AsciiIsThisText) {
+TEST(PlyFile, AsciiHasTheExpectedText) {
   FileSinkOptions options;
   options.ply_ascii = true;
   EXPECT_EQ(written(two_points(), "a.ply", options),
@@ -133,7 +133,7 @@ TEST(CsvFile, KeepsEveryDigitAndHasAHeader) {
             "x,y,z,intensity\n0.3333333333333333,-1.25,3,0.1\nnan,nan,nan,0\n");
 }
 
-TEST(KittiFile, LeavesMissesOutAlways) {
+TEST(KittiFile, AlwaysOmitsMisses) {
   const std::string found = written(two_points(), "a.bin");
   ASSERT_EQ(found.size(), 16U);
   float numbers[4];
@@ -179,14 +179,14 @@ TEST(KittiFile, ClassesNeedTheColumnsOfLabels) {
               HasSubstr("the cloud has no column instance"));
 }
 
-TEST(DepthNpy, StartsOnAMultipleOf64WithNumPysHead) {
+TEST(DepthNpy, HasNumPysHeaderPaddedTo64Bytes) {
   const std::string found = written(make_fixture(), "a.npy");
   EXPECT_THAT(found, StartsWith("\x93NUMPY\x01"));
   EXPECT_THAT(found, HasSubstr("{'descr': '<f4', 'fortran_order': False, 'shape': (4, 5, ), }"));
   EXPECT_EQ((found.size() - 4 * 20) % 64, 0U);
 }
 
-TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithTheScaleThatFits) {
+TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithASuitableScale) {
   CloudFixture made = make_fixture();
   auto& depths_m = std::get<std::vector<double>>(made.cloud.columns[2].values);
   depths_m[0] = 65.535;
@@ -200,7 +200,7 @@ TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithTheScaleThatFits) {
   EXPECT_THAT(write_error(made, "a.depth.png"), HasSubstr("a depth of -2 m, behind the sensor"));
 }
 
-TEST(PaperPng, IsRefusedToAFrameThatWasNotReadFromAPicture) {
+TEST(PaperPng, RejectsFramesOfOtherRenderTargets) {
   CloudFixture made = make_fixture();
   made.frame.picture.rgba.clear();
   EXPECT_THAT(
@@ -229,7 +229,7 @@ nlohmann::json sidecar_of(const CloudFixture& made, const std::string& name = "a
   return nlohmann::json::parse(file_bytes(folder / (name + ".json")));
 }
 
-TEST(Sidecar, TellsSensorPosesSeedModelAndCounts) {
+TEST(Sidecar, ContainsSensorPosesSeedModelAndCounts) {
   CloudFixture made = make_fixture();
   Pinhole pinhole;
   pinhole.intrinsics.fx = 123.25;
@@ -262,14 +262,14 @@ TEST(Sidecar, TellsSensorPosesSeedModelAndCounts) {
 }
 
 // readers_test.py compares the columns of every sidecar with the header of the file beside it.
-TEST(Sidecar, TellsOnlyColumnsThatTheFileHolds) {
+TEST(Sidecar, ListsOnlyColumnsOfTheFile) {
   EXPECT_EQ(sidecar_of(make_fixture(), "a.bin").at("cloud").at("columns"),
             nlohmann::json::parse(R"([
     {"name": "xyz", "type": "f32", "components": ["x", "y", "z"]},
     {"name": "intensity", "type": "f32", "components": ["intensity"]}])"));
 }
 
-TEST(Sidecar, TellsNamesAndTypesAsTheFileHasThem) {
+TEST(Sidecar, ListsNamesAndTypesAsStoredInTheFile) {
   const auto column = [](const char* file, std::size_t i) {
     const nlohmann::json told = sidecar_of(make_fixture(), file).at("cloud").at("columns").at(i);
     return told.at("type").get<std::string>() + " " + told.at("components").dump();
@@ -282,7 +282,7 @@ TEST(Sidecar, TellsNamesAndTypesAsTheFileHasThem) {
   EXPECT_EQ(column("a.csv", 6), R"(u16 ["ring"])");
 }
 
-TEST(Sidecar, NeverHoldsAWordThatJsonHasNot) {
+TEST(Sidecar, ContainsOnlyValidJson) {
   CloudFixture made = make_fixture();
   made.sensor.light.ambient = std::nan("");
   const testing::TestFolder folder;

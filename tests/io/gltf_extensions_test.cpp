@@ -258,7 +258,7 @@ TEST_F(GltfDraco, QuantizedPositionsAreWithinHalfAStep) {
   }
 }
 
-TEST_F(GltfDraco, AChangedBufferVoidsTheCache) {
+TEST_F(GltfDraco, AChangedBufferInvalidatesTheCache) {
   ModelOptions options;
   options.cache_folder = temp_ / "cache";
   const auto write = [&](const Sheet& sheet) {
@@ -300,7 +300,7 @@ TEST_F(GltfDraco, ABufferOutsideTheModelsFolderIsNotRead) {
               AllOf(HasSubstr("'../a.bin'"), HasSubstr("outside the model's folder")));
 }
 
-TEST(GltfExtensions, MeshoptIsRefusedByItsName) {
+TEST(GltfExtensions, MeshoptIsRejectedWithItsName) {
   const TestFolder temp;
   Json json = Json::parse(testing::gltf(R"([{"mesh":0}])"));
   const auto error = [&] {

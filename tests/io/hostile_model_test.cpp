@@ -75,7 +75,7 @@ void expect_tamed(const fs::path& file) {
 
 class HostileModels : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(HostileModels, GiveAClearErrorOrAGoodMesh) {
+TEST_P(HostileModels, GiveAClearErrorOrAValidMesh) {
   GLIDAR_NEEDS_DATA();
   const std::vector<fs::path> files = files_below(testing::data_folder() / "hostile" / GetParam());
   ASSERT_FALSE(files.empty());
@@ -126,7 +126,7 @@ TEST(HostileModels, TheTiniestTriangleKeepsItsCorners) {
   EXPECT_EQ(model.mesh.positions_m.at(1).x(), 1e-42F);
 }
 
-TEST(HostileModels, ACrashIsToldWithItsSignal) {
+TEST(HostileModels, ACrashIsReportedWithItsSignal) {
   GLIDAR_SKIP_SANITIZED();
   GLIDAR_NEEDS_DATA();
   const std::string text = testing::load_error(
@@ -136,7 +136,7 @@ TEST(HostileModels, ACrashIsToldWithItsSignal) {
   EXPECT_THAT(text, HasSubstr("SIGSEGV"));
 }
 
-TEST(HostileModels, ABombIsToldWithItsLimit) {
+TEST(HostileModels, ExceededMemoryIsReportedWithTheLimit) {
   GLIDAR_SKIP_SANITIZED();
   GLIDAR_NEEDS_DATA();
   const std::string text = testing::load_error(

@@ -44,7 +44,7 @@ TEST(HostileJson, DepthAndNumberOfValuesHaveLimits) {
   EXPECT_THAT(shown_json(Json(std::string(10'000, 'x'))), SizeIs(63));
 }
 
-TEST(HostileJson, NestedSidecarsAreRefused) {
+TEST(HostileJson, NestedSidecarsAreRejected) {
   const testing::TestFolder folder;
   folder.write("a.pcd.json", R"({"glidar":"x","command":null,"frame":)" + nested(kDeep) + "}");
   EXPECT_THAT(error_text([&] { read_sidecar(folder / "a.pcd"); }), HasSubstr("nested too deeply"));
@@ -55,7 +55,7 @@ TEST(HostileJson, NestedSidecarsAreRefused) {
   EXPECT_LT(error.size(), 600U);
 }
 
-TEST(HostileJson, NestedMetadataOfASensorIsRefused) {
+TEST(HostileJson, NestedSensorMetadataIsRejected) {
   const testing::TestFolder folder;
   folder.write("ou.json", R"({"beam_altitude_angles":)" + nested(kDeep) + "}");
   const auto path = folder.write("s.yaml", "optics: {type: ouster, file: ou.json}\n");
@@ -88,7 +88,7 @@ TEST(HostileYaml, AliasesWrittenOutHaveALimit) {
               HasSubstr("values with aliases written out; allowed: 1000000 values and 2 more"));
 }
 
-TEST(HostileYaml, AnAliasOfWhatItIsInIsRefused) {
+TEST(HostileYaml, RecursiveAliasesAreRejected) {
   for (const char* text : {"a: &a [1, *a]", "&a {b: {c: *a}}", "a: &a\n  - x\n  - {b: *a}\n"})
     EXPECT_THAT(error_text([&] { check_yaml_budget("f", text); }), HasSubstr("that it is in"))
         << text;
@@ -103,7 +103,7 @@ TEST(HostileYaml, ValuesHaveALimit) {
               HasSubstr("more than 1000000 values"));
 }
 
-TEST(HostileYaml, ManyMaterialsOfManyAliasedModelsAreRefused) {
+TEST(HostileYaml, ManyMaterialsOfManyAliasedModelsAreRejected) {
   std::string text = "models:\n- &a\n  model: builtin:box\n  materials:\n";
   for (int i = 0; i < 3000; ++i) text += "    m" + std::to_string(i) + ": {opacity: 1}\n";
   text += repeated("- *a\n", 3000);

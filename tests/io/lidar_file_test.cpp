@@ -135,7 +135,7 @@ TEST(LidarFile, HostileRayFilesAreRefused) {
 
 struct BadLidarFile : ::testing::TestWithParam<BadFile> {};
 
-TEST_P(BadLidarFile, SaysWhereAndWhy) {
+TEST_P(BadLidarFile, IsReportedWithLocationAndReason) {
   const TestFolder folder;
   (void)folder.write("bad.csv", "Time/s,Azimuth/deg,Zenith/deg\n0,1,2\n0,x,2\n");
   (void)folder.write("falling.csv", "1,1,2\n0,1,2\n");
@@ -176,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "a key such as optics.elevation_deg; did you mean 'optics.width'?"}),
     bad_file_name);
 
-TEST(OusterFile, ReadsWhatSensorsGiveOfThemselves) {
+TEST(OusterFile, ReadsMetadataOfRealSensors) {
   GLIDAR_NEEDS_DATA();
   const TestFolder folder;
   const auto read = [&](const std::string& name) {
@@ -198,7 +198,7 @@ TEST(OusterFile, ReadsWhatSensorsGiveOfThemselves) {
   EXPECT_DOUBLE_EQ(std::get<Spinning>(new_layout.optics).beam_origin_m, 0.027116);
 }
 
-TEST(OusterFile, HostileMetadataIsRefused) {
+TEST(OusterFile, MaliciousMetadataIsRejected) {
   const TestFolder folder;
   const auto file = folder.write("s.yaml", "optics: {type: ouster, file: m.json}\n");
   const std::string rest =

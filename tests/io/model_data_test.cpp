@@ -85,7 +85,7 @@ TEST(DataModels, EmbeddedTexturesAreRead) {
   }
 }
 
-TEST(DataModels, NormalMapsBringTangents) {
+TEST(DataModels, NormalMapsCreateTangents) {
   GLIDAR_NEEDS_DATA();
   const Model model =
       load(data_folder() / "textured/gltf/NormalTangentTest/glTF/NormalTangentTest.gltf");

@@ -45,20 +45,20 @@ TEST_F(OpenBeneath, FilesInTheRootAreOpened) {
   EXPECT_TRUE(open(root_ / "sub/inside"));
 }
 
-TEST_F(OpenBeneath, WhatIsOutsideIsNot) {
+TEST_F(OpenBeneath, FilesOutsideTheRootAreNotOpened) {
   EXPECT_FALSE(open(folder_ / "elsewhere/inside"));
   EXPECT_FALSE(open("/etc/passwd"));
   EXPECT_FALSE(open(root_ / "../elsewhere/inside"));
 }
 
-TEST_F(OpenBeneath, AFileThatBecameALinkIsNotOpened) {
+TEST_F(OpenBeneath, AFileReplacedByALinkIsNotOpened) {
   fs::remove(root_ / "sub/inside");
   fs::create_symlink(folder_ / "elsewhere/inside", root_ / "sub/inside");
   EXPECT_FALSE(open(root_ / "sub/inside"));
   EXPECT_EQ(errno, ELOOP);
 }
 
-TEST_F(OpenBeneath, AFolderThatBecameALinkIsNotEntered) {
+TEST_F(OpenBeneath, AFolderReplacedByALinkIsNotEntered) {
   fs::rename(root_ / "sub", root_ / "old");
   fs::create_symlink(folder_ / "elsewhere", root_ / "sub");
   const UniqueFd opened = open(root_ / "sub/inside");
@@ -77,7 +77,7 @@ class ModelFilesTest : public ::testing::Test {
   ModelFiles files_{{folder_.path(), folder_.path(), {}}};
 };
 
-TEST_F(ModelFilesTest, TheHashIsThatOfTheBytesThatWereParsed) {
+TEST_F(ModelFilesTest, TheHashIsThatOfTheParsedBytes) {
   const auto content = files_.content(file_.string());
   ASSERT_NE(content, nullptr);
   EXPECT_EQ(content->whole(), text_);
@@ -86,7 +86,7 @@ TEST_F(ModelFilesTest, TheHashIsThatOfTheBytesThatWereParsed) {
   EXPECT_EQ(files_.hashes(), std::vector<std::string>{hash_of(text_)});
 }
 
-TEST_F(ModelFilesTest, AFileThatGrowsKeepsTheHashOfItsBeginning) {
+TEST_F(ModelFilesTest, AGrowingFileKeepsTheHashOfItsBeginning) {
   const auto content = files_.content(file_.string());
   EXPECT_EQ(content->head(4), "what");
   append(" and more");
@@ -118,7 +118,7 @@ TEST_F(ModelFilesTest, AReplacementDoesNotChangeTheHash) {
   EXPECT_EQ(files_.hashes().at(0), hash_of(text_));
 }
 
-TEST_F(ModelFilesTest, PipesAndFoldersAreNoFiles) {
+TEST_F(ModelFilesTest, PipesAndFoldersAreNotFiles) {
   const std::string pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
   EXPECT_EQ(files_.content(pipe), nullptr);

@@ -39,7 +39,7 @@ std::vector<std::string> notes_of_mtl(const std::string& material) {
   return load(temp.write("a.obj", testing::quad_obj("a.mtl"))).notes;
 }
 
-TEST(ModelFormats, UniformTranslucencyIsToldToBeSolid) {
+TEST(ModelFormats, UniformTranslucencyIsReportedAsOpaque) {
   EXPECT_THAT(notes_of_mtl("d 0.3"), Contains(HasSubstr("transparency is shown solid")));
   EXPECT_THAT(notes_of_mtl("Tr 0.7"), Contains(HasSubstr("transparency is shown solid")));
   EXPECT_THAT(notes_of_mtl("d 1"), Not(Contains(HasSubstr("transparency"))));
@@ -47,7 +47,7 @@ TEST(ModelFormats, UniformTranslucencyIsToldToBeSolid) {
               Not(Contains(HasSubstr("transparency"))));  // the mask defines the cut-out
 }
 
-TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
+TEST(ModelFormats, GltfReportsOnlyBlendedMaterialsAsOpaque) {
   const TestFolder temp;
   const auto notes = [&](const std::string& mode) {
     const std::string material =
@@ -59,7 +59,7 @@ TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
   EXPECT_THAT(notes("MASK"), Not(Contains(HasSubstr("transparency"))));
 }
 
-TEST(ModelFormats, APlyCutOffInItsHeaderIsRefusedBeforeTheTimeRunsOut) {
+TEST(ModelFormats, APlyTruncatedInItsHeaderIsRejectedBeforeTheTimeLimit) {
   const TestFolder temp;
   for (const char* text :
        {"ply\nformat ascii 1.0", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n",
@@ -73,7 +73,7 @@ TEST(ModelFormats, APlyCutOffInItsHeaderIsRefusedBeforeTheTimeRunsOut) {
   }
 }
 
-TEST(ModelFormats, ATextureOfASiblingFolderIsMissingWithTheRemedy) {
+TEST(ModelFormats, ATextureInASiblingFolderIsReportedWithARemedy) {
   const TestFolder temp;
   temp.write("pictures/paint.ppm", testing::ppm(1, 1, "abc"));
   temp.write("model/a.mtl", "newmtl paint\nmap_Kd ../pictures/paint.ppm\n");
@@ -110,7 +110,7 @@ TEST(ModelFormats, TheTextureTransformExampleOfTheGltfExtensionShowsTheLowerLeft
   EXPECT_LT((shown(0, 0) - Eigen::Vector2f(0.5F, 0)).norm(), 1e-6F);
 }
 
-TEST(ModelFormats, EveryFileThatAModelWasReadFromIsTold) {
+TEST(ModelFormats, EveryFileOfAModelIsListed) {
   const TestFolder temp;
   ModelOptions options;
   options.cache_folder = temp.path() / "cache";

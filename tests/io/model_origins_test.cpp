@@ -83,7 +83,7 @@ TEST(ModelOrigins, NodesFarFromEachOtherAreExactToAFractionOfAMicrometre) {
   EXPECT_NO_THROW(validate(model.mesh));
 }
 
-TEST(ModelOrigins, PartsBeyondSinglePrecisionAreLeftOutAndTheOthersStay) {
+TEST(ModelOrigins, PartsBeyondSinglePrecisionAreOmitted) {
   const TestFolder temp;
   const Model model =
       load(temp.write("a.gltf", gltf(R"([{"children":[1,2]},{"mesh":0,"translation":[1,0,0]},)"
@@ -106,7 +106,7 @@ TEST(ModelOrigins, PartsStayInTheOrderOfTheFile) {
   }
 }
 
-TEST(ModelOrigins, UnitUpAndCentreActOnEveryOrigin) {
+TEST(ModelOrigins, UnitUpAxisAndCentreApplyToEveryOrigin) {
   const TestFolder temp;
   const auto file = temp.write("a.gltf", gltf(nodes_of(far_nodes())));
   ModelOptions options = testing::without_cache();
@@ -141,7 +141,7 @@ TEST(ModelOrigins, PartsThatTouchShareTheirOrigin) {
   EXPECT_TRUE(model.mesh.origins.empty());
 }
 
-TEST(ModelOrigins, AreNoMoreThanTheirLimitForManyParts) {
+TEST(ModelOrigins, AreLimitedForManyParts) {
   std::vector<Node> many;
   for (int i = 0; i < 500; ++i) many.push_back({{13.1 * i, -7.3 * i, 0.1 * i}, 0.7});
   const TestFolder temp;
@@ -151,7 +151,7 @@ TEST(ModelOrigins, AreNoMoreThanTheirLimitForManyParts) {
   EXPECT_LT(largest_error(model.mesh, many), 1e-5);  // single precision of the whole has 2.4e-4
 }
 
-TEST(ModelOrigins, OneOriginIsEnoughForWhatSinglePrecisionHolds) {
+TEST(ModelOrigins, OneOriginIsUsedWhenSinglePrecisionSuffices) {
   const TestFolder temp;
   EXPECT_TRUE(load(temp.write("a.gltf", gltf(nodes_of({{{2.1, 0, 0}, 0.7}, {{-2.3, 0, 0}, 0.3}}))))
                   .mesh.origins.empty());
@@ -163,7 +163,7 @@ TEST(ModelOrigins, OneOriginIsEnoughForWhatSinglePrecisionHolds) {
                   .mesh.origins.empty());
 }
 
-TEST(ModelOrigins, MeshChecksAddUpOverThePieces) {
+TEST(ModelOrigins, MeshChecksAreSumsOverThePieces) {
   const TestFolder temp;
   const Mesh mesh = load(temp.write("a.gltf", gltf(nodes_of(far_nodes())))).mesh;
   const MeshCheck check = check_mesh(mesh);

@@ -113,7 +113,7 @@ Eigen::Vector3d meet(const Mesh& mesh, const Triangle& t, const Ray& ray) {
 
 class ModelReference : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(ModelReference, TheNamedTrianglesLieWhereTheRaysAre) {
+TEST_P(ModelReference, TheReferenceTrianglesAreHitByTheirRays) {
   GLIDAR_NEEDS_DATA();
   const fs::path folder = testing::data_folder() / "reference" / "core" / GetParam();
   const Case truth = read_case(folder);

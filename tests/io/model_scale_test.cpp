@@ -12,7 +12,7 @@
 namespace glidar {
 namespace {
 
-TEST(SceneFile, DifferentFactorsStretchACopyOfTheMeshThatEqualOnesShare) {
+TEST(SceneFile, InstancesWithEqualFactorsShareAScaledMesh) {
   const Scene scene = parse_scene(R"(models:
   - {model: 'builtin:box'}
   - {model: 'builtin:box', scale: [1, 2, 3]}
@@ -38,7 +38,7 @@ Scene scene_of(const char* name) {
   return scene;
 }
 
-TEST(SetScale, GoesBackToTheMeshAsLoaded) {
+TEST(SetScale, RestoresTheLoadedMesh) {
   Scene scene = scene_of("box");
   set_scale(scene, 0, {0.1, 0.3, 0.7});
   set_scale(scene, 0, {0.7, 0.1, 0.3});
@@ -48,7 +48,7 @@ TEST(SetScale, GoesBackToTheMeshAsLoaded) {
   EXPECT_EQ(scale_of(scene, scene.instances[0]), Eigen::Vector3d::Constant(3.0));
 }
 
-TEST(SetScale, KeepsNoStretchedMeshThatNoInstanceHas) {
+TEST(SetScale, RemovesScaledMeshesWithoutInstances) {
   Scene scene = scene_of("box");
   add_model(scene, make_builtin_model("sphere"));
   scene.instances.push_back(Instance(scene.instances[0]));
@@ -74,7 +74,7 @@ TEST(SetScale, KeepsNoStretchedMeshThatNoInstanceHas) {
   EXPECT_NO_THROW(validate(scene));
 }
 
-TEST(SetScale, RefusesZeroMirrorsAndWhatIsOutOfReach) {
+TEST(SetScale, RejectsZeroNegativeAndExtremeFactors) {
   Scene scene = scene_of("box");
   for (const double bad : {0.0, -1.0, std::nan(""), double{INFINITY}, 1e300, 1e-300}) {
     EXPECT_THROW(set_scale(scene, 0, {1.0, bad, 1.0}), Error) << bad;
@@ -84,7 +84,7 @@ TEST(SetScale, RefusesZeroMirrorsAndWhatIsOutOfReach) {
   EXPECT_EQ(scene.meshes.size(), 1U);
 }
 
-TEST(SetScale, NormalsAreThoseOfTheStretchedSurface) {
+TEST(SetScale, NormalsAreThoseOfTheScaledSurface) {
   Scene scene = scene_of("sphere");
   const Eigen::Vector3d axes_m(2.0, 0.5, 1.25);
   set_scale(scene, 0, axes_m);

@@ -92,7 +92,7 @@ class Sandbox : public ::testing::Test {
   fs::path outside_;
 };
 
-TEST_F(Sandbox, AnImportProcessUnderForeignControlGainsNothing) {
+TEST_F(Sandbox, ACompromisedImportProcessHasNoAccess) {
   GLIDAR_SKIP_SANITIZED();
   std::map<std::string, std::string> results = attempt();
   if (results.contains("note")) GTEST_SKIP() << "this system has no sandbox: " << results["note"];
@@ -120,7 +120,7 @@ TEST_F(Sandbox, NothingOutsideTheImportProcessChanges) {
   ASSERT_EQ(::fcntl(STDIN_FILENO, F_GETFD), 0);
 }
 
-TEST_F(Sandbox, AMissingMechanismIsReportedNotSilent) {
+TEST_F(Sandbox, AMissingMechanismIsReported) {
   GLIDAR_SKIP_SANITIZED();
   const fs::path model = folder_.write("b.obj", kTriangle);
   const Variable program("GLIDAR_IMPORT_HELPER", GLIDAR_WITHOUT_SANDBOX);

@@ -33,7 +33,7 @@ TEST(SceneFile, SizesOfBuiltInModelsBecomePartOfTheirSource) {
   EXPECT_EQ(scene.instances[1].source, "builtin:torus:radius=3:tube_radius=0.1");
 }
 
-TEST(SceneFile, PathsThroughLinksGoUpAsTheSystemDoes) {
+TEST(SceneFile, ParentsOfLinksAreResolvedLikeTheSystem) {
   const TestFolder folder;
   folder.write("deep/inner/x.txt", "");
   folder.write("deep/camera.yaml", "optics: {width: 5, height: 4, fov_deg: 30}\n");

@@ -85,7 +85,7 @@ TEST(AtomicFile, KeepsTheOrderOfSmallAndLargeWrites) {
   EXPECT_EQ(found, "aX" + large.substr(1) + "c");
 }
 
-TEST(AtomicFile, ADurableCommitReplacesTheOldFileAndLeavesNothingElse) {
+TEST(AtomicFile, ADurableCommitReplacesTheOldFileAndLeavesNoOtherFile) {
   const testing::TestFolder folder;
   for (const char* text : {"old", "new"}) {
     AtomicFile file(folder / "a.txt");
@@ -114,7 +114,7 @@ TEST(AtomicFile, ADurableCommitOnAFullDiskLeavesTheOldFile) {
   EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
 }
 
-TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
+TEST(AtomicFile, ReportsAFullDiskAndLeavesNoFile) {
   const testing::TestFolder folder;
   const FullDisk full(4096);
   const std::string text = error_text([&] {
@@ -128,7 +128,7 @@ TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-TEST(AtomicFile, TellsAMissingOrUnwritableFolder) {
+TEST(AtomicFile, ReportsAMissingOrUnwritableFolder) {
   const testing::TestFolder folder;
   EXPECT_THAT(error_text([&] { AtomicFile file(folder / "none/a.txt"); }),
               HasSubstr("No such file or directory; create the folder first"));
@@ -137,7 +137,7 @@ TEST(AtomicFile, TellsAMissingOrUnwritableFolder) {
   EXPECT_THAT(error_text([&] { AtomicFile file(folder.path()); }), HasSubstr("is a folder"));
 }
 
-TEST(AtomicFile, TakesNoPipesPlaceOrADevices) {
+TEST(AtomicFile, DoesNotReplacePipesAndDevices) {
   const testing::TestFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   EXPECT_THAT(error_text([&] { AtomicFile file(folder / "pipe"); }),
@@ -146,7 +146,7 @@ TEST(AtomicFile, TakesNoPipesPlaceOrADevices) {
               HasSubstr("is a device, pipe or socket"));
 }
 
-TEST(AtomicFile, MayBeItsOwnersAlone) {
+TEST(AtomicFile, CanBePrivateToItsOwner) {
   const testing::TestFolder folder;
   AtomicFile file(folder / "key", AtomicFile::Readers::owner);
   file.commit();
@@ -155,7 +155,7 @@ TEST(AtomicFile, MayBeItsOwnersAlone) {
   EXPECT_EQ(about.st_mode & 0777U, 0600U);
 }
 
-TEST(AtomicFile, ObeysTheUsersMask) {
+TEST(AtomicFile, RespectsTheUmask) {
   const testing::TestFolder folder;
   const mode_t before = ::umask(0027);
   {
@@ -166,7 +166,7 @@ TEST(AtomicFile, ObeysTheUsersMask) {
   EXPECT_EQ(std::filesystem::status(folder / "a.txt").permissions(), std::filesystem::perms(0640));
 }
 
-TEST(AtomicFile, TwoWritersOfOneNameLeaveOneWholeFile) {
+TEST(AtomicFile, ConcurrentWritersOfOneNameLeaveOneCompleteFile) {
   const testing::TestFolder folder;
   const auto write_often = [&](char letter) {
     for (int i = 0; i < 50; ++i) {
@@ -195,7 +195,7 @@ TEST(AtomicFile, RemovesUnfinishedFilesForASignalHandler) {
   EXPECT_THROW(first.commit(), Error);
 }
 
-TEST(AtomicFile, ListsMoreFilesOneAfterTheOtherThanItHasPlacesFor) {
+TEST(AtomicFile, ReusesSlotsOfClosedFiles) {
   const testing::TestFolder folder;
   for (int i = 0; i < 100; ++i) AtomicFile(folder / "a.txt").commit();
   AtomicFile file(folder / "b.txt");

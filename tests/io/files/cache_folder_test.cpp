@@ -34,7 +34,7 @@ TEST_F(CacheFolderOfModels, TheFolderAndItsFilesAreForTheirOwnerOnly) {
   EXPECT_EQ(fs::status(cache_file()).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-TEST_F(CacheFolderOfModels, AFolderThatOthersMayAccessIsNotUsed) {
+TEST_F(CacheFolderOfModels, AFolderThatOtherUsersCanAccessIsNotUsed) {
   load();
   for (const fs::perms others : {fs::perms::group_read, fs::perms::others_write}) {
     fs::permissions(options_.cache_folder, fs::perms::owner_all | others);
@@ -58,7 +58,7 @@ TEST_F(CacheFolderOfModels, AFolderOfAnotherUserIsNotUsed) {
                                HasSubstr("--cache-folder"), HasSubstr("--no-cache")));
 }
 
-TEST_F(CacheFolderOfModels, AnEntryThatOthersMayHaveWrittenIsNotRead) {
+TEST_F(CacheFolderOfModels, AnEntryThatOthersCanWriteIsNotRead) {
   load();
   fs::permissions(cache_file(), fs::perms::group_write, fs::perm_options::add);
   EXPECT_FALSE(load().from_cache);
@@ -83,7 +83,7 @@ class FullModelCache : public testing::ModelCacheTest {
   }
 };
 
-TEST_F(FullModelCache, TheEntriesThatWereNotUsedForLongestAreEvicted) {
+TEST_F(FullModelCache, TheLeastRecentlyUsedEntriesAreEvicted) {
   const Variable limit("GLIDAR_CACHE_LIMIT_MIB", "3");
   const fs::path oldest = fill('a', 30);
   const fs::path older = fill('b', 20);
@@ -101,7 +101,7 @@ TEST_F(FullModelCache, TheEntriesThatWereNotUsedForLongestAreEvicted) {
   EXPECT_TRUE(load().from_cache);
 }
 
-TEST_F(FullModelCache, OtherFilesInTheFolderAreLeftAlone) {
+TEST_F(FullModelCache, OtherFilesInTheFolderAreKept) {
   const Variable limit("GLIDAR_CACHE_LIMIT_MIB", "1");
   const fs::path entry = fill('a', 30);
   const fs::path notes = options_.cache_folder / "notes.model";
@@ -119,7 +119,7 @@ TEST_F(FullModelCache, AModelLargerThanTheLimitIsNotStored) {
   EXPECT_EQ(cache_files(), 0U);
 }
 
-TEST_F(FullModelCache, ALimitThatIsNoNumberIsRefused) {
+TEST_F(FullModelCache, ALimitThatIsNotANumberIsRejected) {
   for (const char* wrong : {"2G", "-1", "1.5", "99999999999999999999"}) {
     const Variable limit("GLIDAR_CACHE_LIMIT_MIB", wrong);
     EXPECT_THAT(testing::load_error(file_.string(), options_),

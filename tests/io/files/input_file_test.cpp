@@ -35,7 +35,7 @@ class InputFileTest : public ::testing::Test {
   testing::TestFolder folder;
 };
 
-TEST_F(InputFileTest, AFileIsReadWhole) {
+TEST_F(InputFileTest, AFileIsReadCompletely) {
   const std::string content = std::string("a\0b\xff", 4) + std::string(100'000, 'x');
   EXPECT_EQ(read_input_file(folder.write("a", content), kKind), content);
   EXPECT_EQ(read_input_file(folder.write("empty", ""), kKind), "");
@@ -43,11 +43,11 @@ TEST_F(InputFileTest, AFileIsReadWhole) {
   EXPECT_EQ(read_input_file(folder / "link", kKind), content);
 }
 
-TEST_F(InputFileTest, FilesOfTheSystemThatTellNoSizeAreReadWhole) {
+TEST_F(InputFileTest, SystemFilesWithoutASizeAreReadCompletely) {
   EXPECT_THAT(read_input_file("/proc/self/status", kKind), HasSubstr("Pid:"));
 }
 
-TEST_F(InputFileTest, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
+TEST_F(InputFileTest, OtherThanRegularFilesAreRejectedWithoutBlocking) {
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   fs::create_symlink("/dev/zero", folder / "device");
   for (const char* name : {"pipe", "device"}) {
@@ -57,7 +57,7 @@ TEST_F(InputFileTest, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
   EXPECT_THAT(text_of_error(folder.path()), HasSubstr("a folder; allowed: a text"));
 }
 
-TEST_F(InputFileTest, AMissingFileIsNamedWithTheNearest) {
+TEST_F(InputFileTest, AMissingFileIsReportedWithTheNearestName) {
   folder.write("camera.yaml", "");
   EXPECT_EQ(text_of_error(folder / "camra.yaml"),
             (folder / "camra.yaml").string() + ": no such file; did you mean 'camera.yaml'?");
@@ -65,7 +65,7 @@ TEST_F(InputFileTest, AMissingFileIsNamedWithTheNearest) {
   EXPECT_THAT(text_of_error(std::string("a\0b", 3)), HasSubstr("zero byte"));
 }
 
-TEST_F(InputFileTest, AFileOverTheLimitIsRefusedBeforeItIsRead) {
+TEST_F(InputFileTest, AFileOverTheLimitIsRejectedBeforeItIsRead) {
   const fs::path sparse = folder.write("sparse", "");
   fs::resize_file(sparse, std::uintmax_t{1} << 40U);
   EXPECT_THAT(text_of_error(sparse),
@@ -75,7 +75,7 @@ TEST_F(InputFileTest, AFileOverTheLimitIsRefusedBeforeItIsRead) {
 }
 
 /// Everything that reads a file by its own.
-TEST_F(InputFileTest, NoReaderWaitsForAPipe) {
+TEST_F(InputFileTest, PipesAreRejectedWithoutBlocking) {
   for (const char* name : {"p.yaml", "p.csv", "p.npy", "p.json", "p.pcd.json", "p.png"})
     ASSERT_EQ(::mkfifo((folder / name).c_str(), 0600), 0);
   const auto sensor = [&](const std::string& optics) {
@@ -112,14 +112,14 @@ TEST_F(InputFileTest, LinesOfAFileAreReadOneByOne) {
   EXPECT_FALSE(lines.next(line));
 }
 
-TEST_F(InputFileTest, ALineOverItsLimitIsRefused) {
+TEST_F(InputFileTest, ALineOverItsLimitIsRejected) {
   const fs::path path = folder.write("lines", std::string(900'000, 'x'));
   LineFile lines(path, kKind, 100'000);
   std::string line;
   EXPECT_THAT(error_text([&] { lines.next(line); }), HasSubstr("a line of more than"));
 }
 
-TEST_F(InputFileTest, TextThatIsNotUtf8IsNamedWithItsLine) {
+TEST_F(InputFileTest, TextThatIsNotUtf8IsReportedWithItsLine) {
   const auto check = [](std::string_view text) {
     return error_text([&] { require_utf8("f", text); });
   };

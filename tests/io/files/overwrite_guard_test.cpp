@@ -24,7 +24,7 @@ class FileGuard : public ::testing::Test {
   std::filesystem::path folder;
 };
 
-TEST_F(FileGuard, KnowsAFileByAllItsNames) {
+TEST_F(FileGuard, IdentifiesAFileByAllItsNames) {
   std::filesystem::create_symlink(folder / "a.ply", folder / "link.ply");
   std::filesystem::create_hard_link(folder / "a.ply", folder / "hard.ply");
   const std::vector<std::string> read = {folder / "a.ply"};
@@ -35,13 +35,13 @@ TEST_F(FileGuard, KnowsAFileByAllItsNames) {
   EXPECT_FALSE(is_same_file(folder / "b.ply", folder / "a.ply"));
 }
 
-TEST_F(FileGuard, KnowsAFileThatIsNotThereYetByItsPlace) {
+TEST_F(FileGuard, IdentifiesAMissingFileByItsPath) {
   EXPECT_TRUE(is_same_file(folder / "x" / ".." / "new.ply", folder / "new.ply"));
   const std::vector<std::string> read = {folder / "a.ply"};
   EXPECT_NO_THROW(refuse_overwrite_of_inputs(read, folder / "new.ply"));
 }
 
-TEST_F(FileGuard, TakesDotDotBehindALinkAsTheSystemDoes) {
+TEST_F(FileGuard, ResolvesDotDotAfterALinkLikeTheSystem) {
   std::filesystem::create_directories(folder / "real" / "sub");
   std::filesystem::create_directory_symlink(folder / "real" / "sub", folder / "link");
   EXPECT_TRUE(is_same_file(folder / "link" / ".." / "new.ply", folder / "real" / "new.ply"));

@@ -37,7 +37,7 @@ void write_pair(const fs::path& cloud, const std::string& text) {
   files.commit();
 }
 
-TEST(StagedFiles, FilesOfWritersAtOnceAreAllOfOneOfThem) {
+TEST(StagedFiles, FilesOfConcurrentWritersAreFromOneOfThem) {
   const testing::TestFolder folder;
   const fs::path cloud = folder / "a.pcd";
   constexpr int kRounds = 500;
@@ -62,7 +62,7 @@ TEST(StagedFiles, FilesOfWritersAtOnceAreAllOfOneOfThem) {
   EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
 }
 
-TEST(StagedFiles, NoneReplacesAProtectedFile) {
+TEST(StagedFiles, ProtectedFilesAreNotOverwritten) {
   const testing::TestFolder folder;
   const std::vector<std::string> read = {folder.write("q.pcd.json", "mine")};
   StagedFiles files;
@@ -74,7 +74,7 @@ TEST(StagedFiles, NoneReplacesAProtectedFile) {
   EXPECT_EQ(content(folder / "q.pcd.json"), "mine");
 }
 
-TEST(FolderLock, ExcludesOthersUntilItEndsAndLeavesNothing) {
+TEST(FolderLock, ExcludesOthersDuringItsLifetimeAndLeavesNoFile) {
   const testing::TestFolder folder;
   std::optional<FolderLock> first(std::in_place, folder.path());
   EXPECT_TRUE(first->is_held());
@@ -90,7 +90,7 @@ TEST(FolderLock, ExcludesOthersUntilItEndsAndLeavesNothing) {
   EXPECT_THAT(folder.names(), ElementsAre());
 }
 
-TEST(FolderLock, AFolderThatCannotBeOpenedGivesNone) {
+TEST(FolderLock, AFolderThatCannotBeOpenedIsNotLocked) {
   EXPECT_FALSE(FolderLock("/nonexistent/folder").is_held());
 }
 

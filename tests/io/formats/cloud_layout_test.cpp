@@ -36,7 +36,7 @@ std::vector<T> field(const CloudFixture& made, const char* layout, const char* n
   return std::get<std::vector<T>>(find_column(laid, name)->values);
 }
 
-TEST(PointFieldLayout, TimesAreSecondsOrNanosecondsAsTheDriverHasThem) {
+TEST(PointFieldLayout, TimesHaveTheUnitOfTheDriver) {
   const CloudFixture made = points_with("time", std::vector<std::uint32_t>{0, 55296, 99999999});
   EXPECT_THAT(field<float>(made, "velodyne", "time"), ElementsAre(0.0F, 55.296e-6F, 0.099999999F));
   EXPECT_THAT(field<std::uint32_t>(made, "ouster", "t"), ElementsAre(0, 55296, 99999999));
@@ -58,14 +58,14 @@ TEST(PointFieldLayout, RangesAreMillimetresOrMetres) {
   EXPECT_TRUE(std::isnan(distance[2]));
 }
 
-TEST(PointFieldLayout, AnglesAreRadiansFromZeroToAWholeTurn) {
+TEST(PointFieldLayout, AnglesAreRadiansFromZeroToTwoPi) {
   const CloudFixture made = points_with("azimuth", std::vector<double>{0.0, 1.5, -1.5, -3.0});
   EXPECT_THAT(field<float>(made, "autoware", "azimuth"),
               ElementsAre(0.0F, 1.5F, 4.783185307F, 3.283185307F));
   EXPECT_FLOAT_EQ(field<float>(made, "autoware", "elevation")[2], -0.225F);
 }
 
-TEST(PointFieldLayout, ReflectivitiesArePerCentUpToWhiteAndRetroReflectorsAreBeyond) {
+TEST(PointFieldLayout, ReflectivitiesArePercentUpToWhiteAndLargerForRetroReflectors) {
   const CloudFixture made = points_with(
       "intensity", std::vector<float>{0.0F, 0.5F, 1.0F, 1.01F, 31.62278F, 1000.0F, 1e6F});
   EXPECT_THAT(field<float>(made, "velodyne", "intensity"),
@@ -109,7 +109,7 @@ TEST(PointFieldLayout, ReflectivitiesAreCalibratedInClearAirAndSoLowerInFog) {
   EXPECT_THAT(field<std::uint8_t>(made, "autoware", "intensity"), ElementsAre(46, 14, 2, 0, 0));
 }
 
-TEST(PointFieldLayout, ReflectivitiesAreThoseThatASensorTellsItself) {
+TEST(PointFieldLayout, ReflectivitiesOfCalibratedSensorsAreUnchanged) {
   CloudFixture made = points_with("intensity", std::vector<float>{0.0F, 20.0F, 100.0F, 200.0F});
   made.sensor.pulse = LidarEquation{};
   const IntensityScale compensates{
@@ -130,7 +130,7 @@ TEST(PointFieldLayout, EchoesAreNumberedInLivoxTags) {
   EXPECT_THAT(field<std::uint8_t>(made, "livox", "tag"), ElementsAre(0, 16, 32, 48, 48));
 }
 
-TEST(PointFieldLayout, AutowareIsRefusedForSeveralReturns) {
+TEST(PointFieldLayout, AutowareIsRejectedForSeveralReturns) {
   CloudFixture made = make_fixture();
   fixture::add_scan_columns(made.cloud);
   made.beams.returns = 2;
@@ -142,7 +142,7 @@ TEST(PointFieldLayout, AutowareIsRefusedForSeveralReturns) {
   }
 }
 
-TEST(PointFieldLayout, WhatIsNotKnownIsZeroAndAMissIsNoReturn) {
+TEST(PointFieldLayout, UnknownFieldsAreZeroAndMissesHaveNoReturn) {
   const CloudFixture made =
       points_with("ring", std::vector<std::uint16_t>{0, 254, 255, 256, 65535});
   EXPECT_THAT(field<std::uint16_t>(made, "ouster", "ambient"), ElementsAre(0, 0, 0, 0, 0));
@@ -152,7 +152,7 @@ TEST(PointFieldLayout, WhatIsNotKnownIsZeroAndAMissIsNoReturn) {
   EXPECT_TRUE(std::isnan(field<float>(made, "minimal", "x")[2]));
 }
 
-TEST(PointFieldLayout, AnUnknownNameTellsAllAndTheNearest) {
+TEST(PointFieldLayout, AnUnknownNameIsReportedWithAllNamesAndTheNearest) {
   EXPECT_THAT(error_text([] { find_layout("velodine"); }),
               AllOf(HasSubstr("'velodine' is not known"),
                     HasSubstr("minimal velodyne ouster livox autoware"),
@@ -164,7 +164,7 @@ TEST(PointFieldLayout, AnUnknownNameTellsAllAndTheNearest) {
       HasSubstr("cloud layout"));
 }
 
-TEST(PointFieldLayout, AMissingColumnIsToldWithAllThatAreNeeded) {
+TEST(PointFieldLayout, AMissingColumnIsReportedWithAllRequiredOnes) {
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.pcd", {.layout = "velodyne"}); }),
@@ -173,7 +173,7 @@ TEST(PointFieldLayout, AMissingColumnIsToldWithAllThatAreNeeded) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-TEST(PointFieldLayout, ThePcdHeaderOfLivoxIsThis) {
+TEST(PointFieldLayout, ThePcdHeaderOfLivoxIsAsExpected) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   fixture::add_scan_columns(made.cloud);
@@ -183,7 +183,7 @@ TEST(PointFieldLayout, ThePcdHeaderOfLivoxIsThis) {
                         "TYPE F F F F U U F\nCOUNT 1 1 1 1 1 1 1\nWIDTH 5\nHEIGHT 4\n"));
 }
 
-TEST(PointFieldLayout, TheSidecarTellsTheLayoutAndItsFields) {
+TEST(PointFieldLayout, TheSidecarListsTheLayoutAndItsFields) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   fixture::add_scan_columns(made.cloud);
@@ -199,7 +199,7 @@ TEST(PointFieldLayout, TheSidecarTellsTheLayoutAndItsFields) {
   EXPECT_TRUE(cloud_told("a.bin").at("layout").is_null()) << "a format with fields of its own";
 }
 
-TEST(PointFieldLayout, FarPointsAreToldOf) {
+TEST(PointFieldLayout, DistantPointsCauseAWarning) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   std::get<std::vector<double>>(made.cloud.columns[0].values)[0] = 10000.0004;

@@ -24,7 +24,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-TEST(FileFormats, TheLongestSuffixWins) {
+TEST(FileFormats, TheLongestSuffixSelectsTheFormat) {
   EXPECT_EQ(format_for("a.png").suffix, ".png");
   EXPECT_EQ(format_for("a.depth.png").suffix, ".depth.png");
   EXPECT_EQ(format_for("a.paper.png").suffix, ".paper.png");
@@ -32,7 +32,7 @@ TEST(FileFormats, TheLongestSuffixWins) {
   EXPECT_EQ(format_for("A.PCD").suffix, ".pcd");
 }
 
-TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
+TEST(FileFormats, AnUnknownSuffixIsReportedWithAllSuffixesAndTheNearest) {
   const std::string text = error_text([] { format_for("a.pdc"); });
   EXPECT_THAT(
       text,
@@ -44,7 +44,7 @@ TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
 }
 
-TEST(FileSink, RefusesBadPlacesAtOnce) {
+TEST(FileSink, RejectsInvalidPathsImmediately) {
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   const SidecarContext context = made.context();
@@ -59,7 +59,7 @@ TEST(FileSink, RefusesBadPlacesAtOnce) {
   EXPECT_THROW(make_file_sink(folder / "a.depth.png", options, context), Error);
 }
 
-TEST(FileSink, SeparatorsAfterTheNameOfAFolderDoNotCount) {
+TEST(FileSink, TrailingSeparatorsOfAFolderAreIgnored) {
   const testing::TestFolder folder;
   EXPECT_EQ(format_for("out.kitti/").suffix, ".kitti");
   EXPECT_EQ(output_path("x/out.kitti//"), "x/out.kitti");
@@ -72,7 +72,7 @@ TEST(FileSink, SeparatorsAfterTheNameOfAFolderDoNotCount) {
   }
 }
 
-TEST(FileSink, ASeparatorAfterTheNameOfAFileIsAnError) {
+TEST(FileSink, ATrailingSeparatorOfAFileIsAnError) {
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   EXPECT_THAT(error_text([&] { write_cloud(made, (folder / "a.pcd").string() + "/"); }),
@@ -90,7 +90,7 @@ bool as_ordinary_user(const Work& work) {
   return !is_root || ::seteuid(0) == 0;
 }
 
-TEST(FileSink, AFolderNeedsItsOwnPermissionsAndNotThoseOfItsParent) {
+TEST(FileSink, AFolderNeedsItsOwnWritePermissionOnly) {
   namespace fs = std::filesystem;
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
@@ -126,7 +126,7 @@ CloudFixture with_classes() {
   return made;
 }
 
-TEST(FileSink, LabelsOfAnEarlierCloudAreGoneWithIt) {
+TEST(FileSink, LabelsOfAnEarlierCloudAreRemoved) {
   const testing::TestFolder folder;
   CloudFixture labelled = with_classes();
   write_cloud(labelled, folder / "a.bin", {.sidecar = false});
@@ -164,7 +164,7 @@ TEST(FileSink, PreviewsAndPosesHaveNoSidecar) {
   EXPECT_EQ(folder.names().size(), 5U);
 }
 
-TEST(FileSink, ImagesHaveASidecarThatSaysWhatThePixelsAre) {
+TEST(FileSink, SidecarsOfImagesDescribeThePixels) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   made.sensor.optics = Pinhole{
@@ -185,7 +185,7 @@ TEST(FileSink, ImagesHaveASidecarThatSaysWhatThePixelsAre) {
   EXPECT_EQ(depth.at("cloud").at("image").at("units_per_m"), 2000.0);
 }
 
-TEST(FileSink, AnInstanceThatDoesNotFitAnImageIsAnErrorThatSaysWhatToDo) {
+TEST(FileSink, AnInstanceIdThatDoesNotFitIsAnErrorWithARemedy) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   for (const std::uint32_t id : {0U, 65536U}) {
@@ -198,7 +198,7 @@ TEST(FileSink, AnInstanceThatDoesNotFitAnImageIsAnErrorThatSaysWhatToDo) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-TEST(FileSink, StagedFilesHaveNoNameBeforeCommitAndAreGoneWithoutIt) {
+TEST(FileSink, StagedFilesAppearOnlyOnCommit) {
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   const SidecarContext context = made.context();
@@ -216,7 +216,7 @@ TEST(FileSink, StagedFilesHaveNoNameBeforeCommitAndAreGoneWithoutIt) {
   EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
 }
 
-TEST(FileSink, TheSidecarCanBeLeftOut) {
+TEST(FileSink, TheSidecarCanBeOmitted) {
   const testing::TestFolder folder;
   FileSinkOptions options;
   options.sidecar = false;
@@ -224,7 +224,7 @@ TEST(FileSink, TheSidecarCanBeLeftOut) {
   EXPECT_THAT(folder.names(), ElementsAre("a.ply"));
 }
 
-TEST(FileSink, AMissingColumnIsToldAndNothingIsLeft) {
+TEST(FileSink, AMissingColumnIsAnErrorThatLeavesNoFile) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   drop_column(made.cloud, "intensity");
@@ -235,7 +235,7 @@ TEST(FileSink, AMissingColumnIsToldAndNothingIsLeft) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-TEST(FileSink, AColumnOfWrongSizeOrTypeIsTold) {
+TEST(FileSink, AColumnOfWrongSizeOrTypeIsAnError) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   made.cloud.columns[0].values = std::vector<double>(59, 0.0);
@@ -246,7 +246,7 @@ TEST(FileSink, AColumnOfWrongSizeOrTypeIsTold) {
               HasSubstr("column xyz has another type; allowed: three doubles per point"));
 }
 
-TEST(FileSink, AnErrorLeavesTheOldFilesAsTheyWere) {
+TEST(FileSink, AnErrorLeavesTheOldFilesUnchanged) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   write_cloud(made, folder / "a.pcd");
@@ -296,7 +296,7 @@ std::string told_of(const char* name, double x_m, double depth_m) {
   return told;
 }
 
-TEST(FileSink, PointsThatFloatMovesAreToldWithHowFarAndWhatToDo) {
+TEST(FileSink, PointsMovedByRoundingAreReportedWithDistanceAndRemedy) {
   // Floats near 10 km are 0.977 mm apart.
   EXPECT_THAT(told_of("a.bin", 10000.0004, 1.0),
               AllOf(HasSubstr("a.bin: rounding to float32 moves its points by up to 0.0004 m"),
@@ -304,7 +304,7 @@ TEST(FileSink, PointsThatFloatMovesAreToldWithHowFarAndWhatToDo) {
   EXPECT_THAT(told_of("a.npy", 1.0, 10000.0004), HasSubstr("its depth by up to 0.0004 m"));
 }
 
-TEST(FileSink, NothingIsToldWherePointsStayWithinATenthOfAMillimetre) {
+TEST(FileSink, RoundingBelowATenthOfAMillimetreCausesNoWarning) {
   for (const char* name : {"a.bin", "a.npy", "a.pcd"}) {
     EXPECT_EQ(told_of(name, 2000.0001, 2000.0001), "") << name;
     EXPECT_EQ(told_of(name, 4096.0, 4096.0), "") << name;
@@ -314,7 +314,7 @@ TEST(FileSink, NothingIsToldWherePointsStayWithinATenthOfAMillimetre) {
     EXPECT_EQ(told_of(name, 10000.0004, 10000.0004), "") << name;
 }
 
-TEST(FileSink, TwoSinksOfOnePathLeaveAWholeFile) {
+TEST(FileSink, ConcurrentSinksOfOnePathLeaveACompleteFile) {
   const testing::TestFolder folder;
   const CloudFixture small = make_fixture(2, 2);
   const CloudFixture large = make_fixture(200, 200);
@@ -329,7 +329,7 @@ TEST(FileSink, TwoSinksOfOnePathLeaveAWholeFile) {
   EXPECT_THAT(folder.names(), ElementsAre("a.bin", "a.bin.json"));
 }
 
-TEST(FileSink, PathsMayHoldSpacesAndAnyLetters) {
+TEST(FileSink, PathsMayContainSpacesAndAnyCharacters) {
   const testing::TestFolder folder;
   const std::string name = "größe mit leer — 点群 'q\".pcd";
   write_cloud(make_fixture(), folder / name);
@@ -338,7 +338,7 @@ TEST(FileSink, PathsMayHoldSpacesAndAnyLetters) {
   EXPECT_EQ(told.at("cloud").at("file"), name);
 }
 
-TEST(FileSink, ABareFileNameGoesToTheCurrentFolder) {
+TEST(FileSink, ABareFileNameIsWrittenToTheCurrentFolder) {
   const testing::TestFolder folder;
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder.path());
@@ -347,7 +347,7 @@ TEST(FileSink, ABareFileNameGoesToTheCurrentFolder) {
   EXPECT_THAT(folder.names(), ElementsAre("a.csv", "a.csv.json"));
 }
 
-TEST(FileSink, NoHitAtAllMakesValidDenseFiles) {
+TEST(FileSink, FramesWithoutHitsGiveValidDenseFiles) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture(2, 2);
   for (double& value : std::get<std::vector<double>>(made.cloud.columns[0].values))

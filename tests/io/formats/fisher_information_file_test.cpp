@@ -29,7 +29,7 @@ FisherInformation wall() {
   return pose_information(frame, beams, {.sigma_m = 0.03});
 }
 
-TEST(InformationFile, TableTellsBoundsAndWhatIsDegenerate) {
+TEST(InformationFile, TableListsBoundsAndDegenerateDirections) {
   const std::string text = information_text(wall());
   EXPECT_THAT(text, HasSubstr("pose information of 9 returns, sigma of ranges assumed: 0.03 m"));
   EXPECT_THAT(text, HasSubstr("translation along z  0.01 m"));  // 0.03 / sqrt(9)

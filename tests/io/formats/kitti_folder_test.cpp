@@ -24,7 +24,7 @@ std::vector<double> only_line(const std::string& labels) {
   return numbers;
 }
 
-TEST(KittiLabels, BoxesHoldAllPartsOfAMeshWithSeveralOrigins) {
+TEST(KittiLabels, BoxesContainAllPartsOfAMeshWithSeveralOrigins) {
   Scene scene;
   Mesh mesh;  // a corner at (0, 0, 0) and two near (100, 20, 4), each relative to its own origin
   mesh.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, 0}, {0, -1, 0}};

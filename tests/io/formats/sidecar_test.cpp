@@ -16,7 +16,7 @@ namespace {
 
 using testing::TestFolder;
 
-TEST(ReadSidecar, TellsHowTheCloudWasMade) {
+TEST(ReadSidecar, ReturnsTheOriginOfTheCloud) {
   const TestFolder folder;
   CloudFixture made = make_fixture();
   made.frame.number = 7;
@@ -37,7 +37,7 @@ TEST(ReadSidecar, TellsHowTheCloudWasMade) {
   EXPECT_EQ(sidecar.model_hashes.size(), made.scene.instances.size());
 }
 
-TEST(ReadSidecar, TellsNoCommandOfCloudsThatNoneMade) {
+TEST(ReadSidecar, HasNoCommandForCloudsWithoutOne) {
   const TestFolder folder;
   const CloudFixture made = make_fixture();
   const SidecarContext context = made.context();
@@ -45,7 +45,7 @@ TEST(ReadSidecar, TellsNoCommandOfCloudsThatNoneMade) {
   EXPECT_TRUE(read_sidecar(folder.path() / "x.pcd").command.arguments.empty());
 }
 
-TEST(FrameHash, ChangesWithWhatIsReportedAlone) {
+TEST(FrameHash, DependsOnTheMeasurementOnly) {
   Frame frame;
   frame.status = {Status::hit, Status::miss};
   frame.range_m = {2.0, std::nan("")};
@@ -71,7 +71,7 @@ std::string sidecar_error(const TestFolder& folder, const std::string& sidecar) 
   return "no error";
 }
 
-TEST(ReadSidecar, RefusesWhatIsNone) {
+TEST(ReadSidecar, RejectsOtherFiles) {
   const TestFolder folder;
   try {
     read_sidecar(folder.path() / "x.pcd");

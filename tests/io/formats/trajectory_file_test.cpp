@@ -50,7 +50,7 @@ TEST(TrajectoryFile, CsvNamesItsColumnsInAnyOrder) {
   EXPECT_EQ(poses.poses()[0].orientation.w(), 0.8);
 }
 
-TEST(TrajectoryFile, KittiHasTheRowsOfAMatrix) {
+TEST(TrajectoryFile, KittiPosesAreRowsOfAMatrix) {
   // a quarter turn about z: x goes to y
   const std::string rows = "1 0 0 5 0 1 0 6 0 0 1 7\n0 -1 0 1 1 0 0 2 0 0 1 3\n";
   const TimedPoses poses = load(rows, {.rate_hz = 10.0});
@@ -61,7 +61,7 @@ TEST(TrajectoryFile, KittiHasTheRowsOfAMatrix) {
   EXPECT_LT((last * Eigen::Vector3d::UnitX() - Eigen::Vector3d(1.0, 3.0, 3.0)).norm(), 1e-15);
 }
 
-TEST(TrajectoryFile, KittiTakesItsTimesFromAnotherFile) {
+TEST(TrajectoryFile, KittiTimesAreReadFromAnotherFile) {
   const TestFolder folder;
   const auto times = folder.write("times.txt", "0.000000e+00\n1.036000e-01\n");
   const auto file = folder.write("00.txt", "1 0 0 5 0 1 0 6 0 0 1 7\n1 0 0 1 0 1 0 2 0 0 1 3\n");
@@ -77,7 +77,7 @@ TEST(TrajectoryFile, KittiTakesItsTimesFromAnotherFile) {
             "back.txt:2:1: a time not after the one before; allowed: times that increase");
 }
 
-TEST(TrajectoryFile, StartMovesAllTimes) {
+TEST(TrajectoryFile, StartShiftsAllTimes) {
   const TimedPoses poses = load("100 0 0 0 0 0 0 1\n101.5 0 0 0 0 0 0 1\n", {.start_ns = 7});
   EXPECT_EQ(poses.first_ns(), 7);
   EXPECT_EQ(poses.last_ns(), 1'500'000'007);
@@ -92,7 +92,7 @@ TEST(TrajectoryFile, NumbersDoNotDependOnTheLocale) {
 
 class BadTrajectory : public ::testing::TestWithParam<BadFile> {};
 
-TEST_P(BadTrajectory, NamesPlaceAndCure) {
+TEST_P(BadTrajectory, IsReportedWithLocationAndRemedy) {
   const TestFolder folder;
   const auto file = folder.write("t", GetParam().content);
   EXPECT_EQ(error_of(folder, [&] { load_trajectory_file(file); }), GetParam().error);
@@ -147,7 +147,7 @@ const BadFile kBadTrajectories[] = {
 
 INSTANTIATE_TEST_SUITE_P(All, BadTrajectory, ::testing::ValuesIn(kBadTrajectories), bad_file_name);
 
-TEST(TrajectoryFileErrors, MatricesThatAreNoRotationsAreRefused) {
+TEST(TrajectoryFileErrors, MatricesThatAreNotRotationsAreRejected) {
   const TestFolder folder;
   const auto file = folder.write("k", "1 0 0 0 0 1 0 0 0 0 1 0\n2 0 0 0 0 1 0 0 0 0 1 0\n");
   EXPECT_EQ(error_of(folder, [&] { load_trajectory_file(file, {.rate_hz = 10.0}); }),
@@ -155,7 +155,7 @@ TEST(TrajectoryFileErrors, MatricesThatAreNoRotationsAreRefused) {
             "within 0.001");
 }
 
-TEST(TrajectoryFileErrors, ARateForAFileWithTimesIsRefused) {
+TEST(TrajectoryFileErrors, ARateForAFileWithTimesIsRejected) {
   const TestFolder folder;
   const auto file = folder.write("t", kGood);
   EXPECT_EQ(error_of(folder, [&] { load_trajectory_file(file, {.rate_hz = 10.0}); }),
@@ -163,7 +163,7 @@ TEST(TrajectoryFileErrors, ARateForAFileWithTimesIsRefused) {
             "omit them");
 }
 
-TEST(TrajectoryFileErrors, MissingFilesNameTheNearest) {
+TEST(TrajectoryFileErrors, MissingFilesAreReportedWithTheNearestName) {
   const TestFolder folder;
   (void)folder.write("orbit.tum", kGood);
   EXPECT_EQ(error_of(folder, [&] { load_trajectory_file(folder.path() / "orbt.tum"); }),
@@ -172,7 +172,7 @@ TEST(TrajectoryFileErrors, MissingFilesNameTheNearest) {
             "/dev/zero: not a regular file; allowed: a trajectory file");
 }
 
-TEST(TrajectoryFileErrors, HugeFilesAndRowsAreRefusedAtOnce) {
+TEST(TrajectoryFileErrors, HugeFilesAndRowsAreRejectedImmediately) {
   const TestFolder folder;
   const auto file = folder.write("huge", kGood);
   std::filesystem::resize_file(file, (std::uintmax_t{512} << 20U) + 1);

@@ -63,7 +63,7 @@ std::uint64_t hash(const Mesh& mesh) {
   return value;
 }
 
-TEST(BuiltinModels, EveryEdgeIsSharedByTwoTrianglesRunningOppositeWays) {
+TEST(BuiltinModels, EveryEdgeHasTwoTrianglesWithOppositeDirections) {
   for (const char* name : kClosed) {
     const Mesh& mesh = mesh_of(name);
     std::map<std::pair<Point, Point>, int> edges;
@@ -181,7 +181,7 @@ TEST(BuiltinModels, AsteroidIsAnElongatedRockAroundItsCentreOfVolume) {
 }
 
 // Golden values: models are the same bytes with every compiler, build type and machine.
-TEST(BuiltinModels, AreTheSameBytesEverywhere) {
+TEST(BuiltinModels, HaveTheSameBytesOnEveryMachine) {
   const std::map<std::string, std::uint64_t> golden = {{"asteroid", 0x345d0cbe2f2885c8U},
                                                        {"sphere", 0x9ac788fb862b5171U},
                                                        {"box", 0xb639d035e8732525U},
@@ -250,7 +250,7 @@ TEST(BuiltinModels, WrongSizesAreErrors) {
   }
 }
 
-TEST(BuiltinModels, UnknownNameIsToldWithTheNearestOne) {
+TEST(BuiltinModels, AnUnknownNameIsReportedWithTheNearestOne) {
   try {
     make_builtin_model("astroid");
     FAIL();

@@ -80,7 +80,7 @@ TEST(CreaseNormals, ASphereIsSmooth) {
   }
 }
 
-TEST(CreaseNormals, TheAngleDecides) {
+TEST(CreaseNormals, TheCreaseAngleSeparatesNormals) {
   Mesh below = fold(0.7);
   make_normals(below, 0.75);
   EXPECT_EQ(below.positions_m.size(), 6U);
@@ -103,7 +103,7 @@ TEST(CreaseNormals, TrianglesKeepTheirOrderAndPlaces) {
   }
 }
 
-TEST(CreaseNormals, SeamsOfUvsDoNotShow) {
+TEST(CreaseNormals, SeamsOfUvsDoNotAffectNormals) {
   Mesh mesh = fold(0.3);
   mesh.positions_m.push_back(mesh.positions_m[1]);  // the right square has vertices of its own
   mesh.positions_m.push_back(mesh.positions_m[2]);
@@ -125,7 +125,7 @@ TEST(CreaseNormals, DegenerateAndTinyTrianglesGiveFiniteUnitNormals) {
   EXPECT_GT(mesh.normals[0].z(), 0.99F);
 }
 
-TEST(CreaseNormals, AWheelOfVeryManyFacesIsDoneInTime) {
+TEST(CreaseNormals, AVertexWithVeryManyFacesIsProcessedInTime) {
   constexpr std::uint32_t kFaces = 200'000;
   Mesh mesh;
   mesh.positions_m.emplace_back(0.0F, 0.0F, 0.0F);
@@ -138,7 +138,7 @@ TEST(CreaseNormals, AWheelOfVeryManyFacesIsDoneInTime) {
   EXPECT_EQ(mesh.normals.size(), mesh.positions_m.size());
 }
 
-TEST(VertexWeld, MergesWhatIsTheSameAndDropsWhatIsUnused) {
+TEST(VertexWeld, MergesIdenticalVerticesAndRemovesUnusedOnes) {
   Mesh mesh;
   mesh.positions_m = {{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   mesh.triangles = {{1, 2, 3}, {4, 6, 5}};
@@ -148,7 +148,7 @@ TEST(VertexWeld, MergesWhatIsTheSameAndDropsWhatIsUnused) {
   EXPECT_EQ(mesh.triangles[1], (Triangle{1, 3, 2}));
 }
 
-TEST(VertexWeld, KeepsTheTiniestDifference) {
+TEST(VertexWeld, KeepsTheSmallestDifference) {
   Mesh mesh;
   mesh.positions_m = {{0, 0, 0}, {1e-42F, 0, 0}, {0, 1e-42F, 0}};
   mesh.triangles = {{0, 1, 2}};
@@ -180,7 +180,7 @@ TEST(Tangents, RunAlongU) {
   for (const Eigen::Vector4f& t : mesh.tangents) EXPECT_EQ(t, Eigen::Vector4f(1, 0, 0, 1));
 }
 
-TEST(Tangents, MirroredUvsTurnTheBitangent) {
+TEST(Tangents, MirroredUvsFlipTheBitangent) {
   Mesh mesh = mapped_square();
   for (Eigen::Vector2f& uv : mesh.uvs[0]) uv.x() = -uv.x();
   make_tangents(mesh, 0);
@@ -197,7 +197,7 @@ TEST(Tangents, ASeamBetweenMirroredHalvesIsSplit) {
   EXPECT_EQ(mesh.tangents[mesh.triangles[1][0]].w(), -1.0F);
 }
 
-TEST(Tangents, AreUnitAndSquareToTheNormalWithoutUvArea) {
+TEST(Tangents, AreUnitAndPerpendicularToTheNormalWithoutUvArea) {
   Mesh mesh = mapped_square();
   mesh.uvs[0].assign(4, {0.5F, 0.5F});
   make_tangents(mesh, 0);

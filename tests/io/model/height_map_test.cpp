@@ -28,7 +28,7 @@ Eigen::Vector3d normal_at(const HeightNormals& map, std::uint32_t row, std::uint
       .normalized();
 }
 
-TEST(HeightMap, ARampLeansAgainstItsRise) {
+TEST(HeightMap, NormalsOfARampTiltDownhill) {
   // Eight steps of 255 a column to the right: slope 8/255 inside; the border wraps and is steeper.
   const HeightNormals map = normals_from_heights(grey(16, 4, [](auto, auto c) { return 8 * c; }));
   const Eigen::Vector3d expected = Eigen::Vector3d(-8.0 / 255.0, 0.0, 1.0).normalized();
@@ -37,13 +37,13 @@ TEST(HeightMap, ARampLeansAgainstItsRise) {
   }
 }
 
-TEST(HeightMap, RowsRunDownAndYRunsUp) {
+TEST(HeightMap, RowsPointDownAndYUp) {
   const HeightNormals map = normals_from_heights(grey(4, 16, [](auto r, auto) { return 8 * r; }));
   const Eigen::Vector3d expected = Eigen::Vector3d(0.0, 8.0 / 255.0, 1.0).normalized();
   EXPECT_LT((normal_at(map, 8, 1) - expected).norm(), 4e-3);
 }
 
-TEST(HeightMap, TheGentlestSlopeSurvivesEightBits) {
+TEST(HeightMap, TheSmallestSlopeSurvivesQuantizationTo8Bits) {
   // One step of 255 over two texels everywhere but at the crest: slope 0.5/255 each.
   const HeightNormals map =
       normals_from_heights(grey(64, 2, [](auto, auto c) { return c < 32 ? c / 2 : (63 - c) / 2; }));
@@ -57,7 +57,7 @@ TEST(HeightMap, AFlatImageGivesFlatNormals) {
   EXPECT_GT(normal_at(map, 1, 1).z(), 0.9999);
 }
 
-TEST(HeightMap, NormalMapsAreToldFromHeights) {
+TEST(HeightMap, NormalMapsAreDistinguishedFromHeightMaps) {
   Texture normal_map{"n", 1, 1, 3, {128, 128, 255}};
   EXPECT_TRUE(looks_like_normal_map(normal_map));
   const Texture white{"w", 1, 1, 3, {255, 255, 255}};

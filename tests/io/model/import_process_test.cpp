@@ -45,12 +45,12 @@ class ImportProcess : public ::testing::Test {
   TestFolder temp_;
 };
 
-TEST_F(ImportProcess, ASignalIsNamed) {
+TEST_F(ImportProcess, ACrashIsReportedWithItsSignal) {
   const std::string text = error(with_script("kill -ABRT $$"));
   EXPECT_THAT(text, HasSubstr("a.obj: the import process crashed (signal SIGABRT, Aborted)"));
 }
 
-TEST_F(ImportProcess, AHangIsEnded) {
+TEST_F(ImportProcess, AHangingProcessIsKilled) {
   ImportRequest request = with_script("exec sleep 3600");
   request.time_limit_s = 0.3;
   const ImportRun run = run_import(request, {});
@@ -59,14 +59,14 @@ TEST_F(ImportProcess, AHangIsEnded) {
   EXPECT_THAT(error(request), HasSubstr("took longer than 0.3 s"));
 }
 
-TEST_F(ImportProcess, SilenceAndGarbageAreErrors) {
+TEST_F(ImportProcess, MissingAndMalformedAnswersAreErrors) {
   EXPECT_THAT(error(with_script("exit 0")), HasSubstr("malformed answer"));
   EXPECT_THAT(error(with_script("head -c 500 /dev/zero >&3")), HasSubstr("malformed answer"));
   EXPECT_THAT(error(with_script("exit 2")), HasSubstr("without an answer"));
   EXPECT_THAT(error(with_script("exit 3")), HasSubstr("more memory than 1024 MiB"));
 }
 
-TEST_F(ImportProcess, ItsWordsGoNowhere) {
+TEST_F(ImportProcess, ItsOutputIsDiscarded) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   const std::string text = error(with_script("echo noise; echo noise >&2"));
@@ -75,7 +75,7 @@ TEST_F(ImportProcess, ItsWordsGoNowhere) {
   EXPECT_THAT(text, HasSubstr("malformed answer"));
 }
 
-TEST_F(ImportProcess, NoOtherDescriptorIsHandedOn) {
+TEST_F(ImportProcess, NoOtherDescriptorIsInherited) {
   const fs::path list = temp_.path() / "fds";
   const int leaky = ::dup(0);  // without close-on-exec
   error(with_script("ls /proc/$$/fd > " + list.string()));
@@ -85,7 +85,7 @@ TEST_F(ImportProcess, NoOtherDescriptorIsHandedOn) {
   for (int fd = 0; fds >> fd;) EXPECT_TRUE(fd <= 4 || fd >= 10) << fd;
 }
 
-TEST_F(ImportProcess, ProgressIsToldWhenItTakesLong) {
+TEST_F(ImportProcess, LongLoadsReportProgress) {
   const std::string pipe = (temp_.path() / "pipe").string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
   // '2' is 50; the script ends once somebody writes to the pipe
@@ -114,7 +114,7 @@ TEST_F(ImportProcess, FastLoadsShowNoProgress) {
   EXPECT_TRUE(calls == 0 || run.seconds > kFast_s);
 }
 
-TEST_F(ImportProcess, TheEndIsSeenThoughAChildOfItKeepsThePipe) {
+TEST_F(ImportProcess, TheEndIsDetectedWhileAChildKeepsThePipe) {
   const std::string child = (temp_.path() / "child").string();
   const ImportRun run = run_import(with_script("sleep 3600 & echo $! > " + child + "; exit 2"), {});
   ::kill(static_cast<pid_t>(std::stol(testing::read_file(child))), SIGKILL);
@@ -129,7 +129,7 @@ TEST(ImportLimits, GrowWithTheFile) {
   EXPECT_EQ(default_memory_limit(100 * kMiB), 4000 * kMiB);
 }
 
-TEST(ImportLimits, ManyAtOnceDoNotMix) {
+TEST(ImportLimits, ConcurrentImportsDoNotMix) {
   const TestFolder temp;
   std::vector<std::thread> threads;
   std::vector<std::size_t> counts(8);

@@ -63,7 +63,7 @@ ImportedModel from_bytes(const std::string& bytes) {
   return read_model(frame);
 }
 
-TEST(MeshBlob, EveryFieldComesBack) {
+TEST(MeshBlob, EveryFieldSurvivesARoundTrip) {
   const ImportedModel before = example();
   const ImportedModel after = from_bytes(bytes_of(before));
   EXPECT_EQ(bytes_of(after), bytes_of(before));
@@ -76,7 +76,7 @@ TEST(MeshBlob, EveryFieldComesBack) {
   EXPECT_EQ(after.lookups, before.lookups);
 }
 
-TEST(MeshBlob, LargeArraysComeBack) {
+TEST(MeshBlob, LargeArraysSurviveARoundTrip) {
   ImportedModel imported = example();
   imported.model.mesh.positions_m.assign(100'000, {1.0F, 2.0F, 3.0F});
   imported.model.mesh.normals.clear();
@@ -91,7 +91,7 @@ TEST(MeshBlob, TruncationAnywhereIsAnError) {
   }
 }
 
-TEST(MeshBlob, AFlippedBitAnywhereIsAnError) {
+TEST(MeshBlob, AFlippedBitIsAnError) {
   const std::string whole = bytes_of(example());
   for (std::size_t i = 0; i < whole.size(); ++i) {
     std::string damaged = whole;
@@ -101,7 +101,7 @@ TEST(MeshBlob, AFlippedBitAnywhereIsAnError) {
 }
 
 // A process led astray writes a sound frame around an unsound model.
-TEST(MeshBlob, UnsoundModelsAreRefusedThoughTheChecksumFits) {
+TEST(MeshBlob, InvalidModelsAreRejectedDespiteAValidChecksum) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<void (*)(Model&)> harms = {
       [](Model& m) { m.mesh.triangles[0][2] = 4; },
@@ -142,7 +142,7 @@ TEST(MeshBlob, UnsoundModelsAreRefusedThoughTheChecksumFits) {
   EXPECT_THROW(from_bytes(bytes_of(imported)), Error);
 }
 
-TEST(MeshBlob, CountsBeyondTheDataTakeNoMemory) {
+TEST(MeshBlob, CountsBeyondTheDataAllocateNoMemory) {
   const UniqueFd fd = memory_file();
   FrameWriter writer(fd.get(), FrameKind::failure);
   const std::uint64_t absurd = std::numeric_limits<std::uint64_t>::max();
@@ -153,7 +153,7 @@ TEST(MeshBlob, CountsBeyondTheDataTakeNoMemory) {
   EXPECT_THROW(read_failure(frame), Error);
 }
 
-TEST(MeshBlob, OneKindOfFrameIsNotTakenForAnother) {
+TEST(MeshBlob, FramesOfAnotherTypeAreRejected) {
   const UniqueFd fd = memory_file();
   write_failure(fd.get(), {"found", "remedy"});
   rewind(fd);
@@ -162,7 +162,7 @@ TEST(MeshBlob, OneKindOfFrameIsNotTakenForAnother) {
   EXPECT_THROW(read_model(frame), Error);
 }
 
-TEST(MeshBlob, FramesFollowEachOtherInOneFile) {
+TEST(MeshBlob, AFileCanContainSeveralFrames) {
   const UniqueFd fd = memory_file();
   write_failure(fd.get(), {"first", "a"});
   write_failure(fd.get(), {"second", "b"});

@@ -38,7 +38,7 @@ std::string bytes(const Model& model) {
   return testing::read_file(file);
 }
 
-TEST_F(ModelCache, TheSecondLoadIsTheSameModel) {
+TEST_F(ModelCache, TheSecondLoadGivesTheSameModel) {
   const Model first = load();
   const Model second = load();
   EXPECT_FALSE(first.from_cache);
@@ -49,7 +49,7 @@ TEST_F(ModelCache, TheSecondLoadIsTheSameModel) {
   EXPECT_EQ(cache_files(), 1U);
 }
 
-TEST_F(ModelCache, SwitchedOffItIsNeitherReadNorWritten) {
+TEST_F(ModelCache, TheDisabledCacheIsNeitherReadNorWritten) {
   options_.use_cache = false;
   const Model model = load();
   EXPECT_FALSE(fs::exists(options_.cache_folder));
@@ -59,7 +59,7 @@ TEST_F(ModelCache, SwitchedOffItIsNeitherReadNorWritten) {
   EXPECT_FALSE(load().from_cache);
 }
 
-TEST_F(ModelCache, AnyChangedFileVoidsIt) {
+TEST_F(ModelCache, AnyChangedFileInvalidatesTheEntry) {
   const std::string before = load().hash;
   temp_.write("paint.ppm", testing::ppm(1, 1, "xyz"));
   const Model repainted = load();
@@ -74,7 +74,7 @@ TEST_F(ModelCache, AnyChangedFileVoidsIt) {
   EXPECT_EQ(load().mesh.triangles.size(), 3U);
 }
 
-TEST_F(ModelCache, ATextureThatAppearsVoidsIt) {
+TEST_F(ModelCache, ATextureThatAppearsInvalidatesTheEntry) {
   EXPECT_EQ(load().missing_textures.size(), 1U);
   temp_.write("shine.ppm", testing::ppm(1, 1, "abc"));
   const Model model = load();
@@ -82,13 +82,13 @@ TEST_F(ModelCache, ATextureThatAppearsVoidsIt) {
   EXPECT_TRUE(model.missing_textures.empty());
 }
 
-TEST_F(ModelCache, ATextureThatAppearsInOtherCaseVoidsIt) {
+TEST_F(ModelCache, ATextureThatAppearsInOtherCaseInvalidatesTheEntry) {
   EXPECT_EQ(load().missing_textures.size(), 1U);
   temp_.write("SHINE.PPM", testing::ppm(1, 1, "abc"));
   EXPECT_TRUE(load().missing_textures.empty());
 }
 
-TEST_F(ModelCache, AMaterialFileThatAppearsVoidsIt) {
+TEST_F(ModelCache, AMaterialFileThatAppearsInvalidatesTheEntry) {
   const fs::path bare = temp_.write("b.obj", testing::quad_obj("b.mtl"));
   EXPECT_NE(testing::load(bare, options_).materials.at(0).diffuse, Eigen::Vector3f(0, 1, 0));
   EXPECT_TRUE(testing::load(bare, options_).from_cache);
@@ -96,13 +96,13 @@ TEST_F(ModelCache, AMaterialFileThatAppearsVoidsIt) {
   EXPECT_EQ(testing::load(bare, options_).materials.at(0).diffuse, Eigen::Vector3f(0, 1, 0));
 }
 
-TEST_F(ModelCache, ATextureThatGoesAwayVoidsIt) {
+TEST_F(ModelCache, ARemovedTextureInvalidatesTheEntry) {
   EXPECT_EQ(load().textures.size(), 1U);
   fs::remove(temp_.path() / "paint.ppm");
   EXPECT_EQ(load().textures.size(), 0U);
 }
 
-TEST_F(ModelCache, OptionsThatShapeTheModelHaveTheirOwnEntries) {
+TEST_F(ModelCache, OptionsThatAffectTheModelHaveSeparateEntries) {
   load();
   options_.crease_angle_rad = 0.1;
   EXPECT_FALSE(load().from_cache);
@@ -112,7 +112,7 @@ TEST_F(ModelCache, OptionsThatShapeTheModelHaveTheirOwnEntries) {
   EXPECT_TRUE(load().from_cache);
 }
 
-TEST_F(ModelCache, ADamagedFileIsMadeAnew) {
+TEST_F(ModelCache, ACorruptFileIsReplaced) {
   load();
   const std::string whole = testing::read_file(cache_file());
   for (const std::size_t size :
@@ -128,7 +128,7 @@ TEST_F(ModelCache, ADamagedFileIsMadeAnew) {
   EXPECT_EQ(testing::read_file(cache_file()), whole);
 }
 
-TEST_F(ModelCache, AnotherImporterMakesItAnew) {
+TEST_F(ModelCache, AnotherImporterInvalidatesTheEntry) {
   load();
   auto entry = cache_entry(fs::canonical(file_), options_, {});
   ASSERT_TRUE(entry);
@@ -137,7 +137,7 @@ TEST_F(ModelCache, AnotherImporterMakesItAnew) {
   EXPECT_FALSE(read_cache(*entry, fs::canonical(file_)).has_value());
 }
 
-TEST_F(ModelCache, AnUpgradedImporterLibraryMakesItAnew) {
+TEST_F(ModelCache, AnUpgradedImporterLibraryInvalidatesTheEntry) {
   load();
   std::FILE* opened = std::fopen(cache_file().c_str(), "rb");
   FrameReader frame(::fileno(opened));
@@ -161,7 +161,7 @@ TEST_F(ModelCache, AnUpgradedImporterLibraryMakesItAnew) {
   EXPECT_FALSE(load().from_cache);
 }
 
-TEST_F(ModelCache, AFolderThatCannotBeWrittenIsOnlyTold) {
+TEST_F(ModelCache, AnUnwritableFolderCausesOnlyAWarning) {
   cache_.write("models", "a file in its place");
   std::string told;
   const Report report{[&told](Severity, std::string_view text) { told += text; }, {}};
@@ -171,7 +171,7 @@ TEST_F(ModelCache, AFolderThatCannotBeWrittenIsOnlyTold) {
 }
 
 /// A cache entry is one piece: the index of one model and the mesh of another are no model.
-TEST_F(ModelCache, PartsOfTwoEntriesAreNoEntry) {
+TEST_F(ModelCache, MixedPartsOfTwoEntriesAreRejected) {
   const fs::path other = temp_.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   load();
   const std::string own_name = entry_name();
@@ -196,7 +196,7 @@ TEST_F(ModelCache, PartsOfTwoEntriesAreNoEntry) {
 
 /// Replaces the model by another file while the import process runs: the script moves it there once
 /// the true import program has answered.
-TEST_F(ModelCache, AFileThatIsReplacedWhileItIsReadIsNotCached) {
+TEST_F(ModelCache, AFileReplacedDuringTheImportIsNotCached) {
   const std::string importer = import_program().string();
   const fs::path script = temp_.write(
       "import", "#!/bin/sh\n'" + importer + "' \"$1\" \"$2\" \"$3\" \"$4\" $$\n" + "code=$?\nmv '" +
@@ -222,7 +222,7 @@ TEST_F(ModelCache, AFileThatIsReplacedWhileItIsReadIsNotCached) {
 }
 
 /// A malicious model may compromise the import process, which then returns arbitrary data.
-TEST_F(ModelCache, TheWordOfTheImportProcessAloneStoresNothing) {
+TEST_F(ModelCache, UnverifiedHashesOfTheImportProcessAreNotCached) {
   ImportedModel imported;
   imported.files = {file_.string()};
   imported.hashes = {std::string(32, '0')};
@@ -239,7 +239,7 @@ TEST_F(ModelCache, TheWordOfTheImportProcessAloneStoresNothing) {
   EXPECT_THROW(changed_file(imported, file_), Error);
 }
 
-TEST_F(ModelCache, TwoAtOnceBothGetTheModel) {
+TEST_F(ModelCache, ConcurrentLoadsBothGetTheModel) {
   std::vector<std::thread> threads;
   std::vector<std::string> hashes(4);
   for (std::string& hash : hashes) threads.emplace_back([&] { hash = load().hash; });
@@ -249,7 +249,7 @@ TEST_F(ModelCache, TwoAtOnceBothGetTheModel) {
   EXPECT_TRUE(load().from_cache);
 }
 
-TEST_F(ModelCache, TheHashIsThatOfTheContentNotOfThePlace) {
+TEST_F(ModelCache, TheHashDependsOnContentsAndNotOnPaths) {
   const std::string here = load().hash;
   const TestFolder other;
   fs::copy(temp_.path(), other.path(), fs::copy_options::recursive);

@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(ModelReport, ABoxMeasuresWhatItIs) {
+TEST(ModelReport, ABoxHasItsSizes) {
   const ModelReport report = inspect(make_builtin_model("box"));
   EXPECT_EQ(report.triangles, 12U);
   EXPECT_EQ(report.size_m, Eigen::Vector3d(2.0, 2.0, 2.0));
@@ -27,13 +27,13 @@ TEST(ModelReport, ABoxMeasuresWhatItIs) {
   EXPECT_EQ(report.check.duplicate_triangles, 0U);
 }
 
-TEST(ModelReport, VolumeHoldsFarFromZero) {
+TEST(ModelReport, VolumeIsPreciseFarFromZero) {
   Model model = make_builtin_model("box");
   model.mesh.origin_m = {1e9, -1e9, 1e9};
   EXPECT_NEAR(inspect(model).check.signed_volume_m3, 8.0, 1e-4);
 }
 
-TEST(ModelReport, AHoleOpensIt) {
+TEST(ModelReport, AHoleMakesTheMeshOpen) {
   Model model = make_builtin_model("sphere");
   model.mesh.triangles.pop_back();
   const ModelReport report = inspect(model);
@@ -42,13 +42,13 @@ TEST(ModelReport, AHoleOpensIt) {
   EXPECT_EQ(report.winding, Winding::undecided);
 }
 
-TEST(ModelReport, TurnedInsideOutIsInward) {
+TEST(ModelReport, AnInvertedMeshIsInward) {
   Model model = make_builtin_model("torus");
   for (Triangle& t : model.mesh.triangles) std::swap(t[1], t[2]);
   EXPECT_EQ(inspect(model).winding, Winding::inward);
 }
 
-TEST(ModelReport, OneTurnedTriangleIsInconsistent) {
+TEST(ModelReport, OneFlippedTriangleMakesTheWindingInconsistent) {
   Model model = make_builtin_model("sphere");
   std::swap(model.mesh.triangles[7][0], model.mesh.triangles[7][1]);
   const ModelReport report = inspect(model);
@@ -56,7 +56,7 @@ TEST(ModelReport, OneTurnedTriangleIsInconsistent) {
   EXPECT_EQ(report.check.inconsistent_edges, 3U);
 }
 
-TEST(ModelReport, CountsWhatIsWrong) {
+TEST(ModelReport, CountsMeshDefects) {
   Model model;
   model.materials.resize(1);
   // 3 has the position of 0, 4 is unused, 5 is between 0 and 1
@@ -95,7 +95,7 @@ TEST(ModelReport, ListsAHeightMapAndItsNormalMapAsOneImage) {
   EXPECT_EQ(report.textures[1].name, "other.png");
 }
 
-TEST(ModelReport, AnEmptyMeshIsToldNotCrashed) {
+TEST(ModelReport, AnEmptyMeshIsReportedWithoutACrash) {
   const ModelReport report = inspect(Model{});
   EXPECT_EQ(report.triangles, 0U);
   EXPECT_FALSE(report.closed);

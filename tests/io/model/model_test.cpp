@@ -31,7 +31,7 @@ Eigen::Vector3d front(const Mesh& mesh, std::size_t t) {
   return (place(mesh, t, 1) - place(mesh, t, 0)).cross(place(mesh, t, 2) - place(mesh, t, 0));
 }
 
-TEST(LoadModel, ReadsPositionsAndOrderAsTheyStand) {
+TEST(LoadModel, ReadsPositionsAndTheirOrderUnchanged) {
   const TestFolder temp;
   const Model model = load(temp.write("a.obj", kTriangle));
   ASSERT_EQ(model.mesh.triangles.size(), 1U);
@@ -46,7 +46,7 @@ TEST(LoadModel, ReadsPositionsAndOrderAsTheyStand) {
   EXPECT_NO_THROW(validate(model.mesh));
 }
 
-TEST(LoadModel, NothingOfCoordinatesFarFromZeroIsLost) {
+TEST(LoadModel, CoordinatesFarFromZeroKeepTheirPrecision) {
   const TestFolder temp;
   const Model model = load(temp.write(
       "far.obj", "v 1000000.125 7 -3\nv 1000001.25 7 -3\nv 1000000.125 8.5 -3\nf 1 2 3\n"));
@@ -55,7 +55,7 @@ TEST(LoadModel, NothingOfCoordinatesFarFromZeroIsLost) {
   EXPECT_LT(std::abs(model.mesh.positions_m[0].x()), 2.0F);
 }
 
-TEST(LoadModel, AnAxisTurnedUpIsAnExactExchange) {
+TEST(LoadModel, ChangingTheUpAxisIsAnExactPermutation) {
   const TestFolder temp;
   const fs::path file = temp.write("a.obj", "v 1 2 3\nv 4 2 3\nv 1 7 9\nf 1 2 3\n");
   ModelOptions options = without_cache();
@@ -83,7 +83,7 @@ TEST(LoadModel, UnitsScale) {
   EXPECT_EQ(bounds(load_model("builtin:box", options, {}).mesh).sizes(), Eigen::Vector3d(4, 4, 4));
 }
 
-TEST(LoadModel, CentreMovesTheMiddleOfTheBoxToTheOriginExactly) {
+TEST(LoadModel, CentreMovesTheBoxCentreToTheOriginExactly) {
   const TestFolder temp;
   ModelOptions options = without_cache();
   const auto file = temp.write("a.obj", "v 1000.1 2 3\nv 1004.1 2 3\nv 1000.1 7 9\nf 1 2 3\n");
@@ -95,7 +95,7 @@ TEST(LoadModel, CentreMovesTheMiddleOfTheBoxToTheOriginExactly) {
   EXPECT_EQ(Eigen::Vector3d(plain.origin_m - centred.origin_m), bounds(plain).center());
 }
 
-TEST(LoadModel, ImpossibleOptionsAreErrors) {
+TEST(LoadModel, InvalidOptionsAreErrors) {
   for (const double bad : {0.0, -1.0, std::nan(""), double{INFINITY}}) {
     ModelOptions options = without_cache();
     options.metres_per_unit = bad;
@@ -118,7 +118,7 @@ TEST(LoadModel, HugeNumbersInErrorsAreShort) {
   EXPECT_LT(load_error("builtin:box", options).size(), 120U);
 }
 
-TEST(LoadModel, NodesAreAppliedAndMirrorsKeepTheirFronts) {
+TEST(LoadModel, NodeTransformsAreAppliedAndMirrorsKeepTheirFronts) {
   const TestFolder temp;
   const Model model = load(temp.write(
       "a.gltf",
@@ -134,7 +134,7 @@ TEST(LoadModel, NodesAreAppliedAndMirrorsKeepTheirFronts) {
   for (const Eigen::Vector3f& n : model.mesh.normals) EXPECT_EQ(n, Eigen::Vector3f::UnitZ());
 }
 
-TEST(LoadModel, NotANumberIsLeftOutAndTold) {
+TEST(LoadModel, PartsWithNaNAreOmittedAndReported) {
   const TestFolder temp;
   const Model model =
       load(temp.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 1 1\nf 1 2 4\nf 1 2 3\n"));
@@ -170,7 +170,7 @@ TEST(LoadModel, MaterialsTexturesAndTheirOptions) {
   EXPECT_THAT(told, HasSubstr("gone.ppm"));
 }
 
-TEST(LoadModel, AnOpacityTextureCutsOut) {
+TEST(LoadModel, AnOpacityTextureBecomesACutOut) {
   const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\nmap_d mask.tga\n");
   temp.write("mask.tga", testing::tga(2, 2, std::string("\x10\x20\x30\x40", 4)));
@@ -181,7 +181,7 @@ TEST(LoadModel, AnOpacityTextureCutsOut) {
   EXPECT_NEAR(opacity_at(m, model.textures, {0.5F, 0.5F}), 64.0F / 255.0F, 1e-6F);
 }
 
-TEST(LoadModel, AnAlphaThatSaysNothingIsDropped) {
+TEST(LoadModel, AConstantOpaqueAlphaIsDropped) {
   const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\nmap_Kd opaque.tga\n");
   temp.write("opaque.tga", testing::tga(2, 2, std::string("\x10\x20\x30\xff", 4)));
@@ -207,7 +207,7 @@ TEST(LoadModel, ABumpMapBecomesANormalMap) {
   EXPECT_EQ(model.mesh.tangents.size(), model.mesh.positions_m.size());
 }
 
-TEST(LoadModel, ANormalMapUnderABumpKeyIsTakenAsItIs) {
+TEST(LoadModel, ANormalMapUnderABumpKeyIsUsedUnchanged) {
   const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\nmap_bump n.ppm\n");
   temp.write("n.ppm", testing::ppm(2, 2, "\x80\x80\xff"));
@@ -217,7 +217,7 @@ TEST(LoadModel, ANormalMapUnderABumpKeyIsTakenAsItIs) {
   EXPECT_TRUE(model.materials.at(0).normal_texture.used());
 }
 
-TEST(LoadModel, GltfMaterialsFollowTheWrittenRule) {
+TEST(LoadModel, GltfMaterialsFollowTheDocumentedConversion) {
   const TestFolder temp;
   const Model model = load(temp.write(
       "a.gltf",
@@ -292,14 +292,14 @@ TEST(LoadModel, TexturesInsideTheFileAreRead) {
   EXPECT_EQ(model.textures[0].texels, (std::vector<std::uint8_t>{1, 2, 3}));
 }
 
-TEST(LoadModel, UvsRunUpwards) {
+TEST(LoadModel, UvsPointUpwards) {
   const TestFolder temp;
   const Model model = load(temp.write("a.gltf", gltf(R"([{"mesh":0}])")));
   // In the file v runs down: the corner at (0, 0) is the top left of the image.
   EXPECT_EQ(model.mesh.uvs[0].at(model.mesh.triangles[0][0]), Eigen::Vector2f(0.0F, 1.0F));
 }
 
-TEST(LoadModel, FilesThatAreNoModelsSaySo) {
+TEST(LoadModel, FilesThatAreNotModelsAreReported) {
   const TestFolder temp;
   EXPECT_THAT(load_error((temp.path() / "asteriod.obj").string()), HasSubstr("cannot be opened"));
   temp.write("asteroid.obj", kTriangle);
@@ -314,7 +314,7 @@ TEST(LoadModel, FilesThatAreNoModelsSaySo) {
   EXPECT_THAT(load_error("builtin:sphre"), HasSubstr("sphere"));
 }
 
-TEST(LoadModel, LimitsAreKept) {
+TEST(LoadModel, LimitsAreEnforced) {
   GLIDAR_SKIP_SANITIZED();
   const TestFolder temp;
   const std::string file = temp.write("a.obj", kTriangle).string();

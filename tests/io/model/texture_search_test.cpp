@@ -75,7 +75,7 @@ TEST(TextureSearch, ModelConfigMarksAPackage) {
             file.string());
 }
 
-TEST(TextureSearch, GoesUpBehindALinkAsTheSystemDoes) {
+TEST(TextureSearch, ResolvesParentsOfLinksLikeTheSystem) {
   const TestFolder temp;
   temp.write("deep/inner/x", "x");
   temp.write("wood.png", "wrong");
@@ -87,7 +87,7 @@ TEST(TextureSearch, GoesUpBehindALinkAsTheSystemDoes) {
   EXPECT_EQ(confine("link/../../../secret.png", folder).access, Access::outside);
 }
 
-TEST(TextureSearch, ALinkThatLeadsOutIsRefusedOnTheWayUpToo) {
+TEST(TextureSearch, LinksOutOfTheRootAreRejectedInParentPathsToo) {
   const TestFolder temp;
   temp.write("elsewhere/inner/x", "x");
   temp.write("elsewhere/secret.png", "x");
@@ -105,7 +105,7 @@ TEST(TextureSearch, NothingOutsideTheRootIsFound) {
   EXPECT_THAT(lookup.reason, ::testing::StartsWith("outside the model's folder"));
 }
 
-TEST(TextureSearch, ALinkOutOfTheRootIsRefused) {
+TEST(TextureSearch, ALinkOutOfTheRootIsRejected) {
   const TestFolder temp;
   temp.write("secret.png", "x");
   const fs::path model = temp.write("inner/a.obj", "x");
@@ -115,14 +115,14 @@ TEST(TextureSearch, ALinkOutOfTheRootIsRefused) {
               ::testing::StartsWith("outside the model's folder"));
 }
 
-TEST(TextureSearch, FoldersAndDevicesAreNoTextures) {
+TEST(TextureSearch, FoldersAndDevicesAreNotAcceptedAsTextures) {
   const TestFolder temp;
   fs::create_directory(temp.path() / "a.png");
   EXPECT_EQ(find_texture("a.png", {temp.path(), temp.path(), {}}).reason, "not a file");
   EXPECT_EQ(find_texture("/dev/zero", {temp.path(), temp.path(), {}}).found, "");
 }
 
-TEST(TextureSearch, OddNamesAreMissingWithAReason) {
+TEST(TextureSearch, InvalidNamesAreMissingWithAReason) {
   const TestFolder temp;
   const ModelFolder folder{temp.path(), temp.path(), {}};
   for (const std::string& name :

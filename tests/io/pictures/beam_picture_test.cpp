@@ -60,7 +60,7 @@ std::vector<double> no_returns(const Beams& beams) {
   return std::vector<double>(beams.size(), kNan);
 }
 
-TEST(BeamPicture, ShowsAnUprightEdgeUpright) {
+TEST(BeamPicture, ShowsAVerticalEdgeVertical) {
   const Beams beams = staggered(12.0);
   const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
   ASSERT_EQ(picture.kind, BeamPicture::Kind::grid);
@@ -73,7 +73,7 @@ TEST(BeamPicture, ShowsAnUprightEdgeUpright) {
   EXPECT_LT(widest_column_deg(picture, beams), 0.5) << "half a column";
 }
 
-TEST(BeamPicture, HasEveryBeamOfAWholeTurnOnce) {
+TEST(BeamPicture, ContainsEveryBeamOfAFullRotationOnce) {
   const Beams beams = staggered(7.3);
   const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
   const std::set<std::uint32_t> shown(picture.beams.begin(), picture.beams.end());
@@ -83,7 +83,7 @@ TEST(BeamPicture, HasEveryBeamOfAWholeTurnOnce) {
   EXPECT_EQ(picture.right, -180.0);
 }
 
-TEST(BeamPicture, HasLeftOnTheLeftWhateverTheTurn) {
+TEST(BeamPicture, ShowsLeftOnTheLeftForBothRotationDirections) {
   for (const double step_deg : {-1.0, 1.0}) {
     const Beams beams = staggered(3.0, 360, step_deg);
     const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
@@ -93,7 +93,7 @@ TEST(BeamPicture, HasLeftOnTheLeftWhateverTheTurn) {
   }
 }
 
-TEST(BeamPicture, OfASectorIsAsWideAsAllRowsTogether) {
+TEST(BeamPicture, CoversAllRowsOfASector) {
   const Beams beams = staggered(10.0, 60);
   const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
   EXPECT_EQ(picture.cols, 70U);
@@ -103,7 +103,7 @@ TEST(BeamPicture, OfASectorIsAsWideAsAllRowsTogether) {
   EXPECT_NEAR(picture.left, 10.5, 1e-9);
 }
 
-TEST(BeamPicture, HasEveryBeamOfASectorOnceForAnyShiftOfRows) {
+TEST(BeamPicture, ContainsEveryBeamOfASectorOnceForAnyRowShift) {
   // half a step is the edge: the roundings of two rows differ there
   for (const double step_deg : {-1.0, 1.0, -360.0 / 512.0}) {
     for (const double steps : {-3.5, -0.5, 0.25, 0.5, 1.5, 2.5, 17.49999, 17.5, 17.50001}) {
@@ -128,7 +128,7 @@ Sensor sector_sensor(const std::string& optics) {
       "}\n");
 }
 
-TEST(BeamPicture, OfASectorThatTheHeadEntersInTheMiddleIsOneGrid) {
+TEST(BeamPicture, ASectorThatStartsInTheMiddleIsOneGrid) {
   const Sensor sensor =
       sector_sensor("elevation_deg: [4, 2, 0], azimuth_range: {from_deg: -60, to_deg: 60}");
   const Beams beams = make_beams(sensor);
@@ -145,7 +145,7 @@ TEST(BeamPicture, OfASectorThatTheHeadEntersInTheMiddleIsOneGrid) {
   }
 }
 
-TEST(BeamPicture, OfAStaggeredSectorIsDrawnWhole) {
+TEST(BeamPicture, ShowsAStaggeredSectorCompletely) {
   const Sensor sensor = sector_sensor(
       "elevation_deg: [1, -1], azimuth_left_deg: [0, -0.5], start_azimuth_deg: 30, azimuth_range: "
       "{from_deg: 0, to_deg: 30}");
@@ -163,7 +163,7 @@ TEST(BeamPicture, PutsTheHighestRowOnTop) {
   EXPECT_NEAR(picture.row_elevations_deg.at(0), 5.0, 1e-9);
 }
 
-TEST(BeamPicture, OfOusterIsUpright) {
+TEST(BeamPicture, ShowsOusterUpright) {
   const Sensor sensor = load_sensor_file(find_sensor_file("OS1-128"));
   const Beams beams = make_beams(sensor);
   const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
@@ -174,7 +174,7 @@ TEST(BeamPicture, OfOusterIsUpright) {
   EXPECT_LT(widest_column_deg(picture, beams), 360.0 / 1024.0 + 1e-6);
 }
 
-TEST(BeamPicture, OfACameraIsItsPixels) {
+TEST(BeamPicture, ShowsThePixelsOfACamera) {
   const Beams beams = make_beams(pinhole_from_fov(4, 3, 0.5));
   const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
   EXPECT_EQ(picture.kind, BeamPicture::Kind::image);
@@ -200,7 +200,7 @@ std::size_t pixel_at(const BeamPicture& picture, double across, double up) {
   return static_cast<std::size_t>(y) * picture.cols + static_cast<std::size_t>(x);
 }
 
-TEST(BeamPicture, PutsScatteredBeamsWhereTheyLook) {
+TEST(BeamPicture, ShowsScatteredBeamsAtTheirDirections) {
   const Beams beams = scattered();
   const std::vector<double> range_m = {5.0, 7.0, 6.0};
   const BeamPicture picture = make_beam_picture(beams, range_m);
@@ -218,7 +218,7 @@ TEST(BeamPicture, PrefersReturnsToMisses) {
   EXPECT_EQ(picture.beam_at(pixel_at(picture, -20.0, -10.0)), 1U);
 }
 
-TEST(BeamPicture, OfAScannerOfOneLineIsFromAbove) {
+TEST(BeamPicture, ShowsASingleLineScannerFromAbove) {
   Beams beams;
   beams.rows = 1;
   beams.cols = 3;
@@ -233,7 +233,7 @@ TEST(BeamPicture, OfAScannerOfOneLineIsFromAbove) {
   EXPECT_EQ(picture.beam_at(pixel_at(picture, 0.0, 2.0)), 1U);
 }
 
-TEST(BeamPicture, OfAScannerThatSeesNothingHasASize) {
+TEST(BeamPicture, HasASizeForAScannerWithoutReturns) {
   Beams beams;
   beams.rows = beams.cols = 1;
   beams.boresight = Eigen::Vector3d::UnitX();

@@ -30,7 +30,7 @@ TEST(ColourScale, HasTheExtremesOfEvenValues) {
   EXPECT_FALSE(scale.clips_high);
 }
 
-TEST(ColourScale, LeavesOneFarEchoOut) {
+TEST(ColourScale, IgnoresOneDistantOutlier) {
   std::vector<double> values = counted(1001);
   values[17] = 1e6;
   const ColourScale scale = make_colour_scale(values);
@@ -41,7 +41,7 @@ TEST(ColourScale, LeavesOneFarEchoOut) {
   EXPECT_EQ(scale.fraction(1e6), 1.0);
 }
 
-TEST(ColourScale, LeavesOneNearEchoOut) {
+TEST(ColourScale, IgnoresOneNearOutlier) {
   std::vector<double> values = counted(1001);
   values[400] = -5e3;
   const ColourScale scale = make_colour_scale(values);
@@ -67,7 +67,7 @@ TEST(ColourScale, KeepsBothEndsOfFewValues) {
   EXPECT_EQ(scale.high, 100.0);
 }
 
-TEST(ColourScale, OfAConstantIsThatNumber) {
+TEST(ColourScale, IsAConstantForEqualValues) {
   const std::vector<double> values(300, 2.5);
   const ColourScale scale = make_colour_scale(values);
   EXPECT_TRUE(scale.has_values);
@@ -77,7 +77,7 @@ TEST(ColourScale, OfAConstantIsThatNumber) {
   EXPECT_EQ(scale.fraction(2.6), 1.0);
 }
 
-TEST(ColourScale, OfAConstantWithOneFarEchoClipsIt) {
+TEST(ColourScale, ClipsOneOutlierOfAConstant) {
   std::vector<double> values(300, 2.5);
   values[0] = 100.0;
   const ColourScale scale = make_colour_scale(values);
@@ -86,14 +86,14 @@ TEST(ColourScale, OfAConstantWithOneFarEchoClipsIt) {
   EXPECT_THAT(scale_ends(scale, "m"), ElementsAre("2.5", "\u2265 2.5 m"));
 }
 
-TEST(ColourScale, OfNothingHasNoValues) {
+TEST(ColourScale, IsEmptyWithoutValues) {
   EXPECT_FALSE(make_colour_scale({}).has_values);
   const std::vector<double> none(5, std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(make_colour_scale(none).has_values);
   EXPECT_THAT(scale_ends(make_colour_scale(none), "m"), ElementsAre("", ""));
 }
 
-TEST(ColourScale, LeavesOutWhatIsNotFinite) {
+TEST(ColourScale, IgnoresNonFiniteValues) {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<double> values = {1.0, NAN, 3.0, infinity, -infinity};
   const ColourScale scale = make_colour_scale(values);
@@ -101,7 +101,7 @@ TEST(ColourScale, LeavesOutWhatIsNotFinite) {
   EXPECT_EQ(scale.high, 3.0);
 }
 
-TEST(ColourScale, MayStartAtZero) {
+TEST(ColourScale, CanStartAtZero) {
   const std::vector<double> values(10, 0.5);
   const ColourScale scale = make_colour_scale(values, ColourScale::Start::zero);
   EXPECT_EQ(scale.low, 0.0);
@@ -109,7 +109,7 @@ TEST(ColourScale, MayStartAtZero) {
   EXPECT_EQ(scale.fraction(0.25), 0.5);
 }
 
-TEST(ScaleEnds, SayWhereValuesAreClipped) {
+TEST(ScaleEnds, StateWhichEndsAreClipped) {
   const ColourScale scale{
       .low = 2.1, .high = 45.0, .clips_low = true, .clips_high = true, .has_values = true};
   EXPECT_THAT(scale_ends(scale, "m"), ElementsAre("\u2264 2.1", "\u2265 45 m"));
@@ -117,7 +117,7 @@ TEST(ScaleEnds, SayWhereValuesAreClipped) {
               ElementsAre("\u22123", "1"));
 }
 
-TEST(ScaleNumber, HasTheDigitsThatTheSpanNeeds) {
+TEST(ScaleNumber, HasEnoughDigitsForTheSpan) {
   EXPECT_EQ(scale_number(0.0, 1.0), "0");
   EXPECT_EQ(scale_number(12.3456, 100.0), "12");
   EXPECT_EQ(scale_number(12.3456, 1.0), "12.35");

@@ -48,13 +48,13 @@ TEST(Font, HasTheAdvancesOfDejaVuSans) {
   EXPECT_EQ(text_width("", kSize), 0.0);
 }
 
-TEST(Font, DrawsCapitalsAsHighAsTheyAreAboutTheMiddle) {
+TEST(Font, CentresCapitalLettersVertically) {
   const Box box = inked(drawn("H"));
   EXPECT_NEAR(static_cast<double>(box.height), kSize * 0.729, 1.0) << "1493 / 2048 of the em";
   EXPECT_NEAR(static_cast<double>(box.y) + 0.5 * static_cast<double>(box.height), 30.0, 1.0);
 }
 
-TEST(Font, HasTheLettersAndSignsOfPictures) {
+TEST(Font, HasAllCharactersOfPictures) {
   const Picture unknown = drawn("\u4e2d");
   for (const char* text : {"a", "Z", "7", ",", "\u00b0", "\u00b1", "\u00d7", "\u2212", "\u2264",
                            "\u2265", "\u00e4", "\u0142", "\u03c3", "\u0416"}) {
@@ -64,7 +64,7 @@ TEST(Font, HasTheLettersAndSignsOfPictures) {
   }
 }
 
-TEST(Font, DrawsABoxForWhatItLacksAndForWhatIsNoUtf8) {
+TEST(Font, DrawsABoxForUnknownCharactersAndInvalidUtf8) {
   const Picture unknown = drawn("\u4e2d");
   EXPECT_GT(inked(unknown).width, 5U);
   for (const std::string bytes : {"\xff", "\xe4", "\xc2"}) {
@@ -79,7 +79,7 @@ TEST(Font, HasSmoothEdges) {
   EXPECT_GT(std::count_if(picture.pixels.begin(), picture.pixels.end(), is_grey), 20);
 }
 
-TEST(Font, PlacesTextLeftMiddleAndRight) {
+TEST(Font, AlignsTextLeftCentreAndRight) {
   const Box left = inked(drawn("HHH"));
   const Box middle = inked(drawn("HHH", TextPlace::Align::centre));
   const Box right = inked(drawn("HHH", TextPlace::Align::right));
@@ -88,7 +88,7 @@ TEST(Font, PlacesTextLeftMiddleAndRight) {
   EXPECT_LE(right.x + right.width, 101U);
 }
 
-TEST(Font, LeavesOutWhatIsOutsideOfThePicture) {
+TEST(Font, ClipsTextToThePicture) {
   Picture picture = make_picture(20, 20, kBlack);
   draw_text(picture, {-10.0, 2.0}, "WWWWWW", {kSize, kWhite});
   draw_text(picture, {500.0, 500.0}, "W", {kSize, kWhite});

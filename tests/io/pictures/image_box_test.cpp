@@ -31,13 +31,13 @@ void expect_box(const std::optional<ImageBox>& box, const Eigen::Vector4d& pixel
   EXPECT_LT((found - pixels).norm(), 1e-9) << found.transpose();
 }
 
-TEST(ImageBox, OfATriangleInTheImageIsThatOfItsCorners) {
+TEST(ImageBox, ContainsTheCornersOfATriangleInTheImage) {
   const auto box = box_of(triangle({{-1, -1, 4}, {2, 0, 4}, {0, 1, 5}}));
   expect_box(box, {74.5, 27.0, 149.5, 49.5});
   EXPECT_EQ(box->truncated, 0.0);
 }
 
-TEST(ImageBox, OfATriangleThatLeavesTheImageIsThatOfThePartInside) {
+TEST(ImageBox, ClipsATriangleThatLeavesTheImage) {
   // pixels (99.5, 39.5), (299.5, 39.5) and (299.5, 139.5): on its long side v rises by half of u,
   // so that it leaves the image at its lower edge, v = 79, at u = 178.5
   const auto corner = box_of(triangle({{0, 0, 1}, {2, 0, 1}, {2, 2, 1}}));
@@ -48,7 +48,7 @@ TEST(ImageBox, OfATriangleThatLeavesTheImageIsThatOfThePartInside) {
   EXPECT_FALSE(box_of(triangle({{-2, 0, 1}, {0, 2, 1}, {-2, 2, 1}})).has_value());
 }
 
-TEST(ImageBox, OfAFloorThatReachesBehindTheCameraEndsAtItsFarEdge) {
+TEST(ImageBox, ClipsAFloorThatExtendsBehindTheCamera) {
   // 1 m below, from 10 m behind to a point 5 m ahead, at v = 49.5; the lower edge of the image,
   // v = 79, cuts it at z = 50 / 39.5 m
   const auto box = box_of(triangle({{-3, 1, -10}, {3, 1, -10}, {0, 1, 5}}));
@@ -63,13 +63,13 @@ TEST(ImageBox, OfAFloorThatReachesBehindTheCameraEndsAtItsFarEdge) {
   EXPECT_LE(box->truncated, 1.0);
 }
 
-TEST(ImageBox, WhatIsBehindOrBesideTheViewHasNone) {
+TEST(ImageBox, MeshesBehindOrBesideTheViewHaveNoBox) {
   EXPECT_FALSE(box_of(triangle({{0, 0, -1}, {1, 0, -1}, {0, 1, -1}})).has_value());
   EXPECT_FALSE(box_of(triangle({{9, 0, 1}, {9, 1, 1}, {8, 0, 1}})).has_value());
   EXPECT_FALSE(box_of(Mesh{}).has_value());
 }
 
-TEST(ImageBox, WhatSurroundsTheViewHasTheWholeImage) {
+TEST(ImageBox, AMeshAroundTheCameraFillsTheWholeImage) {
   expect_box(box_of(triangle({{-99, -99, 2}, {99, -99, 2}, {0, 99, 2}})), {0.0, 0.0, 199.0, 79.0});
 }
 

@@ -50,7 +50,7 @@ TEST(TopView, FitsAllPointsAndTheSensorWithEqualScales) {
   EXPECT_NEAR(view.right_m - view.left_m, 2.0 * (view.top_m - view.bottom_m), 1e-9);
 }
 
-TEST(TopView, IsNotSpoiltByOneFarPoint) {
+TEST(TopView, IgnoresOneDistantOutlier) {
   Points points;
   for (int i = 0; i < 1000; ++i) points.emplace_back(0.01 * i, 0.01 * (i % 100), 0.0);
   points[500] = {900.0, 900.0, 0.0};
@@ -58,7 +58,7 @@ TEST(TopView, IsNotSpoiltByOneFarPoint) {
   EXPECT_LT(view.right_m - view.left_m, 15.0);
 }
 
-TEST(TopView, OfNothingHasASize) {
+TEST(TopView, HasASizeWithoutPoints) {
   const TopView view = fit_top_view({}, {3.0, 4.0, 0.0}, 1.5);
   EXPECT_GT(view.right_m, view.left_m);
   EXPECT_EQ(draw_top_view({}, view, 30, 20).outside, 0U);
@@ -101,7 +101,7 @@ TEST(PerspectiveView, FitsABoxOfPoints) {
   EXPECT_GT(view.eye_m.z(), 2.0) << "from above";
 }
 
-TEST(PerspectiveView, OfOnePointOrNoneHasADistance) {
+TEST(PerspectiveView, HasADistanceForOnePointOrNone) {
   for (const Points& points : {Points{}, Points{{1.0, 2.0, 3.0}}}) {
     const Perspective view = fit_perspective(points, 400, 300);
     EXPECT_GT((view.target_m - view.eye_m).norm(), 0.0);
@@ -109,7 +109,7 @@ TEST(PerspectiveView, OfOnePointOrNoneHasADistance) {
   }
 }
 
-TEST(EdgeShading, DarkensWhatIsBehindAnEdgeAndNothingElse) {
+TEST(EdgeShading, DarkensOnlyPixelsBehindAnEdge) {
   PointImage image{.width = 8, .height = 1, .points = {}, .depths = {}};
   image.points.assign(8, 0);
   image.depths = {2.0, 2.0, 2.0, 2.0, 4.0, 4.0, 4.0, 4.0};
