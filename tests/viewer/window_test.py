@@ -165,7 +165,7 @@ class ViewerWindowTest(DisplayTest):
         with Window(self, "builtin:asteroid") as window:
             before = window.state()["picture"]
             let_time_pass(3.0)
-            drawn = int(re.search(r"drew (\d+) pictures", window.quit())[1])
+            drawn = int(re.search(r"drew (\d+) frames", window.quit())[1])
         self.assertLess(drawn - before, 15, "three seconds at 20 a second would be 60")
 
     def test_the_window_can_be_resized(self):
