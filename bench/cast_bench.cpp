@@ -6,7 +6,7 @@
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/model/model.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -159,10 +159,10 @@ void register_renderer(const Stage& stage, const std::string& kind, unsigned thr
                                                              threads](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.kind = kind, .threads = threads});
     const Motion motion = static_motion(stage.scene, stage.world_from_sensor);
-    const Setup setup{stage.scene, stage.sensor, stage.beams, motion, *renderer};
+    Simulator simulator(stage.scene, stage.sensor, *renderer);
     Frame frame;
-    simulate(setup, {}, frame);  // builds trees and allocates memory
-    for (auto _ : state) simulate(setup, {}, frame);
+    simulator.simulate(motion, {}, frame);  // builds trees and allocates memory
+    for (auto _ : state) simulator.simulate(motion, {}, frame);
     count_rays(state);
   })->UseRealTime();
   const bool casts_rays = kind == "rays";  // only it has goals

@@ -6,7 +6,7 @@
 #include "ratio_reporter.hpp"
 
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 #include <glidar/woods2016/framebuffer.hpp>
 
 #include <array>
@@ -15,34 +15,36 @@
 namespace glidar::bench {
 namespace {
 
+Sensor camera(std::uint32_t side) {
+  Sensor sensor;
+  sensor.optics = pinhole_from_fov(side, side, kFov_rad);
+  return sensor;
+}
+
 /// GLIDAR, from a pose to a compact cloud.
 class Clouds {
  public:
   Clouds(const Model* model, const char* kind, bool is_paper, std::uint32_t side)
       : model_(*model),
-        renderer_(make_renderer(model->scene, options(kind))),
+        simulator_(model->scene, camera(side), options(kind)),
         motion_(static_motion(model->scene, model->world_from_sensor)) {
-    sensor_.optics = pinhole_from_fov(side, side, kFov_rad);
-    beams_ = make_beams(sensor_);
-    if (is_paper) camera_ = make_paper_camera(model->scene, options("opengl"));
+    if (!is_paper) return;
+    camera_ = make_paper_camera(model->scene, options("opengl"));
+    simulator_.set_return_replacement(woods2016_measurement(*camera_));
   }
 
   void measure() {
-    Setup setup{model_.scene, sensor_, beams_, motion_, *renderer_};
-    if (camera_) setup.replace_returns = woods2016_measurement(*camera_);
-    simulate(setup, {}, frame_);
-    make_point_cloud(frame_, beams_, model_.scene,
-                     {.frame_id = "camera", .thread_pool = &renderer_->thread_pool()}, kColumns,
-                     organised_);
+    simulator_.simulate(motion_, {}, frame_);
+    make_point_cloud(frame_, *simulator_.beams(), model_.scene,
+                     {.frame_id = "camera", .thread_pool = &simulator_.renderer().thread_pool()},
+                     kColumns, organised_);
     remove_invalid_points(organised_, cloud_);
   }
 
  private:
   inline static const std::array<std::string, 2> kColumns = {"xyz", "intensity"};
   const Model& model_;
-  Sensor sensor_;
-  Beams beams_;
-  std::unique_ptr<Renderer> renderer_;
+  Simulator simulator_;
   Motion motion_;
   std::unique_ptr<Woods2016Camera> camera_;
   Frame frame_;

@@ -9,7 +9,7 @@
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/sensor/lidar/footprint.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 namespace glidar::bench {
 namespace {
@@ -128,9 +128,10 @@ void register_simulation(const Stage& stage, const Sensor& sensor, const Motion&
                          unsigned threads, const std::string& name) {
   benchmark::RegisterBenchmark(name.c_str(), [&, threads](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.threads = threads});
-    const Setup setup{stage.scene, sensor, stage.beams, motion, *renderer};
+    Simulator simulator(stage.scene, std::make_shared<const BeamCache>(sensor, stage.beams),
+                        *renderer);
     Frame frame;
-    for (auto _ : state) simulate(setup, {}, frame);
+    for (auto _ : state) simulator.simulate(motion, {}, frame);
     count_rays(stage, state);
   })->UseRealTime();
 }

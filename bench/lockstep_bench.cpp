@@ -6,7 +6,7 @@
 #include "raw_opengl.hpp"
 
 #include <apps/glidar/run/lockstep_run.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -73,11 +73,8 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
   const Model model("model", path);
   Sensor sensor;
   sensor.optics = pinhole_from_fov(side, side, kFov_rad);
-  const Beams beams = make_beams(sensor);
-  const auto renderer = make_renderer(model.scene, {.threads = kThreads});
-  const Motion motion = static_motion(model.scene, model.world_from_sensor);
-  Frame frame;
-  simulate({model.scene, sensor, beams, motion, *renderer}, {}, frame);
+  Simulator simulator(model.scene, sensor, {.threads = kThreads});
+  const Frame frame = simulator.simulate(model.world_from_sensor);
   link::Context context;
   const Report silent;
   link::ErrorLog faults(silent);
@@ -90,8 +87,8 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
       continue;
     }
     const std::shared_ptr<PointCloud> cloud = clouds.take();
-    make_point_cloud(frame, beams, model.scene,
-                     {.frame_id = "camera", .thread_pool = &renderer->thread_pool()},
+    make_point_cloud(frame, *simulator.beams(), model.scene,
+                     {.frame_id = "camera", .thread_pool = &simulator.renderer().thread_pool()},
                      std::get<lockstep::Measure>(received->request).columns, *cloud);
     const lockstep::CloudReply reply = {
         .head = {.rows = cloud->rows, .cols = cloud->cols, .frame_id = cloud->frame_id},
@@ -161,7 +158,6 @@ class Ways {
         servers_(servers),
         motion_(static_motion(model.scene, model.world_from_sensor)) {
     sensor_.optics = pinhole_from_fov(side, side, kFov_rad);
-    beams_ = make_beams(sensor_);
     lockstep::Moment moment{.t_ns = 0, .seed = 1, .number = 0, .sensor = {}, .objects = {}};
     moment.sensor.world_from_body = model.world_from_sensor;
     request_ = lockstep::encode(
@@ -185,9 +181,9 @@ class Ways {
   /// The unavoidable part: the measurement, and the same bytes sent and received.
   void by_hand(benchmark::State& state) {
     Client client(servers_.echo_at);
-    const auto renderer = make_renderer(model_.scene, {.threads = kThreads});
+    Simulator simulator(model_.scene, sensor_, {.threads = kThreads});
     for (auto _ : state) {
-      simulate({model_.scene, sensor_, beams_, motion_, *renderer}, {}, frame_);
+      simulator.simulate(motion_, {}, frame_);
       client.ask(request_);
     }
   }
@@ -204,7 +200,6 @@ class Ways {
   const Servers& servers_;
   Sensor sensor_;
   Motion motion_;
-  Beams beams_;
   Frame frame_;
   std::vector<std::byte> request_;
 };

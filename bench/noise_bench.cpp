@@ -47,11 +47,14 @@ void count_beams(benchmark::State& state) {
 void bench_step(const std::string& name, const std::vector<NoiseStep>& noise) {
   benchmark::RegisterBenchmark(name.c_str(), [noise](benchmark::State& state) {
     Stage stage;
+    const NoisePlan plan = plan_noise(noise, 0.1);
+    NoiseWorkspace workspace;
+    Beams perturbed;
     for (auto _ : state) {
       stage.refill();
       benchmark::DoNotOptimize(
-          &perturbed_beams(noise, stage.beams, stage.thread_pool, stage.frame));
-      apply_noise(noise, 0.1, stage.beams, stage.thread_pool, stage.frame);
+          &perturb_directions(plan, stage.beams, stage.frame, stage.thread_pool, perturbed));
+      apply_noise(plan, stage.beams, stage.thread_pool, workspace, stage.frame);
     }
     count_beams(state);
   });

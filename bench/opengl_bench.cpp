@@ -6,7 +6,7 @@
 #include "many_views.hpp"
 #include "ratio_reporter.hpp"
 
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/sensor/sensor.hpp>
 #include <glidar/woods2016/framebuffer.hpp>
 
 #include <memory>

@@ -7,7 +7,7 @@
 
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/model/model.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -53,22 +53,18 @@ int main(int argc, char** argv) {
   glidar::add_model(scene, glidar::load_model(arguments.at(1), {}, {}));
   glidar::Sensor sensor;
   sensor.optics = glidar::pinhole_from_fov(kSide, kSide, kFieldOfView_rad);
-  const glidar::Beams beams = glidar::make_beams(sensor);
-  const auto renderer = glidar::make_renderer(scene, {.threads = 1});
+  glidar::Simulator simulator(scene, sensor, {.threads = 1});
   const std::vector<std::string> columns = {"xyz",    "intensity", "range",
                                             "normal", "instance",  "class"};
   const glidar::HitFieldMask fields = glidar::fields_needed_by(columns);
   const std::vector<glidar::Motion> all = motions(scene);
-  std::vector<glidar::Setup> setups;
-  for (const glidar::Motion& motion : all)
-    setups.push_back({scene, sensor, beams, motion, *renderer});
   std::vector<glidar::Frame> frames(kFrames);
   for (std::string word; std::cin >> word;) {
     const double start_s = processor_s();
     if (word == "frame") {
-      glidar::simulate(setups.front(), fields, frames.front());
+      simulator.simulate(all.front(), fields, frames.front());
     } else {
-      glidar::simulate_batch(setups, fields, frames);
+      simulator.simulate_batch(all, fields, frames);
     }
     std::printf("%.9f\n", processor_s() - start_s);
     std::fflush(stdout);

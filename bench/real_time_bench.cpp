@@ -6,7 +6,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/model/model.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -45,15 +45,12 @@ class Case {
  public:
   Case(const Scene& scene, const Goal& goal)
       : goal_(goal),
-        scene_(scene),
-        sensor_(load_sensor_file(find_sensor_file(goal.sensor))),
-        beams_(make_beams(sensor_)),
-        motion_(static_motion(scene, standing_pose(beams_))),
-        renderer_(make_renderer(scene, {.threads = kThreads})) {}
+        simulator_(scene, load_sensor_file(find_sensor_file(goal.sensor)), {.threads = kThreads}),
+        motion_(static_motion(scene, standing_pose(*simulator_.beams()))) {}
 
   void run() {
     const auto start = std::chrono::steady_clock::now();
-    simulate({scene_, sensor_, beams_, motion_, *renderer_}, {}, frame_);
+    simulator_.simulate(motion_, {}, frame_);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     seconds_.push_back(elapsed.count());
   }
@@ -62,18 +59,15 @@ class Case {
     const auto middle = seconds_.begin() + static_cast<std::ptrdiff_t>(seconds_.size() / 2);
     std::nth_element(seconds_.begin(), middle, seconds_.end());
     const auto seen = std::count(frame_.status.begin(), frame_.status.end(), Status::hit);
-    const double times = 1.0 / (sensor_.rate_hz * *middle);
-    std::printf("%-20s %9zu %9td %9.2f %9.2f %8.1f %s\n", goal_.sensor, beams_.size(), seen,
-                1e3 * *middle, times, goal_.times, times >= goal_.times ? "" : "  below");
+    const double times = 1.0 / (simulator_.sensor().rate_hz * *middle);
+    std::printf("%-20s %9zu %9td %9.2f %9.2f %8.1f %s\n", goal_.sensor, simulator_.beams()->size(),
+                seen, 1e3 * *middle, times, goal_.times, times >= goal_.times ? "" : "  below");
   }
 
  private:
   Goal goal_;
-  const Scene& scene_;
-  Sensor sensor_;
-  Beams beams_;
+  Simulator simulator_;
   Motion motion_;
-  std::unique_ptr<Renderer> renderer_;
   Frame frame_;
   std::vector<double> seconds_;
 };

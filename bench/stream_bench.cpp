@@ -6,7 +6,7 @@
 #include <apps/glidar/run/delivery.hpp>
 #include <glidar/io/model/model.hpp>
 #include <glidar/sensor/view_placement.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 #include <glidar/woods2016/cloud_publisher.hpp>
 
 #include <atomic>
@@ -25,22 +25,20 @@ constexpr std::uint16_t kPort = 47155;
 /// A view of a model that fills the image.
 struct View {
   Scene scene;
-  Sensor sensor;
   Beams beams;
   Motion motion;
-  std::unique_ptr<Renderer> renderer;
+  std::unique_ptr<Simulator> simulator;
 
   View(const std::string& model, unsigned threads) {
     add_model(scene, load_model(model, {}, {}));
+    Sensor sensor;
     sensor.optics = pinhole_from_fov(kPixels, kPixels, 0.35);
     beams = make_beams(sensor);
     motion =
         static_motion(scene, fit_camera_to_scene(beams, scene, {2.0, -3.0, 2.0}, {0.0, 0.0, 1.0}));
-    renderer = make_renderer(scene, {.threads = threads});
+    simulator = std::make_unique<Simulator>(scene, sensor, RendererOptions{.threads = threads});
   }
-  void measure(Frame& frame) const {
-    simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
-  }
+  void measure(Frame& frame) const { simulator->simulate(motion, {}, frame); }
 };
 
 const std::vector<std::string> kColumns = {"xyz", "intensity"};

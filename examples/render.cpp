@@ -4,7 +4,7 @@
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/model/model.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <cstdio>
 #include <string>
@@ -19,17 +19,14 @@ void render(const std::string& path) {
   glidar::add_model(scene, glidar::load_model("builtin:asteroid", {}, {}));
   glidar::Sensor sensor;
   sensor.optics = glidar::pinhole_from_fov(512, 512, 0.4);  // radians
-  const glidar::Beams beams = glidar::make_beams(sensor);
-  const glidar::Motion motion = glidar::static_motion(
-      scene, glidar::look_at({6.0, 0.0, 2.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}));
-  const auto renderer = glidar::make_renderer(scene, {});
-  const std::vector<std::string> columns = {"xyz", "intensity", "normal"};
-  glidar::Frame frame;
-  glidar::simulate({scene, sensor, beams, motion, *renderer}, glidar::fields_needed_by(columns),
-                   frame);
+  glidar::Simulator simulator(scene, sensor);
+  const glidar::Frame frame = simulator.simulate(glidar::look_at({6, 0, 2}, {0, 0, 0}));
+
+  const std::vector<std::string> columns = {"xyz", "intensity"};
   glidar::PointCloud cloud;
-  glidar::make_point_cloud(frame, beams, scene, {.frame_id = beams.frame_id}, columns, cloud);
-  glidar::make_file_sink(path, {}, {scene, sensor, beams, "auto"})->write(cloud, frame);
+  glidar::make_point_cloud(frame, *simulator.beams(), scene, {frame.frame_id}, columns, cloud);
+  glidar::make_file_sink(path, {}, {scene, sensor, *simulator.beams(), "auto"})
+      ->write(cloud, frame);
   // [README]
 }
 

@@ -6,7 +6,6 @@
 #include <apps/glidar/run/outputs.hpp>
 #include <glidar/explain/trace_text.hpp>
 #include <glidar/simulate/explain.hpp>
-#include <glidar/simulate/simulate.hpp>
 
 #include <fmt/format.h>
 
@@ -23,10 +22,8 @@ struct MeasurementThread::OpenSession {
   std::shared_ptr<const RenderFlags> flags;
   std::shared_ptr<Session> session;
   std::size_t mount = 0;  ///< the sensor of the following members
-  std::shared_ptr<const Sensor> sensor;
-  std::shared_ptr<const Sensor> noise_free_sensor;
-  std::shared_ptr<const Beams> beams;
-  std::uint32_t number = 0;  ///< frame of the beams
+  std::shared_ptr<Simulator> simulator;
+  std::shared_ptr<Simulator> noise_free_simulator;
 };
 
 namespace {
@@ -50,17 +47,6 @@ Motion with_moves(const Motion& motion, const MeasureRequest& request) {
     if (by.matrix() != Pose::Identity().matrix()) instances[i] = transformed(by, instances[i]);
   }
   return result;
-}
-
-Setup setup_of(const Snapshot& snapshot) {
-  const Session& session = *snapshot.session;
-  Setup setup{.scene = session.scene,
-              .sensor = *snapshot.sensor,
-              .beams = *snapshot.beams,
-              .motion = snapshot.motion,
-              .renderer = *session.renderer};
-  if (session.paper) setup.replace_returns = woods2016_measurement(*session.paper);
-  return setup;
 }
 
 std::string written_text(const std::vector<Output>& outputs) {
@@ -207,14 +193,14 @@ void MeasurementThread::open_for(const MeasureRequest& request) {
   snapshots_.clear();
 }
 
-/// Selects a sensor of the session, at its first frame.
+/// Selects a sensor of the session.
 void MeasurementThread::use_mount(std::size_t index) {
   const Mount& mount = opened_->session->mounts.at(index);
   opened_->mount = index;
-  opened_->sensor = std::make_shared<Sensor>(mount.sensor);
-  opened_->noise_free_sensor = std::make_shared<Sensor>(without_noise(mount.sensor));
-  opened_->beams = std::make_shared<Beams>(mount.beams);
-  opened_->number = 0;
+  opened_->simulator = mount.simulator;
+  opened_->noise_free_simulator =
+      make_simulator(*opened_->session,
+                     std::make_shared<const BeamCache>(without_noise(mount.sensor), mount.beams));
 }
 
 std::shared_ptr<Snapshot> MeasurementThread::unused_snapshot() {
@@ -231,16 +217,11 @@ void MeasurementThread::prepare(const MeasureRequest& request, Snapshot& snapsho
   if (!opened_ || opened_->flags != request.flags) open_for(request);
   if (opened_->mount != request.mount) use_mount(request.mount);
   const Mount& mount = opened_->session->mounts[request.mount];
-  if (opened_->number != request.number) {
-    const Sensor& sensor = *opened_->sensor;
-    opened_->beams =
-        std::make_shared<Beams>(make_beams(sensor, frame_interval(sensor, request.number)));
-    opened_->number = request.number;
-  }
   snapshot.request = request;
   snapshot.session = opened_->session;
-  snapshot.sensor = request.has_noise ? opened_->sensor : opened_->noise_free_sensor;
-  snapshot.beams = opened_->beams;
+  snapshot.simulator = request.has_noise ? opened_->simulator : opened_->noise_free_simulator;
+  snapshot.sensor = {snapshot.simulator, &snapshot.simulator->sensor()};
+  snapshot.beams = snapshot.simulator->beams(request.number);
   snapshot.motion = with_moves(mount.motion, request);
   snapshot.frame.number = request.number;
   snapshot.frame.sensor_id = mount.id;
@@ -253,7 +234,7 @@ void MeasurementThread::measure_now(const MeasureRequest& request) {
   const std::shared_ptr<Snapshot> snapshot = unused_snapshot();
   prepare(request, *snapshot);
   const auto start = std::chrono::steady_clock::now();
-  simulate(setup_of(*snapshot), {.normal = true}, snapshot->frame);
+  snapshot->simulator->simulate(snapshot->motion, {.normal = true}, snapshot->frame);
   snapshot->seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::lock_guard lock(mutex_);
@@ -264,9 +245,9 @@ void MeasurementThread::explain_now(const MeasureRequest& request, std::size_t e
   if (!opened_ || opened_->flags != request.flags) return;  // the user has opened another file
   Snapshot snapshot;
   prepare(request, snapshot);
-  const Setup setup = setup_of(snapshot);
-  const PointTrace trace = glidar::explain(setup, entry, snapshot.frame);
-  std::string text = format_trace(trace, setup, snapshot.frame);
+  const PointTrace trace =
+      glidar::explain(*snapshot.simulator, snapshot.motion, entry, snapshot.frame);
+  std::string text = format_trace(trace, *snapshot.simulator, snapshot.frame);
   const std::lock_guard lock(mutex_);
   results_.trace = std::move(text);
 }
@@ -282,7 +263,7 @@ void MeasurementThread::save_now(const MeasureRequest& request, const OutputFlag
   const std::vector<Output> outputs =
       plan_outputs(flags, request.flags->input, context, console_.report());
   refuse_overwrite_of_inputs(snapshot.session->files, outputs);
-  simulate(setup_of(snapshot), fields_for_outputs(outputs), snapshot.frame);
+  snapshot.simulator->simulate(snapshot.motion, fields_for_outputs(outputs), snapshot.frame);
   write_outputs(outputs, snapshot.frame, *snapshot.beams, snapshot.session->scene,
                 console_.report());
   add_message(written_text(outputs));

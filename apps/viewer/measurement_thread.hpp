@@ -37,7 +37,8 @@ bool operator==(const MeasureRequest& a, const MeasureRequest& b);
 struct Snapshot {
   MeasureRequest request;
   std::shared_ptr<const Session> session;
-  std::shared_ptr<const Sensor> sensor;  ///< without noise if requested
+  std::shared_ptr<Simulator> simulator;  ///< without noise if requested
+  std::shared_ptr<const Sensor> sensor;  ///< the simulator's
   std::shared_ptr<const Beams> beams;
   Motion motion;
   Frame frame;           ///< with normals

@@ -47,23 +47,6 @@ enum class ReturnSource : std::uint8_t {
 std::string_view name(Status status);
 std::string_view name(ReturnSource source);
 
-/// Memory that a measurement reuses from frame to frame; not an output.
-struct Workspace {
-  Beams aimed;                   ///< the beams with pointing noise; no directions: no such noise
-  std::vector<double> before;    ///< N, ranges or depths before a noise step
-  std::vector<float> amplitude;  ///< N, intensities before a noise step
-  Beams moved;                   ///< the beams relative to one body of a moving scene
-  std::vector<Pose> start_from_sensor;         ///< N, the sensor at each beam's time, as for moved
-  Hits body_hits;                              ///< hits on one body
-  std::vector<std::uint8_t> instance_enabled;  ///< per instance
-  Beams sub_beams;                             ///< the sub-rays of a range of beams
-  Hits sub_hits;                               ///< hits of sub_beams
-  std::vector<double> sub_signals;             ///< received signal of each sub-ray
-  Beams mirrored;                              ///< sub-rays that a mirror reflects
-  Hits mirrored_hits;                          ///< hits of mirrored
-  std::vector<std::uint32_t> mirrored_from;    ///< per mirrored ray: index of its sub-ray
-};
-
 /// A measurement as one RGBA image, by the method of the 2016 paper (Woods and Christian, J.
 /// Imaging 2016, 2(1), 5): red is the intensity, green and blue are the depth in 65536 steps
 /// between two planes.
@@ -92,6 +75,9 @@ struct Frame {
   std::vector<Status> status;               ///< N
   std::vector<ReturnSource> return_source;  ///< N; empty: `surface` wherever there is a return
   std::vector<float> sigma_m;  ///< N, standard deviation of the random error of range_m; empty: 0
+  /// N, unit vectors in the sensor's frame: the directions of the beams as fired, with pointing
+  /// noise. Empty: those of the nominal beams.
+  std::vector<Eigen::Vector3d> true_directions;
   /// The beams in the sensor frame at stamp_ns, for a sensor that moves during the frame. Points
   /// computed with them are where they were measured. Empty if the sensor does not move.
   struct Deskewed {
@@ -110,7 +96,6 @@ struct Frame {
   BeamPoses beam_poses;
   Woods2016Framebuffer picture;  ///< range and intensity were decoded from it; empty: not used
   Hits ground_truth;             ///< the surfaces, whether reported or not
-  Workspace workspace;
 };
 
 /// Resizes the measured columns to `size` entries (contents unspecified).

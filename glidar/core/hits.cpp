@@ -9,6 +9,21 @@
 
 namespace glidar {
 
+HitFieldMask operator|(const HitFieldMask& a, const HitFieldMask& b) {
+  return {.depth = a.depth || b.depth,
+          .normal = a.normal || b.normal,
+          .shading_normal = a.shading_normal || b.shading_normal,
+          .incidence = a.incidence || b.incidence,
+          .shading = a.shading || b.shading,
+          .barycentrics = a.barycentrics || b.barycentrics,
+          .colour = a.colour || b.colour,
+          .diffuse = a.diffuse || b.diffuse,
+          .reflectance = a.reflectance || b.reflectance,
+          .object_point = a.object_point || b.object_point,
+          .noise_scale = a.noise_scale || b.noise_scale,
+          .poses = a.poses || b.poses};
+}
+
 void resize(Hits& hits, std::size_t size, const HitFieldMask& fields) {
   const auto size_if = [size](bool requested) { return requested ? size : std::size_t{0}; };
   hits.range_m.resize(size);

@@ -41,6 +41,9 @@ inline constexpr HitFieldMask kAllHitFields = {.depth = true,
                                                .noise_scale = true,
                                                .poses = true};
 
+/// The columns of either mask.
+HitFieldMask operator|(const HitFieldMask& a, const HitFieldMask& b);
+
 /// Phong coefficients of a surface (2016 paper, equation 5): luminances after textures, and the
 /// exponent. All zero for a miss.
 struct Reflectance {

@@ -94,10 +94,11 @@ void fill_xyz(const Source& s, Column& column) {
 
 void fill_true_xyz(const Source& s, Column& column) {
   const Frame::Deskewed& moved = s.frame.deskewed;
-  const Vectors& aimed = s.frame.workspace.aimed.directions;
+  const Vectors& directions = s.frame.true_directions;
   if (moved.directions.empty()) {
-    return fill_points(s, s.frame.ground_truth.range_m, aimed.empty() ? s.beams.directions : aimed,
-                       s.beams.origins_m, column);
+    return fill_points(s, s.frame.ground_truth.range_m,
+                       directions.empty() ? s.beams.directions : directions, s.beams.origins_m,
+                       column);
   }
   fill_points(s, s.frame.ground_truth.range_m,
               moved.true_directions.empty() ? moved.directions : moved.true_directions,
@@ -346,16 +347,7 @@ std::span<const std::string> cloud_column_names() {
 
 HitFieldMask fields_needed_by(std::span<const std::string> column_names) {
   HitFieldMask fields;
-  for (const std::string& name : column_names) {
-    const HitFieldMask& needs = kind_named(name).needs;
-    fields.normal |= needs.normal;
-    fields.shading_normal |= needs.shading_normal;
-    fields.incidence |= needs.incidence;
-    fields.barycentrics |= needs.barycentrics;
-    fields.colour |= needs.colour;
-    fields.object_point |= needs.object_point;
-    fields.poses |= needs.poses;
-  }
+  for (const std::string& name : column_names) fields = fields | kind_named(name).needs;
   return fields;
 }
 

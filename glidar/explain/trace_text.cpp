@@ -18,7 +18,9 @@ namespace {
 /// The inputs of the text, and the text written so far.
 struct TraceWriter {
   const PointTrace& trace;
-  const Setup& setup;
+  const Scene& scene;
+  const Sensor& sensor;
+  const Beams& beams;
   const Frame& frame;
   std::string text = {};
 
@@ -48,7 +50,7 @@ std::string measurement_text(const Measurement& measurement) {
 }
 
 void write_beam(TraceWriter& out) {
-  const Beams& beams = out.setup.beams;
+  const Beams& beams = out.beams;
   const std::size_t entry = out.trace.entry;
   const std::size_t pulse = entry % beams.firings();
   out.line("beam", "{} of {}: row {}, col {}, ring {}", pulse, beams.firings(), pulse / beams.cols,
@@ -84,7 +86,7 @@ Pose sensor_pose(const TraceWriter& out) {
 void write_ray(TraceWriter& out) {
   if (std::isnan(out.trace.direction.x())) return;
   const Pose pose = sensor_pose(out);
-  const std::vector<Eigen::Vector3d>& origins = out.setup.beams.origins_m;
+  const std::vector<Eigen::Vector3d>& origins = out.beams.origins_m;
   const Eigen::Vector3d from =
       origins.empty() ? Eigen::Vector3d(pose.translation()) : pose * origins[out.trace.entry];
   out.line("ray", "from {} along {} in the world", triple(from),
@@ -98,10 +100,10 @@ void write_hit(TraceWriter& out) {
     out.line("hit", "none");
     return;
   }
-  const Instance& instance = out.setup.scene.instances[hits.instance[i]];
-  const Material& material = material_of(out.setup.scene, instance, hits.primitive[i]);
+  const Instance& instance = out.scene.instances[hits.instance[i]];
+  const Material& material = material_of(out.scene, instance, hits.primitive[i]);
   out.line("hit", "object '{}' (id {}, class {}), triangle {}, material '{}'", instance.name,
-           instance.id, out.setup.scene.class_names.at(instance.class_id), hits.primitive[i],
+           instance.id, out.scene.class_names.at(instance.class_id), hits.primitive[i],
            material.name);
   if (out.trace.pulse && out.trace.pulse->sub_rays > 1)
     out.line("", "of the sub-ray with the strongest contribution");
@@ -118,18 +120,18 @@ constexpr std::array<const char*, std::variant_size_v<Brdf>> kBrdfNames = {
 void write_lidar_equation(TraceWriter& out, const LidarEquation& light) {
   const Hits& hits = out.frame.ground_truth;
   const std::size_t i = out.trace.entry;
-  const Scene& scene = out.setup.scene;
+  const Scene& scene = out.scene;
   const Material& material =
       material_of(scene, scene.instances[hits.instance[i]], hits.primitive[i]);
-  const double backscatter = backscatter_at(scene, out.setup.sensor.wavelength_m, hits, i);
+  const double backscatter = backscatter_at(scene, out.sensor.wavelength_m, hits, i);
   out.line("light",
            "{} surface, cosine {:.4f}: {:.4g} times a white diffuse one at normal incidence",
            kBrdfNames.at(material.backscatter.index()), hits.cos_shading[i], backscatter);
   out.line("", "reference {:.4g} at {:.4g} m, detected with 50 %: signal {:.6g} in clear air",
            light.reference_reflectance, light.reference_range_m,
            received_signal(light, backscatter, hits.range_m[i]));
-  if (const auto& weather = out.setup.sensor.weather) {
-    const double per_m = extinction_per_m(*weather, out.setup.sensor.wavelength_m);
+  if (const auto& weather = out.sensor.weather) {
+    const double per_m = extinction_per_m(*weather, out.sensor.wavelength_m);
     out.line("", "weather: extinction {:.4g} per m, transmission of both ways {:.4g}", per_m,
              std::exp(-2.0 * per_m * hits.range_m[i]));
   }
@@ -141,7 +143,7 @@ void write_lidar_equation(TraceWriter& out, const LidarEquation& light) {
 
 void write_phong(TraceWriter& out) {
   const Hits& hits = out.frame.ground_truth;
-  const PhongHeadlight& light = out.setup.sensor.light;
+  const PhongHeadlight& light = out.sensor.light;
   const Reflectance& r = hits.reflectance[out.trace.entry];
   out.line("light", "diffuse {:.4g}, specular {:.4g} (shininess {:.4g}), ambient {:.4g} x {:.4g}",
            r.diffuse, r.specular, r.shininess, r.ambient, light.ambient);
@@ -152,12 +154,12 @@ void write_phong(TraceWriter& out) {
 
 void write_light(TraceWriter& out) {
   if (!out.has_hit()) return;
-  if (out.setup.sensor.pulse) return write_lidar_equation(out, *out.setup.sensor.pulse);
+  if (out.sensor.pulse) return write_lidar_equation(out, *out.sensor.pulse);
   write_phong(out);
 }
 
 std::string_view object_name(const TraceWriter& out, std::uint32_t instance) {
-  return out.setup.scene.instances[instance].name;
+  return out.scene.instances[instance].name;
 }
 
 /// The origin of a contribution: "surface of car", "ghost of wall in mirror", "fog".
@@ -208,7 +210,7 @@ void write_echoes(TraceWriter& out, const WaveformTrace& pulse) {
              noise.empty() ? "" : fmt::format("; normal {:.6f}", noise[k]));
   }
   out.line("received", "{} after noise of sigma {:.3g}, threshold 1", pulse.received.size(),
-           out.setup.sensor.pulse->noise_sigma);
+           out.sensor.pulse->noise_sigma);
   for (std::size_t k = 0; k < pulse.received.size(); ++k) {
     const PulseEcho& echo = pulse.received[k];
     out.line("", "{:.6f} m, signal {:.6g}, {}{}", echo.range_m, echo.signal, source(echo),
@@ -217,7 +219,7 @@ void write_echoes(TraceWriter& out, const WaveformTrace& pulse) {
 }
 
 void write_noise(TraceWriter& out) {
-  const std::vector<NoiseStep>& noise = out.setup.sensor.noise;
+  const std::vector<NoiseStep>& noise = out.sensor.noise;
   for (std::size_t k = 0; k < noise.size(); ++k) {
     const PointTrace::Step& step = out.trace.noise[k];
     const Measurement& before = k == 0 ? out.trace.measured : out.trace.noise[k - 1].after;
@@ -242,7 +244,7 @@ Measurement final_measurement(const PointTrace& trace) {
 void write_result(TraceWriter& out) {
   const Measurement measurement = final_measurement(out.trace);
   out.line("reported", "{}", measurement_text(measurement));
-  const double offset_m = out.setup.beams.range_offset_m;
+  const double offset_m = out.beams.range_offset_m;
   if (measurement.status == Status::hit && offset_m != 0.0) {
     out.line("", "{:.6f} m in the cloud, with the sensor's range offset",
              measurement.range_m + offset_m);
@@ -255,8 +257,9 @@ void write_result(TraceWriter& out) {
 
 }  // namespace
 
-std::string format_trace(const PointTrace& trace, const Setup& setup, const Frame& frame) {
-  TraceWriter out{trace, setup, frame};
+std::string format_trace(const PointTrace& trace, const Simulator& simulator, const Frame& frame) {
+  const std::shared_ptr<const Beams> beams = simulator.beams(frame.number);
+  TraceWriter out{trace, simulator.scene(), simulator.sensor(), *beams, frame};
   write_beam(out);
   write_ray(out);
   write_hit(out);

@@ -10,6 +10,6 @@ namespace glidar {
 
 /// The trace of an entry as readable text, in lines "head      content". `frame` is the frame that
 /// explain() filled.
-std::string format_trace(const PointTrace& trace, const Setup& setup, const Frame& frame);
+std::string format_trace(const PointTrace& trace, const Simulator& simulator, const Frame& frame);
 
 }  // namespace glidar

@@ -6,7 +6,7 @@
 
 namespace glidar {
 
-void place_beams(const Motion& motion, const Beams& beams, bool wanted, ThreadPool& thread_pool,
+void record_beam_poses(const Motion& motion, const Beams& beams, bool wanted, ThreadPool& thread_pool,
                  Frame& frame) {
   constexpr std::size_t kBeamsPerTask = 1024;
   Frame::BeamPoses& poses = frame.beam_poses;

@@ -4,16 +4,19 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/gaussian.hpp>
+#include <glidar/sensor/noise/noise.hpp>
+#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/waveforms.hpp>
 
 namespace glidar {
 namespace {
 
-Measurement reading_of(const Frame& frame, std::size_t entry) {
+Measurement measurement_of(const Frame& frame, std::size_t entry) {
   const bool is_hit = frame.status[entry] == Status::hit;
-  const ReturnSource cause =
+  const ReturnSource source =
       frame.return_source.empty() ? ReturnSource::surface : frame.return_source[entry];
   return {.status = frame.status[entry],
-          .return_source = is_hit ? cause : ReturnSource::none,
+          .return_source = is_hit ? source : ReturnSource::none,
           .range_m = frame.range_m[entry],
           .intensity = frame.intensity[entry],
           .sigma_m = frame.sigma_m.empty() ? 0.0F : frame.sigma_m[entry]};
@@ -27,20 +30,19 @@ struct Columns {
   std::vector<ReturnSource> return_source;
 };
 
-/// Applies the first steps of the sensor's list to a frame as it was measured.
-void apply_first(const Setup& setup, std::size_t count, const Columns& measured, Frame& frame) {
-  frame.range_m = measured.range_m;
-  frame.intensity = measured.intensity;
-  frame.status = measured.status;
-  frame.return_source = measured.return_source;
-  apply_noise_prefix(setup.sensor.noise, count, 1.0 / setup.sensor.rate_hz, setup.beams,
-                     setup.renderer.thread_pool(), frame);
+/// Applies the first noise steps to a frame as it was measured.
+void apply_first(const Simulation& s, std::size_t count, const Columns& measured) {
+  s.frame.range_m = measured.range_m;
+  s.frame.intensity = measured.intensity;
+  s.frame.status = measured.status;
+  s.frame.return_source = measured.return_source;
+  apply_noise(s.sensor.noise, s.beams, s.renderer.thread_pool(), s.workspace.noise, s.frame, count);
 }
 
 std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame,
-                                   const PointTrace& story, std::size_t pulse) {
+                                   const PointTrace& trace, std::size_t pulse) {
   if (!sensor.pulse || !(sensor.pulse->noise_sigma > 0.0)) return {};
-  const std::size_t count = story.pulse ? story.pulse->echoes.size() : 1;
+  const std::size_t count = trace.pulse ? trace.pulse->echoes.size() : 1;
   RngKey draw = rng_key(frame, Purpose::detection, pulse);
   std::vector<double> numbers;
   for (; draw.block < count; ++draw.block) numbers.push_back(normals(random_words(draw))[0]);
@@ -56,44 +58,48 @@ void require_entry(std::size_t entry, const Beams& beams) {
        .remedy = ""});
 }
 
-/// What is known of a picked entry before the noise.
-PointTrace begin_story(const Setup& setup, std::size_t entry, const Frame& frame) {
-  require_entry(entry, setup.beams);
-  const std::size_t pulse = entry % setup.beams.firings();
-  const Beams& turned = frame.workspace.aimed;
-  const Beams& aimed = turned.directions.empty() ? setup.beams : turned;
-  PointTrace story;
-  story.entry = entry;
-  story.direction = aimed.directions[entry];
-  if (needs_waveform(setup.sensor, setup.scene))
-    story.pulse = trace_waveform(setup, aimed, pulse, frame);
-  story.receiver_noise = receiver_noise(setup.sensor, frame, story, pulse);
-  return story;
+/// What is known of a selected entry before the noise.
+PointTrace begin_trace(const Simulation& s, std::size_t entry) {
+  require_entry(entry, s.beams);
+  const Frame& frame = s.frame;
+  const std::size_t pulse = entry % s.beams.firings();
+  PointTrace trace;
+  trace.entry = entry;
+  trace.direction = s.fired->directions[entry];
+  if (s.sensor.pulses) trace.pulse = trace_waveform(s, pulse, frame);
+  trace.receiver_noise = receiver_noise(s.sensor.sensor, frame, trace, pulse);
+  return trace;
 }
 
 }  // namespace
 
-PointTrace explain(const Setup& setup, const EntrySelector& pick, Frame& frame) {
-  measure(setup, kAllHitFields, frame);
+PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelector& pick,
+                   Frame& frame, const ProgressCallback& progress) {
+  const std::shared_ptr<const Beams> beams = simulator.beams(frame.number);
+  Simulation s = simulator.prepare(*beams, motion, kAllHitFields, frame, progress);
+  s.noise_steps = 0;
+  simulate({&s, 1});
+  if (s.fired != &s.beams) s.workspace.fired.directions = frame.true_directions;
   const Columns measured{frame.range_m, frame.intensity, frame.status, frame.return_source};
-  const std::vector<NoiseStep>& noise = setup.sensor.noise;
-  apply_first(setup, noise.size(), measured, frame);
-  PointTrace story = begin_story(setup, pick(frame), frame);
-  apply_first(setup, 0, measured, frame);
-  story.measured = reading_of(frame, story.entry);
-  for (std::size_t k = 0; k < noise.size(); ++k) {
+  const NoisePlan& noise = s.sensor.noise;
+  apply_first(s, noise.steps.size(), measured);
+  PointTrace trace = begin_trace(s, pick(frame));
+  apply_first(s, 0, measured);
+  trace.measured = measurement_of(frame, trace.entry);
+  for (std::size_t k = 0; k < noise.steps.size(); ++k) {
     std::vector<RandomSample> draws =
-        trace_samples(noise, k, setup.beams, frame, 1.0 / setup.sensor.rate_hz, story.entry);
-    apply_first(setup, k + 1, measured, frame);
-    story.noise.push_back({std::move(draws), reading_of(frame, story.entry)});
+        trace_samples(noise.steps, k, *beams, frame, noise.frame_s, trace.entry);
+    apply_first(s, k + 1, measured);
+    trace.noise.push_back({std::move(draws), measurement_of(frame, trace.entry)});
   }
-  return story;
+  return trace;
 }
 
-PointTrace explain(const Setup& setup, std::size_t entry, Frame& frame) {
-  require_entry(entry, setup.beams);
+PointTrace explain(Simulator& simulator, const Motion& motion, std::size_t entry, Frame& frame,
+                   const ProgressCallback& progress) {
+  require_entry(entry, *simulator.beams(frame.number));
   return explain(
-      setup, [entry](const Frame& /*frame*/) { return entry; }, frame);
+      simulator, motion, [entry](const Frame& /*frame*/) { return entry; }, frame, progress);
 }
 
 }  // namespace glidar

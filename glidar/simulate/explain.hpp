@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glidar/sensor/noise/noise_trace.hpp>
-#include <glidar/simulate/simulate.hpp>
-#include <glidar/simulate/simulate_waveforms.hpp>
+#include <glidar/simulate/simulator.hpp>
+#include <glidar/simulate/waveform_trace.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace glidar {
 
-/// What a sensor would report of an entry at some point of its measurement.
+/// What a sensor would report of an entry after some noise steps.
 struct Measurement {
   Status status = Status::miss;
   ReturnSource return_source = ReturnSource::none;
@@ -22,32 +22,34 @@ struct Measurement {
   float sigma_m = 0.0F;  ///< of the range's random error so far
 };
 
-/// How an entry of a frame came to be: what is not in the frame's own columns.
+/// How an entry of a frame was measured, as far as the frame's own columns do not state it.
 struct PointTrace {
   std::size_t entry = 0;
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< with errors of pointing, sensor's frame
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< with pointing errors, sensor's frame
   Measurement measured;                                 ///< before noise
   std::optional<WaveformTrace> pulse = {};              ///< where beams are more than a ray
-  /// Of pulsed light: the normal numbers that the receiver's noise_sigma multiplies, one for each
-  /// echo; of beams that are a ray, one.
+  /// Of pulsed sensors: the normal numbers that the receiver's noise_sigma multiplies, one for each
+  /// echo; one for beams that are a single ray.
   std::vector<double> receiver_noise = {};
 
-  /// One step of noise.
+  /// One noise step.
   struct Step {
     std::vector<RandomSample> draws;
     Measurement after;
   };
-  std::vector<Step> noise;  ///< one for each step of the sensor's list
+  std::vector<Step> noise;  ///< one for each of the sensor's noise steps
 };
 
-/// Picks an entry of a frame as simulate() made it; what it throws goes through.
+/// Selects an entry of a simulated frame; its exceptions propagate.
 using EntrySelector = std::function<std::size_t(const Frame& frame)>;
 
-/// Measures a frame as simulate() does, with all truth, and tells how the entry of it that is
-/// picked came to be. frame.stamp_ns, seed, sensor_id and number say which; the frame comes out as
-/// simulate() makes it, byte for byte. The first step of noise is run, then the first two, and so
-/// on. Throws Error when there is no such entry.
-PointTrace explain(const Setup& setup, const EntrySelector& pick, Frame& frame);
-PointTrace explain(const Setup& setup, std::size_t entry, Frame& frame);
+/// Simulates a frame with all ground truth, and traces the entry of it that is selected.
+/// frame.stamp_ns, seed, sensor_id and number state which frame; it is that of
+/// Simulator::simulate(), byte for byte. The first noise step is applied, then the first two, and
+/// so on. Throws Error when there is no such entry.
+PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelector& pick,
+                   Frame& frame, const ProgressCallback& progress = {});
+PointTrace explain(Simulator& simulator, const Motion& motion, std::size_t entry, Frame& frame,
+                   const ProgressCallback& progress = {});
 
 }  // namespace glidar

@@ -11,6 +11,10 @@ bool has_mirrors(const Scene& scene) {
                      [](const Material& material) { return material.mirror > 0.0F; });
 }
 
+const Material& material_hit(const Scene& scene, const Hits& hits, std::size_t beam) {
+  return material_of(scene, scene.instances[hits.instance[beam]], hits.primitive[beam]);
+}
+
 void add_reflected_beam(const Beams& from, const Hits& hits, std::size_t ray, Beams& beams) {
   constexpr double kClear =
       1e-7;  // of the range; far above rounding, far below the resolution of sensors

@@ -11,6 +11,9 @@ namespace glidar {
 /// True if a material of the scene reflects beams.
 bool has_mirrors(const Scene& scene);
 
+/// The material of the surface that a beam hit.
+const Material& material_hit(const Scene& scene, const Hits& hits, std::size_t beam);
+
 /// Appends to `beams` the reflection of a beam at the surface that it hit: direction d - 2 (d . n)
 /// n with the shading normal n (law of reflection). It starts just before the surface, so that it
 /// does not hit the same surface again.

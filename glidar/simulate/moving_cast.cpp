@@ -13,21 +13,19 @@ namespace {
 
 constexpr std::size_t kMovedBeamsPerTask = 1024;
 
-bool stands(const Trajectory& trajectory) {
+bool is_static(const Trajectory& trajectory) {
   return std::holds_alternative<ConstantPose>(trajectory);
 }
 
-/// A sphere around an instance, where it is at the start of the frame, in the sensor's frame then.
+/// A sphere around an instance at the start of the frame, in the sensor's frame of that time.
 struct Sphere {
   Eigen::Vector3d centre;
   double radius = std::numeric_limits<double>::infinity();
 };
 
-Sphere sphere_around(const Scene& scene, std::uint32_t index, const Pose& world_from_object,
-                     const Pose& world_from_sensor) {
+Sphere bounding_sphere(const Instance& instance, const Eigen::AlignedBox3d& box,
+                       const Pose& world_from_object, const Pose& world_from_sensor) {
   constexpr double kClear = 1.001;  // also after rounding
-  const Instance& instance = scene.instances[index];
-  const Eigen::AlignedBox3d box = bounds(scene.meshes[instance.mesh]);
   if (box.isEmpty()) return {Eigen::Vector3d::Zero(), 0.0};
   const Eigen::Vector3d middle =
       world_from_object.linear() * (instance.scale * box.center()) +
@@ -36,24 +34,24 @@ Sphere sphere_around(const Scene& scene, std::uint32_t index, const Pose& world_
           kClear * instance.scale * 0.5 * box.diagonal().norm()};
 }
 
-bool may_meet(const Sphere& sphere, const Eigen::Vector3d& origin,
-              const Eigen::Vector3d& direction) {
+bool may_hit(const Sphere& sphere, const Eigen::Vector3d& origin,
+             const Eigen::Vector3d& direction) {
   if (std::isinf(sphere.radius)) return true;
   const Eigen::Vector3d to_centre = sphere.centre - origin;
   const double along = std::max(0.0, to_centre.dot(direction));
   return (to_centre - along * direction).squaredNorm() <= sphere.radius * sphere.radius;
 }
 
-/// One rigid part of the world and where it is while a frame is taken.
+/// One rigid part of the scene and its pose during a frame.
 struct Body {
-  const Trajectory* world_from_body = nullptr;  ///< nullptr: what stands still
+  const Trajectory* world_from_body = nullptr;  ///< nullptr: all that is static
   Pose at_start = Pose::Identity();
   Sphere sphere = {};
 };
 
-/// The sensor at a time as the resting body sees it, in the frame of the sensor at the start:
-/// S0^-1 * B0 * B^-1 * S, B and S being their poses at that time. Differences of positions come
-/// first, so that a world far from its zero loses nothing.
+/// The pose of the sensor at a time relative to the body at rest, in the sensor's frame at the
+/// start: S0^-1 * B0 * B^-1 * S with the poses B and S at that time. Positions are subtracted
+/// first, so that a scene far from its origin loses no precision.
 Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& b, const Pose& s) {
   Pose pose = Pose::Identity();
   const Eigen::Matrix3d back = s0.linear().transpose();
@@ -70,11 +68,11 @@ Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& b, const Po
   return pose;
 }
 
-/// Calls work(beam, world_from_sensor, world_from_body) for beams of a run, each at its own time.
-/// Of what stands still the body's pose is left as it is.
+/// Calls work(beam, world_from_sensor, world_from_body) for beams of a run with the poses at their
+/// firing times. The pose of the static body is unspecified.
 template <class Work>
-void at_their_times(const Trajectory& sensor, const Body& body, std::int64_t stamp_ns,
-                    const Beams& beams, BeamRange range, const Work& work) {
+void for_each_firing(const Trajectory& sensor, const Body& body, std::int64_t stamp_ns,
+                     const Beams& beams, BeamRange range, const Work& work) {
   constexpr std::size_t kAtOnce = 128;
   std::array<std::int64_t, kAtOnce> t_ns;
   std::array<Pose, kAtOnce> sensors;
@@ -93,34 +91,35 @@ void at_their_times(const Trajectory& sensor, const Body& body, std::int64_t sta
   }
 }
 
-/// Expresses a run of beams in the frame in which a body rests; those that cannot meet it get no
-/// direction.
-void move_beams(const CastRequest& request, const Motion& motion, const Body& body,
-                std::int64_t stamp_ns, BeamRange range, Workspace& memory) {
+/// Expresses a run of beams in the frame in which a body is at rest; those that cannot hit it get
+/// no direction.
+void express_beams(const CastRequest& request, const Motion& motion, const Body& body,
+                   std::int64_t stamp_ns, BeamRange range, MovingCastWorkspace& memory) {
   const Beams& beams = request.beams;
-  const auto move = [&](std::size_t i, const Pose& sensor, const Pose& of_body) {
-    const Pose pose = start_from_sensor(body, request.world_from_sensor, of_body, sensor);
+  const auto move = [&](std::size_t i, const Pose& sensor, const Pose& body_pose) {
+    const Pose pose = start_from_sensor(body, request.world_from_sensor, body_pose, sensor);
     memory.start_from_sensor[i] = pose;
-    Eigen::Vector3d& direction = memory.moved.directions[i];
-    Eigen::Vector3d& origin = memory.moved.origins_m[i];
+    Eigen::Vector3d& direction = memory.beams.directions[i];
+    Eigen::Vector3d& origin = memory.beams.origins_m[i];
     direction = (pose.linear() * beams.directions[i]).normalized();
     origin =
         beams.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * beams.origins_m[i];
-    if (!may_meet(body.sphere, origin, direction)) {
+    if (!may_hit(body.sphere, origin, direction)) {
       direction.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
   };
-  at_their_times(motion.world_from_sensor, body, stamp_ns, beams, range, move);
+  for_each_firing(motion.world_from_sensor, body, stamp_ns, beams, range, move);
 }
 
-/// Puts what depends on the sensor's frame into the one of the beam's own time.
-void turn_back(const CastRequest& request, const Workspace& memory, BeamRange range, Hits& hits) {
+/// Expresses what depends on the sensor's frame in its frame at the beam's firing time.
+void rotate_to_firing_time(const CastRequest& request, const MovingCastWorkspace& memory,
+                           BeamRange range, Hits& hits) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     if (hits.instance[i] == kInvalidId) continue;
     const Eigen::Matrix3d back = memory.start_from_sensor[i].linear().transpose();
-    const auto turn = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
-    if (request.fields.normal) turn(hits.normal[i]);
-    if (request.fields.shading_normal) turn(hits.shading_normal[i]);
+    const auto rotate = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
+    if (request.fields.normal) rotate(hits.normal[i]);
+    if (request.fields.shading_normal) rotate(hits.shading_normal[i]);
     if (request.fields.depth) hits.depth_m[i] = depth_m(request.beams, i, hits.range_m[i]);
   }
 }
@@ -134,89 +133,100 @@ void merge(const Hits& from, const HitFieldMask& fields, BeamRange range, Hits& 
   }
 }
 
-/// The beams of `memory` sized and filled with what all bodies share.
-void prepare(const Beams& beams, Workspace& memory) {
-  memory.moved.rows = beams.rows;
-  memory.moved.cols = beams.cols;
-  memory.moved.frame_id = beams.frame_id;
-  memory.moved.boresight = beams.boresight;
-  memory.moved.directions.resize(beams.size());
-  memory.moved.origins_m.resize(beams.size());
+/// Sizes the memory and fills in what all bodies share.
+void prepare(const Scene& scene, const Beams& beams, MovingCastWorkspace& memory) {
+  memory.beams.rows = beams.rows;
+  memory.beams.cols = beams.cols;
+  memory.beams.frame_id = beams.frame_id;
+  memory.beams.boresight = beams.boresight;
+  memory.beams.directions.resize(beams.size());
+  memory.beams.origins_m.resize(beams.size());
   memory.start_from_sensor.resize(beams.size());
+  memory.mesh_boxes.resize(scene.meshes.size());
+}
+
+/// The box of a mesh, which is computed once.
+const Eigen::AlignedBox3d& mesh_box(const Scene& scene, std::uint32_t mesh,
+                                    MovingCastWorkspace& memory) {
+  std::optional<Eigen::AlignedBox3d>& box = memory.mesh_boxes[mesh];
+  if (!box) box = bounds(scene.meshes[mesh]);
+  return *box;
 }
 
 /// One cast that is in progress.
 struct MovingCast {
-  const TimedScene& world;
+  const TimedScene& timed;
   const CastRequest& request;
-  Workspace& memory;
+  MovingCastWorkspace& memory;
   Hits& hits;
 
   template <class Work>
-  void in_runs(const Work& work) const {
-    world.renderer.thread_pool().parallel_for(request.beams.size(), kMovedBeamsPerTask,
+  void parallel_for(const Work& work) const {
+    timed.renderer.thread_pool().parallel_for(request.beams.size(), kMovedBeamsPerTask,
                                               [&](std::size_t begin, std::size_t end) {
                                                 work(BeamRange{begin, end});
                                               });
   }
 };
 
-/// Which of the casts at bodies this is.
-struct Turn {
+/// Which of the bodies is cast.
+struct BodyIndex {
   std::size_t number = 0;
-  std::size_t all = 1;
+  std::size_t count = 1;
 };
 
-/// Casts at what of memory.instance_enabled belongs to the body. The first fills the hits.
-void cast_body(const MovingCast& job, const Body& body, const Turn& turn) {
-  const bool is_first = turn.number == 0;
-  Workspace& memory = job.memory;
-  const CastRequest& request = job.request;
-  Hits& hits = is_first ? job.hits : memory.body_hits;
+/// Casts the instances of memory.instance_enabled, which are the body. The first body fills the
+/// hits.
+void cast_body(const MovingCast& cast, const Body& body, const BodyIndex& body_index) {
+  const bool is_first = body_index.number == 0;
+  MovingCastWorkspace& memory = cast.memory;
+  const CastRequest& request = cast.request;
+  Hits& hits = is_first ? cast.hits : memory.hits;
   const auto part = [&](std::size_t number) {
-    return static_cast<double>(number) / static_cast<double>(turn.all);
+    return static_cast<double>(number) / static_cast<double>(body_index.count);
   };
-  job.in_runs([&](BeamRange range) {
-    move_beams(request, job.world.motion, body, job.world.stamp_ns, range, memory);
+  cast.parallel_for([&](BeamRange range) {
+    express_beams(request, cast.timed.motion, body, cast.timed.stamp_ns, range, memory);
   });
-  job.world.renderer.cast(
-      {.beams = memory.moved,
-       .world_from_sensor = request.world_from_sensor,
-       .world_from_instance = request.world_from_instance,
-       .fields = request.fields,
-       .cull_back_faces = request.cull_back_faces,
-       .instance_enabled = memory.instance_enabled,
-       .progress = subrange(request.progress, part(turn.number), part(turn.number + 1))},
-      hits);
-  job.in_runs([&](BeamRange range) {
-    turn_back(request, memory, range, hits);
-    if (!is_first) merge(hits, request.fields, range, job.hits);
+  cast.timed.renderer.cast({.beams = memory.beams,
+                            .world_from_sensor = request.world_from_sensor,
+                            .world_from_instance = request.world_from_instance,
+                            .fields = request.fields,
+                            .cull_back_faces = request.cull_back_faces,
+                            .instance_enabled = memory.instance_enabled,
+                            .progress = subrange(request.progress, part(body_index.number),
+                                                 part(body_index.number + 1))},
+                           hits);
+  cast.parallel_for([&](BeamRange range) {
+    rotate_to_firing_time(request, memory, range, hits);
+    if (!is_first) merge(hits, request.fields, range, cast.hits);
   });
 }
 
-/// Casts at what stands still, then at every moving instance.
-void cast_bodies(const MovingCast& job) {
-  Workspace& memory = job.memory;
-  const Scene& scene = job.world.scene;
-  const std::vector<Trajectory>& trajectories = job.world.motion.world_from_instance;
+/// Casts all that is static, then every moving instance.
+void cast_bodies(const MovingCast& cast) {
+  MovingCastWorkspace& memory = cast.memory;
+  const Scene& scene = cast.timed.scene;
+  const std::vector<Trajectory>& trajectories = cast.timed.motion.world_from_instance;
   memory.instance_enabled.assign(scene.instances.size(), 0);
   for (std::size_t i = 0; i < memory.instance_enabled.size(); ++i) {
-    memory.instance_enabled[i] = static_cast<std::uint8_t>(stands(trajectories[i]));
+    memory.instance_enabled[i] = static_cast<std::uint8_t>(is_static(trajectories[i]));
   }
-  const auto standing = std::count_if(trajectories.begin(), trajectories.end(), stands);
-  Turn turn{.all = 1 + memory.instance_enabled.size() - static_cast<std::size_t>(standing)};
-  cast_body(job, {}, turn);
+  const auto static_count = std::count_if(trajectories.begin(), trajectories.end(), is_static);
+  BodyIndex body_index{.count = 1 + memory.instance_enabled.size() -
+                                static_cast<std::size_t>(static_count)};
+  cast_body(cast, {}, body_index);
   for (std::uint32_t i = 0; i < memory.instance_enabled.size(); ++i) {
-    if (stands(trajectories[i])) continue;
+    if (is_static(trajectories[i])) continue;
     memory.instance_enabled.assign(scene.instances.size(), 0);
     memory.instance_enabled[i] = 1;
-    ++turn.number;
-    const Pose& at_start = job.request.world_from_instance[i];
-    cast_body(job,
-              {.world_from_body = &trajectories[i],
-               .at_start = at_start,
-               .sphere = sphere_around(scene, i, at_start, job.request.world_from_sensor)},
-              turn);
+    ++body_index.number;
+    const Instance& instance = scene.instances[i];
+    const Pose& at_start = cast.request.world_from_instance[i];
+    const Sphere sphere = bounding_sphere(instance, mesh_box(scene, instance.mesh, memory),
+                                          at_start, cast.request.world_from_sensor);
+    cast_body(cast, {.world_from_body = &trajectories[i], .at_start = at_start, .sphere = sphere},
+              body_index);
   }
 }
 
@@ -224,49 +234,42 @@ void cast_bodies(const MovingCast& job) {
 
 bool moves_during_frame(const Motion& motion, const Beams& beams) {
   if (beams.times_ns.empty()) return false;
-  return !stands(motion.world_from_sensor) ||
-         !std::all_of(motion.world_from_instance.begin(), motion.world_from_instance.end(), stands);
+  return !is_static(motion.world_from_sensor) ||
+         !std::all_of(motion.world_from_instance.begin(), motion.world_from_instance.end(),
+                      is_static);
 }
 
-void cast_moving(const TimedScene& world, const CastRequest& request, Workspace& memory,
-                 Hits& hits) {
-  if (!moves_during_frame(world.motion, request.beams)) {
-    world.renderer.cast(request, hits);
-    return;
-  }
-  prepare(request.beams, memory);
-  const MovingCast job{world, request, memory, hits};
-  cast_bodies(job);
-  if (request.on_tile_done) job.in_runs(request.on_tile_done);
+void cast_moving(const TimedScene& scene, const CastRequest& request,
+                 MovingCastWorkspace& workspace, Hits& hits) {
+  prepare(scene.scene, request.beams, workspace);
+  const MovingCast cast{scene, request, workspace, hits};
+  cast_bodies(cast);
+  if (request.on_tile_done) cast.parallel_for(request.on_tile_done);
 }
 
-void deskew(const TimedScene& world, const Beams& nominal, const Beams& aimed,
+void deskew(const TimedScene& scene, const Beams& reported, const Beams& fired,
             Frame::Deskewed& deskewed) {
-  deskewed.directions.clear();
-  deskewed.true_directions.clear();
-  deskewed.origins_m.clear();
-  deskewed.start_from_sensor.clear();
-  const Trajectory& trajectory = world.motion.world_from_sensor;
-  if (nominal.times_ns.empty() || stands(trajectory)) return;
+  const Trajectory& trajectory = scene.motion.world_from_sensor;
+  if (reported.times_ns.empty() || is_static(trajectory)) return;
 
-  const bool is_nominal = &nominal == &aimed;
-  deskewed.directions.resize(nominal.size());
-  if (!is_nominal) deskewed.true_directions.resize(nominal.size());
-  deskewed.origins_m.resize(nominal.size());
-  deskewed.start_from_sensor.resize(nominal.size());
-  const Pose at_start = pose_at(trajectory, world.stamp_ns);
+  const bool has_errors = &reported != &fired;
+  deskewed.directions.resize(reported.size());
+  deskewed.true_directions.resize(has_errors ? reported.size() : 0);
+  deskewed.origins_m.resize(reported.size());
+  deskewed.start_from_sensor.resize(reported.size());
+  const Pose at_start = pose_at(trajectory, scene.stamp_ns);
   const auto place = [&](std::size_t i, const Pose& sensor, const Pose& /*body*/) {
     const Pose pose = start_from_sensor({}, at_start, {}, sensor);
-    deskewed.directions[i] = (pose.linear() * nominal.directions[i]).normalized();
-    if (!is_nominal)
-      deskewed.true_directions[i] = (pose.linear() * aimed.directions[i]).normalized();
+    deskewed.directions[i] = (pose.linear() * reported.directions[i]).normalized();
+    if (has_errors)
+      deskewed.true_directions[i] = (pose.linear() * fired.directions[i]).normalized();
     deskewed.origins_m[i] =
-        aimed.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * aimed.origins_m[i];
+        fired.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * fired.origins_m[i];
     deskewed.start_from_sensor[i] = Eigen::Quaterniond(pose.linear()).cast<float>();
   };
-  world.renderer.thread_pool().parallel_for(
-      nominal.size(), kMovedBeamsPerTask, [&](std::size_t begin, std::size_t end) {
-        at_their_times(trajectory, {}, world.stamp_ns, nominal, {begin, end}, place);
+  scene.renderer.thread_pool().parallel_for(
+      reported.size(), kMovedBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+        for_each_firing(trajectory, {}, scene.stamp_ns, reported, {begin, end}, place);
       });
 }
 

@@ -6,9 +6,14 @@
 #include <glidar/motion/motion.hpp>
 #include <glidar/render/renderer.hpp>
 
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
 namespace glidar {
 
-/// A world that is measured, and when a frame of it starts.
+/// A scene in motion, and when a frame of it starts.
 struct TimedScene {
   Renderer& renderer;
   const Scene& scene;
@@ -16,23 +21,31 @@ struct TimedScene {
   std::int64_t stamp_ns = 0;
 };
 
-/// True when the beams leave at different times while something moves.
+/// Memory that casts in one moving scene reuse. N = number of beams.
+struct MovingCastWorkspace {
+  Beams beams;                                                 ///< as a rigid body sees them
+  std::vector<Pose> start_from_sensor;                         ///< N, as that body sees the sensor
+  Hits hits;                                                   ///< on that body
+  std::vector<std::uint8_t> instance_enabled;                  ///< per instance
+  std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it has moved
+};
+
+/// True when the beams are fired at different times while something moves.
 bool moves_during_frame(const Motion& motion, const Beams& beams);
 
-/// Casts beams each of which sees the world at its own firing time, exactly, not by steps. When
-/// nothing moves while they leave, this is one cast. Otherwise what stands still is one body, every
-/// moving instance another. For each body the beams are expressed in the frame in which the body
-/// rests, cast as usual, and a beam keeps the nearest of its hits.
+/// Casts beams of which each sees the scene at its own firing time, exactly, without time steps.
+/// All that is static is one rigid body, every moving instance another. For each body the beams are
+/// expressed in the frame in which the body is at rest and cast; a beam keeps the nearest hit.
 ///
-/// `request` is that of a frame at rest: beams in the sensor's frame, poses at stamp_ns. Hits come
-/// out as if each beam had been cast alone at stamp_ns + times_ns: normals in the sensor's frame of
-/// that time, depth along its boresight.
-void cast_moving(const TimedScene& world, const CastRequest& request, Workspace& memory,
-                 Hits& hits);
+/// `request` is that of a static frame: beams in the sensor's frame, poses at stamp_ns. Hits are as
+/// if each beam had been cast alone at stamp_ns + times_ns: normals in the sensor's frame of that
+/// time, depth along its boresight.
+void cast_moving(const TimedScene& scene, const CastRequest& request,
+                 MovingCastWorkspace& workspace, Hits& hits);
 
-/// The `nominal` beams, and the `aimed` ones where these differ, as seen from the sensor's pose at
-/// stamp_ns; nothing when the sensor stands still while they leave.
-void deskew(const TimedScene& world, const Beams& nominal, const Beams& aimed,
+/// The reported and the fired beams, which are the same without pointing errors, as seen from the
+/// sensor's pose at stamp_ns. Changes nothing when the sensor does not move while they are fired.
+void deskew(const TimedScene& scene, const Beams& reported, const Beams& fired,
             Frame::Deskewed& deskewed);
 
 }  // namespace glidar

@@ -2,24 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/simulate/setup.hpp>
+#include <glidar/simulate/simulation.hpp>
 
 #include <span>
 
 namespace glidar {
 
-/// Measures the scene once: frame.stamp_ns and frame.seed say when and with which random numbers,
-/// `fields` what truth to keep beside the range. The frame's memory is reused.
-void simulate(const Setup& setup, const HitFieldMask& fields, Frame& frame);
+/// The method: pointing errors; cast; limits and received signal of every tile; occlusion; noise.
+/// Each frame states its stamp_ns, seed, sensor_id and number. Frames that take_one_cast() may be
+/// simulated together, others one at a time.
+void simulate(std::span<Simulation> frames);
 
-/// The same for many at once, as for Monte Carlo: frames[i] comes out as simulate(setups[i], ...)
-/// makes it, to the bit. The setups have one renderer in common, and may differ in all else: poses
-/// are their motion's, seeds their frames'. A renderer that draws takes less time for many small
-/// frames together than one by one. Throws Error unless there is a setup per frame.
-void simulate_batch(std::span<const Setup> setups, const HitFieldMask& fields,
-                    std::span<Frame> frames);
+/// Range, intensity and status of a tile of beams (or pulses) from their hits: checks limits and
+/// computes the received signal, by the paper's Phong model, the lidar equation or a waveform.
+/// Called once for every tile, on the renderer's threads.
+void measure_tile(const Simulation& s, BeamRange tile);
 
-/// All of it before the sensor's noise but for errors of pointing: what apply_noise is applied to.
-void measure(const Setup& setup, const HitFieldMask& fields, Frame& frame);
+/// True when the renderer casts the beams of the frame once, as they are.
+bool takes_one_cast(const Simulation& s);
 
 }  // namespace glidar

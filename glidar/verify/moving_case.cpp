@@ -96,7 +96,7 @@ VerifyResult moving_sensor_and_target(const VerifySubject& subject,
   for (std::uint32_t i = 0; i < beams.cols; ++i) beams.times_ns.push_back(i * kStep_ns);
   const std::vector<Pose> poses = {pose_at(moving.target, kStamp_ns), moving.world_from_rest};
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
-  Workspace memory;
+  MovingCastWorkspace memory;
   Hits hits;
   cast_moving({*renderer, scene, motion, kStamp_ns},
               {.beams = beams,

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kPixelsPerTask = 4096;
 
 /// Throws Error for sensors whose measurement the framebuffer cannot represent.
-void check_representable(const Setup& setup, const Beams& perturbed) {
+void check_representable(const CastContext& cast) {
   const auto refuse_if = [](bool is_so, const char* found) {
     if (!is_so) return;
     throw Error({.where = "--quantized-framebuffer",
@@ -22,9 +22,9 @@ void check_representable(const Setup& setup, const Beams& perturbed) {
                  .allowed = "sensors without lidar_equation, firing times and pointing noise",
                  .remedy = "leave --quantized-framebuffer out"});
   };
-  refuse_if(setup.sensor.pulse.has_value(), "a pulsed sensor");
-  refuse_if(!setup.beams.times_ns.empty(), "beams with firing times");
-  refuse_if(&perturbed != &setup.beams, "pointing noise");
+  refuse_if(cast.sensor.pulse.has_value(), "a pulsed sensor");
+  refuse_if(!cast.beams.times_ns.empty(), "beams with firing times");
+  refuse_if(&cast.fired != &cast.beams, "pointing noise");
 }
 
 }  // namespace
@@ -49,28 +49,28 @@ void decode_framebuffer(const Woods2016Framebuffer& picture, const Beams& beams,
   }
 }
 
-std::function<void(const Setup&, const Beams&, Frame&)> woods2016_measurement(
-    Woods2016Camera& camera, std::optional<Woods2016DepthPlanes> planes) {
-  return [&camera, planes](const Setup& setup, const Beams& perturbed, Frame& frame) {
-    check_representable(setup, perturbed);
-    camera.draw({.beams = setup.beams,
+ReturnReplacement woods2016_measurement(Woods2016Camera& camera,
+                                        std::optional<Woods2016DepthPlanes> planes) {
+  return [&camera, planes](const CastContext& cast, Frame& frame) {
+    check_representable(cast);
+    camera.draw({.beams = cast.beams,
                  .world_from_sensor = frame.world_from_sensor,
                  .world_from_instance = frame.world_from_instance,
-                 .cull_back_faces = setup.sensor.cull_back_faces},
-                setup.sensor.light, planes, frame.picture);
+                 .cull_back_faces = cast.sensor.cull_back_faces},
+                cast.sensor.light, planes, frame.picture);
     const auto decode = [&](std::size_t begin, std::size_t end) {
-      decode_framebuffer(frame.picture, setup.beams, {begin, end}, frame.range_m, frame.intensity);
+      decode_framebuffer(frame.picture, cast.beams, {begin, end}, frame.range_m, frame.intensity);
       for (std::size_t i = begin; i < end; ++i) {
         const bool is_visible = !std::isnan(frame.range_m[i]);
         frame.status[i] = is_visible
-                              ? check_limits(setup.sensor.limits, setup.beams, i, frame.range_m[i])
+                              ? check_limits(cast.sensor.limits, cast.beams, i, frame.range_m[i])
                               : Status::miss;
         if (frame.status[i] == Status::hit) continue;
         frame.range_m[i] = kNaN;
         frame.intensity[i] = 0.0F;
       }
     };
-    setup.renderer.thread_pool().parallel_for(setup.beams.size(), kPixelsPerTask, decode);
+    cast.thread_pool.parallel_for(cast.beams.size(), kPixelsPerTask, decode);
   };
 }
 

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <glidar/render/woods2016_framebuffer.hpp>
-#include <glidar/simulate/setup.hpp>
+#include <glidar/simulate/return_replacement.hpp>
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -16,12 +15,12 @@ namespace glidar {
 void decode_framebuffer(const Woods2016Framebuffer& picture, const Beams& beams, BeamRange range,
                         std::vector<double>& range_m, std::vector<float>& intensity);
 
-/// For Setup::replace_returns: the method of the 2016 paper. The camera, over the same scene, draws
-/// the framebuffer Frame::picture; range, intensity and status of every beam are decoded from it.
-/// `planes` are those of equation (8); empty: as tight as possible around the surfaces in view. The
-/// camera must outlive the result. A call throws Error for a pulsed sensor, beams with firing times
-/// and pointing noise.
-std::function<void(const Setup&, const Beams&, Frame&)> woods2016_measurement(
-    Woods2016Camera& camera, std::optional<Woods2016DepthPlanes> planes = {});
+/// For Simulator::set_return_replacement(): the method of the 2016 paper. The camera, over the same
+/// scene, draws the framebuffer Frame::picture; range, intensity and status of every beam are
+/// decoded from it. `planes` are those of equation (8); empty: as tight as possible around the
+/// surfaces in view. The camera must outlive the result. A call throws Error for a pulsed sensor,
+/// beams with firing times and pointing noise.
+ReturnReplacement woods2016_measurement(Woods2016Camera& camera,
+                                        std::optional<Woods2016DepthPlanes> planes = {});
 
 }  // namespace glidar

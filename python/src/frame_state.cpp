@@ -50,6 +50,7 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("status", frame.status);
   visit("return_source", frame.return_source);
   visit("sigma_m", frame.sigma_m);
+  visit("true_directions", frame.true_directions);
   visit("deskewed.directions", frame.deskewed.directions);
   visit("deskewed.true_directions", frame.deskewed.true_directions);
   visit("deskewed.origins_m", frame.deskewed.origins_m);

@@ -21,15 +21,6 @@ struct Told {
   std::string text;
 };
 
-Setup setup_of(const Measured& measured, const ProgressCallback& progress) {
-  return {.scene = *measured.rendered().scene,
-          .sensor = measured.sensor->sensor(),
-          .beams = *measured.beams,
-          .motion = *measured.motion,
-          .renderer = *measured.rendered().renderer,
-          .progress = progress};
-}
-
 Told explained(const Measured& measured, std::size_t entry) {
   return unlocked([&](Watch& watch) {
     Frame frame;
@@ -37,10 +28,11 @@ Told explained(const Measured& measured, std::size_t entry) {
     frame.seed = measured.frame.seed;
     frame.sensor_id = measured.frame.sensor_id;
     frame.number = measured.frame.number;
-    const Setup setup = setup_of(measured, watch.progress());
-    const std::lock_guard turn(measured.rendered().turn);
-    Told told{explain(setup, entry, frame), ""};
-    told.text = format_trace(told.story, setup, frame);
+    PreparedScene& prepared = measured.rendered();
+    const std::lock_guard turn(prepared.turn);
+    Simulator simulator(*prepared.scene, measured.sensor, *prepared.renderer);
+    Told told{explain(simulator, *measured.motion, entry, frame, watch.progress()), ""};
+    told.text = format_trace(told.story, simulator, frame);
     return told;
   });
 }

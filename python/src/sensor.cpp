@@ -163,19 +163,6 @@ void bind_options(nb::module_& module) {
 
 }  // namespace
 
-SensorHandle::SensorHandle(Sensor sensor)
-    : sensor_(std::move(sensor)), first_(std::make_shared<const Beams>(make_beams(sensor_))) {}
-
-std::shared_ptr<const Beams> SensorHandle::beams(std::uint32_t number) const {
-  if (number == 0 || std::holds_alternative<Pinhole>(sensor_.optics)) return first_;
-  const std::lock_guard lock(mutex_);
-  if (last_number_ != number) {
-    last_ = std::make_shared<const Beams>(make_beams(sensor_, frame_interval(sensor_, number)));
-    last_number_ = number;
-  }
-  return last_;
-}
-
 void bind_sensor(nb::module_& module) {
   bind_options(module);
   nb::class_<SensorHandle>(module, "Sensor")

@@ -6,7 +6,7 @@
 
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/sensor/view_placement.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -26,9 +26,10 @@ namespace {
 constexpr std::size_t kTogether = 8;
 
 /// A scene and a sensor made ready.
-struct Simulator {
+struct SimulatorHandle {
   std::shared_ptr<PreparedScene> prepared;
   std::shared_ptr<SensorHandle> sensor;
+  std::shared_ptr<Simulator> simulator;  ///< of both
   std::vector<Trajectory> motion;        ///< of the scene's instances; empty: they are stationary
   std::optional<Trajectory> rig_motion;  ///< of the scene file
   std::optional<Pose> world_from_rig;    ///< of the scene file
@@ -36,10 +37,13 @@ struct Simulator {
   std::shared_ptr<FramePool> pool = std::make_shared<FramePool>();
 };
 
-Simulator make_simulator(SceneHandle& scene, const std::shared_ptr<SensorHandle>& sensor,
-                         const std::string& renderer, unsigned threads) {
-  return {.prepared = prepare(scene, {.kind = renderer, .threads = threads}),
+SimulatorHandle make_simulator(SceneHandle& scene, const std::shared_ptr<SensorHandle>& sensor,
+                               const std::string& renderer, unsigned threads) {
+  auto prepared = prepare(scene, {.kind = renderer, .threads = threads});
+  auto simulator = std::make_shared<Simulator>(*prepared->scene, sensor, *prepared->renderer);
+  return {.prepared = std::move(prepared),
           .sensor = sensor,
+          .simulator = std::move(simulator),
           .motion = scene.motion,
           .rig_motion = scene.rig_motion,
           .world_from_rig = scene.world_from_rig,
@@ -58,9 +62,9 @@ struct Batch {
   [[nodiscard]] std::size_t size() const { return sensors.all.size(); }
 };
 
-Motion motion_of(const Simulator& simulator, const Batch& batch, std::size_t k) {
-  const Scene& scene = *simulator.prepared->scene;
-  if (!batch.objects) return make_motion(scene, batch.sensors.all[k], simulator.motion);
+Motion motion_of(const SimulatorHandle& handle, const Batch& batch, std::size_t k) {
+  const Scene& scene = *handle.prepared->scene;
+  if (!batch.objects) return make_motion(scene, batch.sensors.all[k], handle.motion);
   const std::vector<Trajectory>& all = batch.objects->all;
   const std::size_t count = scene.instances.size();
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(all.size() == count ? 0 : k * count);
@@ -70,44 +74,43 @@ Motion motion_of(const Simulator& simulator, const Batch& batch, std::size_t k) 
 
 using Frames = std::vector<std::unique_ptr<Measured>>;
 
-std::unique_ptr<Measured> start(const Simulator& simulator, const Batch& batch, std::size_t k) {
-  auto measured = std::make_unique<Measured>(simulator.pool, simulator.pool->take());
-  measured->prepared = simulator.prepared;
-  measured->sensor = simulator.sensor;
-  measured->beams = simulator.sensor->beams(batch.numbers[k]);
-  measured->motion = std::make_shared<const Motion>(motion_of(simulator, batch, k));
+std::unique_ptr<Measured> start(const SimulatorHandle& handle, const Batch& batch, std::size_t k) {
+  auto measured = std::make_unique<Measured>(handle.pool, handle.pool->take());
+  measured->prepared = handle.prepared;
+  measured->sensor = handle.sensor;
+  measured->beams = handle.sensor->beams(batch.numbers[k]);
   Frame& frame = measured->frame;
   frame.number = batch.numbers[k];
-  frame.stamp_ns = frame_interval(simulator.sensor->sensor(), frame.number).start_ns;
+  frame.stamp_ns = frame_interval(handle.sensor->sensor(), frame.number).start_ns;
   frame.seed = batch.seeds[k];
   frame.sensor_id = batch.sensor_id;
   return measured;
 }
 
-/// Measures some frames together; they lie side by side for that long.
-void measure_run(const Batch& batch, std::span<const std::unique_ptr<Measured>> run, Watch& watch) {
-  std::vector<Setup> setups;
+/// Measures frames [first, first + run.size()) of the batch together.
+void measure_run(const SimulatorHandle& handle, const Batch& batch, std::size_t first,
+                 std::span<const std::unique_ptr<Measured>> run, Watch& watch) {
+  std::vector<Motion> motions;
   std::vector<Frame> frames;
-  for (const auto& measured : run) {
-    setups.push_back({.scene = *measured->prepared->scene,
-                      .sensor = measured->sensor->sensor(),
-                      .beams = *measured->beams,
-                      .motion = *measured->motion,
-                      .renderer = *measured->prepared->renderer,
-                      .progress = watch.progress()});
-    frames.push_back(std::move(measured->frame));
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    motions.push_back(motion_of(handle, batch, first + k));
+    frames.push_back(std::move(run[k]->frame));
   }
-  simulate_batch(setups, batch.fields, frames);
-  for (std::size_t k = 0; k < run.size(); ++k) run[k]->frame = std::move(frames[k]);
+  handle.simulator->simulate_batch(motions, batch.fields, frames, watch.progress());
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    run[k]->motion = std::make_shared<const Motion>(std::move(motions[k]));
+    run[k]->frame = std::move(frames[k]);
+  }
 }
 
-Frames measure_all(const Simulator& simulator, const Batch& batch, Watch& watch) {
+Frames measure_all(const SimulatorHandle& handle, const Batch& batch, Watch& watch) {
   Frames frames;
-  for (std::size_t k = 0; k < batch.size(); ++k) frames.push_back(start(simulator, batch, k));
-  const std::lock_guard turn(simulator.prepared->turn);
+  for (std::size_t k = 0; k < batch.size(); ++k) frames.push_back(start(handle, batch, k));
+  const std::lock_guard turn(handle.prepared->turn);
   for (std::size_t k = 0; k < frames.size(); k += kTogether) {
     watch.look();
-    measure_run(batch, std::span(frames).subspan(k, std::min(kTogether, frames.size() - k)), watch);
+    const std::size_t count = std::min(kTogether, frames.size() - k);
+    measure_run(handle, batch, k, std::span(frames).subspan(k, count), watch);
   }
   return frames;
 }
@@ -116,7 +119,7 @@ Frames measure_all(const Simulator& simulator, const Batch& batch, Watch& watch)
 using Keys = std::tuple<Numbers<std::uint64_t>, Numbers<std::uint32_t>, std::uint32_t>;
 using Key = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>;
 
-nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
+nb::list simulate_all(const SimulatorHandle& handle, const Trajectories& sensors,
                       const std::optional<Trajectories>& objects, const Keys& keys,
                       const HitFieldMask& fields) {
   const auto& [seeds, numbers, sensor_id] = keys;
@@ -126,7 +129,7 @@ nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
                     .numbers = {numbers.data(), numbers.shape(0)},
                     .sensor_id = sensor_id,
                     .fields = fields};
-  Frames frames = unlocked([&](Watch& watch) { return measure_all(simulator, batch, watch); });
+  Frames frames = unlocked([&](Watch& watch) { return measure_all(handle, batch, watch); });
   nb::list result;
   for (auto& measured : frames) {
     result.append(nb::cast(measured.release(), nb::rv_policy::take_ownership));
@@ -135,7 +138,7 @@ nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
 }
 
 /// The same for one frame, with less ado.
-std::unique_ptr<Measured> simulate_one(const Simulator& simulator, const Trajectories& sensor,
+std::unique_ptr<Measured> simulate_one(const SimulatorHandle& handle, const Trajectories& sensor,
                                        const std::optional<Trajectories>& objects, const Key& key,
                                        const HitFieldMask& fields) {
   const auto& [seed, number, sensor_id] = key;
@@ -146,30 +149,30 @@ std::unique_ptr<Measured> simulate_one(const Simulator& simulator, const Traject
                     .sensor_id = sensor_id,
                     .fields = fields};
   return std::move(
-      unlocked([&](Watch& watch) { return measure_all(simulator, batch, watch); }).front());
+      unlocked([&](Watch& watch) { return measure_all(handle, batch, watch); }).front());
 }
 
 /// Where the scene file has its only sensor; else where it sees all of the scene.
-Trajectories usual_motion(const Simulator& simulator) {
-  if (simulator.rig_motion) return {{*simulator.rig_motion}};
-  const std::shared_ptr<const Beams> beams = simulator.sensor->beams(0);
+Trajectories usual_motion(const SimulatorHandle& handle) {
+  if (handle.rig_motion) return {{*handle.rig_motion}};
+  const std::shared_ptr<const Beams> beams = handle.sensor->beams(0);
   const bool is_lidar = !looks_along_z(*beams);
-  if (simulator.world_from_rig) {
-    const Pose& given = *simulator.world_from_rig;
-    const bool turned = simulator.looks_at && is_lidar;
+  if (handle.world_from_rig) {
+    const Pose& given = *handle.world_from_rig;
+    const bool turned = handle.looks_at && is_lidar;
     return {{ConstantPose{turned ? given * optical_from_body() : given}}};
   }
   const Eigen::Vector3d from(2.0, -3.0, 2.0);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  const Scene& scene = *simulator.prepared->scene;
+  const Scene& scene = *handle.prepared->scene;
   return {{ConstantPose{is_lidar ? place_lidar_beside(*beams, scene, from, up)
                                  : fit_camera_to_scene(*beams, scene, from, up)}}};
 }
 
 /// Gives a restored frame the scene that it was measured of, and the renderer.
-void attach(const Simulator& simulator, Measured& measured) {
-  require_hits_of(*simulator.prepared->scene, measured);
-  if (!measured.prepared) measured.prepared = simulator.prepared;
+void attach(const SimulatorHandle& handle, Measured& measured) {
+  require_hits_of(*handle.prepared->scene, measured);
+  if (!measured.prepared) measured.prepared = handle.prepared;
 }
 
 /// Gives it the scene alone, of which clouds and files are made without a renderer.
@@ -187,7 +190,7 @@ HitFieldMask fields(const std::vector<std::string>& columns) {
 void bind_simulator(nb::module_& module) {
   nb::class_<HitFieldMask>(module, "HitFieldMask", "The ground truth that a frame keeps.");
   module.def("fields_needed_by", fields, nb::arg("columns"));
-  nb::class_<Simulator>(module, "Simulator")
+  nb::class_<SimulatorHandle>(module, "Simulator")
       .def(
           "simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(), nb::arg("keys"),
           nb::arg("fields"),
@@ -197,8 +200,9 @@ void bind_simulator(nb::module_& module) {
            nb::arg("key"), nb::arg("fields"))
       .def("usual_motion", usual_motion)
       .def("attach", attach, nb::arg("frame"))
-      .def_prop_ro("objects",
-                   [](const Simulator& self) { return self.prepared->scene->instances.size(); });
+      .def_prop_ro("objects", [](const SimulatorHandle& self) {
+        return self.prepared->scene->instances.size();
+      });
   module.def("attach_scene", attach_scene, nb::arg("frame"), nb::arg("scene"), nb::arg("renderer"));
   module.def("make_simulator", make_simulator, nb::arg("scene"), nb::arg("sensor"),
              nb::arg("renderer"), nb::arg("threads"));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -12,14 +12,11 @@ int main() {
   glidar::add_model(scene, glidar::make_builtin_model("sphere"));
   glidar::Sensor sensor;
   sensor.optics = glidar::pinhole_from_fov(65, 65, 0.5);
-  const glidar::Beams beams = glidar::make_beams(sensor);
-  const glidar::Motion motion = glidar::static_motion(
-      scene, glidar::look_at({3.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}));
-  const auto renderer = glidar::make_renderer(scene, {});
-  glidar::Frame frame;
-  glidar::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+  glidar::Simulator simulator(scene, sensor);
+  const glidar::Frame frame =
+      simulator.simulate(glidar::look_at({3.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}));
 
-  const double middle_m = frame.range_m.at(beams.size() / 2);
+  const double middle_m = frame.range_m.at(frame.range_m.size() / 2);
   std::printf("range of the middle beam: %.6f m\n", middle_m);
   const double facet_error_m = 1e-3;  // flat triangles lie inside the round sphere
   return std::abs(middle_m - 2.0) < facet_error_m ? 0 : 1;

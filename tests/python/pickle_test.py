@@ -198,6 +198,14 @@ def test_a_frame_with_motion_survives_pickling(asteroid):
     assert str(back.explain(0, hits_only=True)) == str(frame.explain(0, hits_only=True))
 
 
+def test_a_frame_with_pointing_errors_survives_pickling(asteroid):
+    jitter = {"type": "pointing_jitter", "sigma_azimuth_deg": 1.0, "sigma_elevation_deg": 1.0}
+    frame = glidar.simulate(asteroid, glidar.camera(32, 24, fov_deg=30.0, noise=[jitter]), columns="all")
+    back = again(frame)
+    assert back == frame
+    assert back.cloud(["xyz", "true_xyz"]) == frame.cloud(["xyz", "true_xyz"])
+
+
 def test_an_unpickled_frame_reads_its_scene_on_first_use(tmp_path, camera):
     model = tmp_path / "one.obj"
     model.write_text("v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n")

@@ -15,9 +15,13 @@ namespace glidar::testing {
 /// A frame of a synthetic sensor whose beams are all parallel to the boresight, so that range is
 /// depth.
 struct NoiseStage {
+  static constexpr double kFrame_s = 0.1;
+
   Beams beams;
   Frame frame;
   ThreadPool thread_pool{2};
+  NoiseWorkspace workspace;
+  Beams perturbed;  ///< memory for perturb()
 
   NoiseStage(std::uint32_t rows, std::uint32_t cols, double range_m, double intensity = 1.0) {
     beams.rows = rows;
@@ -42,9 +46,12 @@ struct NoiseStage {
     frame.intensity[beam] = 0.0F;
   }
 
+  const Beams& perturb(const std::vector<NoiseStep>& noise) {
+    return perturb_directions(plan_noise(noise, kFrame_s), beams, frame, thread_pool, perturbed);
+  }
+
   void apply(const std::vector<NoiseStep>& noise) {
-    constexpr double kFrame_s = 0.1;
-    apply_noise(noise, kFrame_s, beams, thread_pool, frame);
+    apply_noise(plan_noise(noise, kFrame_s), beams, thread_pool, workspace, frame);
   }
 };
 

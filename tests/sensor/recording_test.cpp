@@ -233,7 +233,9 @@ TEST_P(OusterRecording, HasTheSimulatedQuantumOfRange) {
     frame.status[i] = Status::hit;
   }
   ThreadPool thread_pool(2);
-  apply_noise({RangeQuantization{.step_m = kQuantum_m}}, 0.1, beams, thread_pool, frame);
+  NoiseWorkspace workspace;
+  apply_noise(plan_noise({RangeQuantization{.step_m = kQuantum_m}}, 0.1), beams, thread_pool,
+              workspace, frame);
   OusterColumn simulated;
   for (const double range_m : frame.range_m) {
     const double range_mm = 1e3 * (range_m + beams.range_offset_m);

@@ -3,9 +3,9 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
+#include <support/simulate.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ struct Stage {
   }
 
   PointCloud shoot(const std::vector<std::string>& columns) {
-    simulate({scene, sensor, beams, motion, *renderer}, fields_needed_by(columns), frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, fields_needed_by(columns), frame);
     PointCloud cloud;
     make_point_cloud(frame, beams, scene, {beams.frame_id}, columns, cloud);
     return cloud;

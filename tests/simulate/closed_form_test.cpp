@@ -5,8 +5,8 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Frame shoot(const Scene& scene, const Beams& beams, const Motion& motion) {
   const auto renderer = make_renderer(scene, {.threads = 2});
   const Sensor sensor;
   Frame frame;
-  simulate({scene, sensor, beams, motion, *renderer}, {.incidence = true}, frame);
+  testing::simulate({scene, sensor, beams, motion, *renderer}, {.incidence = true}, frame);
   return frame;
 }
 

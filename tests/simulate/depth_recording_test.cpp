@@ -115,7 +115,8 @@ std::vector<double> modelled(double k_m, double counts_per_m) {
     frame.range_m[i] = 2.2 / (d.z() - 0.3 * d.x());
   }
   ThreadPool thread_pool(2);
-  apply_noise({KinectV1{.k_m = k_m}}, 1.0 / 30.0, beams, thread_pool, frame);
+  NoiseWorkspace workspace;
+  apply_noise(plan_noise({KinectV1{.k_m = k_m}}, 1.0 / 30.0), beams, thread_pool, workspace, frame);
   std::vector<double> depth_m;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double z = glidar::depth_m(beams, i, frame.range_m[i]);

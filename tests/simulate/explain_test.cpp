@@ -26,16 +26,15 @@ struct Stage : testing::PanelScene {
   /// Simulates, or explains if a trace is requested.
   Frame shoot(std::size_t entry, PointTrace* story) const {
     const auto renderer = make_renderer(scene, {.threads = 2});
-    const Beams beams = make_beams(sensor);
     const Motion motion = static_motion(scene, Pose::Identity());
-    const Setup setup{scene, sensor, beams, motion, *renderer};
+    Simulator simulator(scene, sensor, *renderer);
     Frame frame;
     frame.seed = 5;
     frame.number = 2;
     if (story != nullptr) {
-      *story = explain(setup, entry, frame);
+      *story = explain(simulator, motion, entry, frame);
     } else {
-      simulate(setup, {}, frame);
+      simulator.simulate(motion, {}, frame);
     }
     return frame;
   }
@@ -181,15 +180,14 @@ TEST(Explain, TracesThePulseOfASelectedEntry) {
   stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
   stage.sensor.weather = Weather{.rain_mm_per_h = 20.0};
   const auto renderer = make_renderer(stage.scene, {.threads = 2});
-  const Beams beams = make_beams(stage.sensor);
   const Motion motion = static_motion(stage.scene, Pose::Identity());
-  const glidar::Setup setup{stage.scene, stage.sensor, beams, motion, *renderer};
+  Simulator simulator(stage.scene, stage.sensor, *renderer);
   Frame frame;
   const auto last_hit = [](const Frame& measured) {
     const auto found = std::find(measured.status.rbegin(), measured.status.rend(), Status::hit);
     return static_cast<std::size_t>(found.base() - measured.status.begin()) - 1;
   };
-  const PointTrace story = explain(setup, last_hit, frame);
+  const PointTrace story = explain(simulator, motion, last_hit, frame);
   EXPECT_EQ(frame.status[story.entry], Status::hit);
   EXPECT_EQ(last_hit(frame), story.entry);
   ASSERT_TRUE(story.pulse.has_value());
@@ -197,7 +195,7 @@ TEST(Explain, TracesThePulseOfASelectedEntry) {
   EXPECT_EQ(story.pulse->received.at(0).range_m, story.measured.range_m);
   EXPECT_EQ(story.noise.back().after.range_m, frame.range_m[story.entry]);
   Frame simulated;
-  simulate(setup, {}, simulated);
+  simulator.simulate(motion, {}, simulated);
   expect_same(frame, simulated);
 }
 

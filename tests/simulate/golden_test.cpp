@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same bytes from every build type and any number of threads.
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -33,8 +33,8 @@ TEST(Golden, TheAsteroidsFrameHasTheRecordedBytes) {
       static_motion(scene, look_at({4.0, -3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
   const auto renderer = make_renderer(scene, {});
   Frame frame;
-  simulate({scene, sensor, beams, motion, *renderer},
-           {.normal = true, .shading_normal = true, .object_point = true}, frame);
+  testing::simulate({scene, sensor, beams, motion, *renderer},
+                    {.normal = true, .shading_normal = true, .object_point = true}, frame);
   EXPECT_EQ(hash_of(frame.range_m), 9726207806536911748U);
   EXPECT_EQ(hash_of(frame.intensity), 2773538468981654652U);
   EXPECT_EQ(hash_of(frame.ground_truth.primitive), 9915169409929839669U);

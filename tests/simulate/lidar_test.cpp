@@ -4,8 +4,8 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ struct Room {
     const Beams beams = make_beams(sensor);
     const Motion motion = static_motion(scene, Pose::Identity());
     const auto renderer = make_renderer(scene, {.threads = 2});
-    simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
     const std::vector<std::string> columns = {"xyz", "range", "ring", "time"};
     make_point_cloud(frame, beams, scene, {.frame_id = beams.frame_id}, columns, cloud);
     check(beams);
@@ -87,7 +87,7 @@ TEST(Lidar, LimitsApplyToTheReportedRange) {
   const Motion motion = static_motion(scene, Pose::Identity());
   const auto renderer = make_renderer(scene, {.threads = 2});
   Frame frame;
-  simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+  testing::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
     const double reported_m = frame.ground_truth.range_m[i] + beams.range_offset_m;
     EXPECT_EQ(frame.status[i], reported_m > 2.5 ? Status::too_far : Status::hit);
@@ -103,7 +103,7 @@ TEST(Ouster, RangesInsideASphereMatchTheClosedForm) {
   const Motion motion = static_motion(scene, Pose::Identity());
   const auto renderer = make_renderer(scene, {.threads = 2});
   Frame frame;
-  simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+  testing::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   double sum_m = 0.0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const SpinningChannel& channel = spinning.channels[beams.rings[i]];

@@ -4,9 +4,9 @@
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/io/model/model.hpp>
 #include <glidar/sensor/lidar/footprint.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <simulate/panels.hpp>
 #include <support/preset.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ Frame shoot(const Scene& scene, const Sensor& sensor, const Pose& world_from_sen
   const Beams beams = make_beams(sensor);
   const Motion motion = static_motion(scene, world_from_sensor);
   Frame frame;
-  simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+  testing::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   return frame;
 }
 

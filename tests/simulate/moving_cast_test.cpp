@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -27,11 +27,11 @@ struct Stage {
     motion = static_motion(scene, look_at({0.4, -0.3, 5.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
     renderer = make_renderer(scene, {.threads = 2});
   }
-  Setup setup() { return {scene, sensor, beams, motion, *renderer}; }
+  testing::SimulationInputs inputs() { return {scene, sensor, beams, motion, *renderer}; }
   Frame shoot(std::int64_t stamp_ns = 0) {
     Frame frame;
     frame.stamp_ns = stamp_ns;
-    simulate(setup(), kAllHitFields, frame);
+    testing::simulate(inputs(), kAllHitFields, frame);
     return frame;
   }
 };
@@ -185,10 +185,10 @@ TEST(MovingCast, ReportsProgressOverAllBodies) {
         .pose = stage.scene.instances[i].world_from_object, .angular_rad_s = {1.0, 2.0, -1.5}};
   }
   std::vector<double> told;
-  auto setup = stage.setup();
-  setup.progress = [&](double fraction) { told.push_back(fraction); };
+  testing::SimulationInputs inputs = stage.inputs();
+  inputs.progress = [&](double fraction) { told.push_back(fraction); };
   Frame frame;
-  simulate(setup, kAllHitFields, frame);
+  testing::simulate(inputs, kAllHitFields, frame);
   ASSERT_GE(told.size(), 3U);  // three bodies, each reported at least at its end
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_GE(told.front(), 0.0);
@@ -200,12 +200,14 @@ TEST(MovingCast, AllocatesNothingInTheSteadyState) {
   Stage stage(plane());
   stage.motion.world_from_sensor =
       ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0), .linear_m_s = {1, 0, 0}};
+  Simulator simulator(stage.scene, stage.sensor, *stage.renderer);
   Frame frame;
-  simulate(stage.setup(), kAllHitFields, frame);
-  const void* const before = frame.workspace.moved.directions.data();
+  Simulation simulation = simulator.prepare(stage.beams, stage.motion, kAllHitFields, frame, {});
+  simulate({&simulation, 1});
+  const void* const moved = simulation.workspace.moving_cast.beams.directions.data();
   const void* const deskewed = frame.deskewed.directions.data();
-  simulate(stage.setup(), kAllHitFields, frame);
-  EXPECT_EQ(frame.workspace.moved.directions.data(), before);
+  simulate({&simulation, 1});
+  EXPECT_EQ(simulation.workspace.moving_cast.beams.directions.data(), moved);
   EXPECT_EQ(frame.deskewed.directions.data(), deskewed);
 }
 

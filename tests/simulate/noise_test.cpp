@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Noise from the scene to the frame: the same bytes for any number of threads, and no other effect.
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -62,7 +62,7 @@ struct Stage {
     Frame frame;
     frame.seed = seed;
     frame.number = number;
-    simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
     return frame;
   }
 };
@@ -180,7 +180,7 @@ TEST(Noise, BeamsWithJitterAreReportedInTheNominalDirection) {
   double count = 0.0;
   for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
     if (frame.status[i] != Status::hit) continue;
-    const Eigen::Vector3d& went = frame.workspace.aimed.directions[i];
+    const Eigen::Vector3d& went = frame.true_directions[i];
     EXPECT_NEAR(frame.range_m[i] * went.z(), 3.0, 1e-12);
     const double apart = std::acos(std::min(1.0, went.dot(stage.beams.directions[i])));
     squares += apart * apart;

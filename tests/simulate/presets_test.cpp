@@ -5,9 +5,9 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 #include <support/preset.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 #include <io/yaml_files.hpp>
@@ -33,7 +33,7 @@ struct Ball {
     const auto renderer = make_renderer(scene, {.threads = 2});
     const Motion motion = static_motion(scene, Pose::Identity());
     frame.seed = 5;
-    simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   }
 
   /// Of the pixels that have a beam.
@@ -201,7 +201,8 @@ TEST(Surfaces, ReturnTheSignalOfTheLidarEquation) {
   const auto renderer = make_renderer(loaded.scene, {.threads = 1});
   const Motion motion = static_motion(loaded.scene, Pose::Identity());
   Frame frame;
-  simulate({loaded.scene, loaded.sensors.at(0).sensor, beams, motion, *renderer}, {}, frame);
+  testing::simulate({loaded.scene, loaded.sensors.at(0).sensor, beams, motion, *renderer}, {},
+                    frame);
   EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);  // a wall of the box, at normal incidence
   EXPECT_NEAR(frame.intensity[0], 0.278 / 0.8 * 100.0, 1e-4);
 }
@@ -217,7 +218,8 @@ Frame look_past_a_box(const Sensor& sensor, double front_m) {
   const auto renderer = make_renderer(scene, {.threads = 2});
   const Beams beams = make_beams(sensor);
   Frame frame;
-  simulate({scene, sensor, beams, static_motion(scene, Pose::Identity()), *renderer}, {}, frame);
+  testing::simulate({scene, sensor, beams, static_motion(scene, Pose::Identity()), *renderer}, {},
+                    frame);
   return frame;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/simulate/simulate.hpp>
 #include <simulate/panels.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ struct Stage {
     const Beams beams = make_beams(sensor);
     const Motion motion = static_motion(panels.scene, Pose::Identity());
     Frame frame;
-    simulate({panels.scene, sensor, beams, motion, *renderer}, {}, frame);
+    testing::simulate({panels.scene, sensor, beams, motion, *renderer}, {}, frame);
     return frame;
   }
 };

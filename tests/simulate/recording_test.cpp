@@ -112,7 +112,8 @@ std::vector<Firing> with_noise(std::vector<Firing> firings, const std::vector<No
     frame.intensity[i] = static_cast<float>(firings[i / kChannels].intensity[i % kChannels]);
   }
   ThreadPool thread_pool(2);
-  apply_noise(noise, 0.1, beams, thread_pool, frame);
+  NoiseWorkspace workspace;
+  apply_noise(plan_noise(noise, 0.1), beams, thread_pool, workspace, frame);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double range_m = frame.range_m[i];
     firings[i / kChannels].range_m[i % kChannels] = std::isnan(range_m) ? 0.0 : range_m;

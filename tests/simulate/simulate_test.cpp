@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ struct Stage {
   }
   Frame shoot(const HitFieldMask& fields = {}) {
     Frame frame;
-    simulate({scene, sensor, beams, motion, *renderer}, fields, frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, fields, frame);
     return frame;
   }
 };
@@ -131,12 +131,12 @@ TEST(Simulate, AllocatesNothingInTheSteadyState) {
   Stage stage(64);
   stage.sensor.noise = {PointingJitter{.sigma_azimuth_rad = 1e-4}, RangeGaussian{.sigma_m = 0.01},
                         KinectV1{}, Dropout{.probability = 0.1}};
-  const glidar::Setup setup{stage.scene, stage.sensor, stage.beams, stage.motion, *stage.renderer};
+  Simulator simulator(stage.scene, stage.sensor, *stage.renderer);
   const HitFieldMask fields{.depth = true, .normal = true, .object_point = true};
   Frame frame;
-  for (int warm_up = 0; warm_up < 3; ++warm_up) simulate(setup, fields, frame);
+  for (int warm_up = 0; warm_up < 3; ++warm_up) simulator.simulate(stage.motion, fields, frame);
   const std::size_t before = allocations;
-  for (int i = 0; i < 10; ++i) simulate(setup, fields, frame);
+  for (int i = 0; i < 10; ++i) simulator.simulate(stage.motion, fields, frame);
   EXPECT_EQ(allocations - before, 0U);
 }
 
@@ -212,13 +212,13 @@ TEST(Simulate, ReportsProgressAndMeasuresTheSame) {
   Stage stage(512);
   std::vector<double> told;
   Frame frame;
-  simulate({.scene = stage.scene,
-            .sensor = stage.sensor,
-            .beams = stage.beams,
-            .motion = stage.motion,
-            .renderer = *stage.renderer,
-            .progress = [&](double fraction) { told.push_back(fraction); }},
-           {}, frame);
+  testing::simulate({.scene = stage.scene,
+                     .sensor = stage.sensor,
+                     .beams = stage.beams,
+                     .motion = stage.motion,
+                     .renderer = *stage.renderer,
+                     .progress = [&](double fraction) { told.push_back(fraction); }},
+                    {}, frame);
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_GT(told.size(), 5U);
   EXPECT_GT(told.front(), 0.0);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/simulate/simulate.hpp>
-#include <glidar/simulate/simulate_waveforms.hpp>
+#include <glidar/simulate/prepared_sensor.hpp>
 #include <simulate/panels.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ struct Stage : testing::PanelScene {
     const Motion motion = static_motion(scene, Pose::Identity());
     Frame frame;
     frame.seed = seed;
-    simulate({scene, sensor, beams, motion, *renderer}, {.normal = true}, frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, {.normal = true}, frame);
     return frame;
   }
 };
@@ -334,7 +334,7 @@ TEST(SimulateWaveforms, GroundTruthIsCorrectInAMovingScene) {
   motion.world_from_instance[0] = ConstantTwist{.linear_m_s = {0.0, 0.0, -10.0}};
   const auto renderer = make_renderer(stage.scene, {});
   Frame frame;
-  simulate({stage.scene, stage.sensor, beams, motion, *renderer}, {}, frame);
+  testing::simulate({stage.scene, stage.sensor, beams, motion, *renderer}, {}, frame);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(frame.range_m[i], 20.0 - static_cast<double>(i), 1e-4);
   }
@@ -363,7 +363,7 @@ TEST(Simulate, AllReturnsOfAPulseHaveTheSamePointingError) {
   stage.sensor.receiver.returns = {kFirst, kLast};
   stage.add_wall(20.0);
   const Frame frame = stage.shoot();
-  const auto& aimed = frame.workspace.aimed.directions;
+  const auto& aimed = frame.true_directions;
   ASSERT_EQ(aimed.size(), 400U);
   EXPECT_TRUE(std::equal(aimed.begin(), aimed.begin() + 200, aimed.begin() + 200));
 }

@@ -3,8 +3,8 @@
 // Weather from the sensor to the frame.
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
+#include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ Frame shoot(const std::optional<LidarEquation>& pulse, const std::optional<Weath
       static_motion(scene, look_at({0.0, 0.0, distance_m}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
   const auto renderer = make_renderer(scene, {.threads = 1});
   Frame frame;
-  simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+  testing::simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   return frame;
 }
 

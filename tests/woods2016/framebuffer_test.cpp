@@ -4,7 +4,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 #include <glidar/woods2016/framebuffer.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
@@ -47,22 +47,13 @@ class Woods2016Measurement : public ::testing::Test {
   static Measured measure(const Scene& scene, const Sensor& sensor, const Pose& pose,
                           std::optional<Woods2016DepthPlanes> planes = {}) {
     Measured measured;
-    const Beams beams = make_beams(sensor);
     const Motion motion = static_motion(scene, pose);
-    const auto renderer = make_renderer(scene, {.threads = 2});
     const auto camera = make_paper_camera(scene, {.kind = "opengl", .threads = 2});
     const HitFieldMask fields{.depth = true, .incidence = true};
-    simulate(
-        {.scene = scene, .sensor = sensor, .beams = beams, .motion = motion, .renderer = *renderer},
-        fields, measured.exact);
-    simulate({.scene = scene,
-              .sensor = sensor,
-              .beams = beams,
-              .motion = motion,
-              .renderer = *renderer,
-              .progress = {},
-              .replace_returns = woods2016_measurement(*camera, planes)},
-             fields, measured.frame);
+    Simulator simulator(scene, sensor, {.threads = 2});
+    simulator.simulate(motion, fields, measured.exact);
+    simulator.set_return_replacement(woods2016_measurement(*camera, planes));
+    simulator.simulate(motion, fields, measured.frame);
     return measured;
   }
 };

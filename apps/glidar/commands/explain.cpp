@@ -133,19 +133,19 @@ int run_explain(const ExplainFlags& flags) {
       render, [] {}, console, session);
   check_models(sidecar, session.scene);
   Frame frame;
-  Mount& mount = only_mount(session);
+  const Mount& mount = only_mount(session);
   start_frame(render, sidecar.frame, mount, frame);
-  const Setup setup = setup_of(session, mount, console);
   const auto pick = [&](const Frame& repeated) {
     check_frame(sidecar, repeated);
-    return entry_of(flags, sidecar, repeated, mount.beams);
+    return entry_of(flags, sidecar, repeated, *mount.simulator->beams(repeated.number));
   };
   PointTrace story;
   {
     const ProgressScope progress(console, "repeating the measurement");
-    story = explain(setup, pick, frame);
+    story = explain(*mount.simulator, mount.motion, pick, frame,
+                    [&console](double fraction) { console.set_progress(fraction); });
   }
-  fmt::print("{}", format_trace(story, setup, frame));
+  fmt::print("{}", format_trace(story, *mount.simulator, frame));
   return kDone;
 }
 

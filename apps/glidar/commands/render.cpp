@@ -9,7 +9,6 @@
 #include <apps/glidar/run/rig_outputs.hpp>
 #include <apps/glidar/run/session.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/simulate/simulate.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -44,9 +43,10 @@ Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted,
 141 standard output was closed.)";
 
 /// Measures the scene and shows the progress.
-void measure(const Setup& setup, const HitFieldMask& fields, Console& console, Frame& frame) {
-  const ProgressScope progress(console, fmt::format("casting {} beams", setup.beams.size()));
-  simulate(setup, fields, frame);
+void measure(const Mount& mount, const HitFieldMask& fields, Console& console, Frame& frame) {
+  const ProgressScope progress(console, fmt::format("casting {} beams", mount.beams.size()));
+  mount.simulator->simulate(mount.motion, fields, frame,
+                            [&console](double fraction) { console.set_progress(fraction); });
 }
 
 void print_summary(const View& view, const std::vector<Output>& outputs, std::FILE* to) {
@@ -112,29 +112,29 @@ OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs, const
 }
 
 /// All frames of one sensor, each written to files of its own.
-void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& console) {
+void measure_all(Job& job, const OutputFlags& files, const Mount& mount, Console& console) {
   const RenderFlags& flags = job.flags;
   const Session& session = job.session;
-  SidecarContext context{.scene = session.scene,
-                         .sensor = mount.sensor,
-                         .beams = mount.beams,
-                         .renderer = renderer_name(flags),
-                         .command = job.command,
-                         .inputs = session.files};
+  CommandRecord command = job.command;
   if (!label_of(flags, mount).empty()) {
-    context.command.arguments.insert(context.command.arguments.end(),
-                                     {"--sensor-name", mount.name});
+    command.arguments.insert(command.arguments.end(), {"--sensor-name", mount.name});
   }
-  const Setup setup = setup_of(session, mount, console);
   Frame frame;
-  const View view{session.scene, mount.sensor, mount.beams, frame};
   for (std::uint32_t k = 0; k < mount.frames; ++k) {
+    const std::shared_ptr<const Beams> beams = mount.simulator->beams(k);
+    const SidecarContext context{.scene = session.scene,
+                                 .sensor = mount.sensor,
+                                 .beams = *beams,
+                                 .renderer = renderer_name(flags),
+                                 .command = command,
+                                 .inputs = session.files};
+    const View view{session.scene, mount.sensor, *beams, frame};
     const std::vector<Output> outputs =
         plan_outputs(files_of(flags, files, mount, k), flags.input, context, console.report(),
                      [&console](double fraction) { console.set_progress(fraction); });
     refuse_overwrite_of_inputs(session.files, outputs);
     start_frame(flags, k, mount, frame);
-    measure(setup, needed_fields(flags, outputs), console, frame);
+    measure(mount, needed_fields(flags, outputs), console, frame);
     if (k == 0) print_advice(view_advice(view), console);
     write(flags, view, outputs, console);
     for (const Output& output : outputs) job.written.push_back(output.path);

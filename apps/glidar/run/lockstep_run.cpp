@@ -6,7 +6,6 @@
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/reply_size.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/simulate/simulate.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -51,10 +50,7 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
   open(flags_.render, {}, console_, session_);
   (void)reserved_files(flags_, session_.files);
   if (recorder_) recorder_->begin(session_, flags_.command);
-  for (const Mount& mount : session_.mounts) {
-    beams_.push_back(std::make_shared<const Beams>(mount.beams));
-  }
-  frame_s_.resize(beams_.size());
+  frame_s_.resize(session_.mounts.size());
 }
 
 int LockstepRun::run() {
@@ -164,7 +160,7 @@ std::size_t LockstepRun::frames_at_once(const Job& job) const {
   constexpr double kMax_s = 0.1;
   const double frame_s = frame_s_[job.measure.sensor];
   if (frame_s == 0.0) return 1;
-  const auto beams = static_cast<double>(beams_[job.measure.sensor]->size());
+  const auto beams = static_cast<double>(session_.mounts[job.measure.sensor].beams.size());
   const double frames = std::min({kMaxFrames, kMaxBeams / beams, kMax_s / frame_s});
   return static_cast<std::size_t>(std::max(1.0, frames));
 }
@@ -213,7 +209,7 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
   if (measure.hits_only && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
     refuse_request("flags", "hits only, without the column xyz", "xyz among the columns");
   }
-  const std::size_t points = beams_[measure.sensor]->size();
+  const std::size_t points = session_.mounts[measure.sensor].beams.size();
   const std::int64_t bytes = reply_bytes(columns, points, measure.moments.size());
   const link::Limits& limits = flags_.limits;
   if (bytes > link::bytes_of_mib(std::min(limits.reply_mib, limits.memory_mib))) {
@@ -229,42 +225,27 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
   return bytes;
 }
 
-std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t index,
-                                                   std::uint32_t number) const {
-  const Sensor& sensor = session_.mounts[index].sensor;
-  if (number == 0 || std::holds_alternative<Pinhole>(sensor.optics)) return beams_[index];
-  return std::make_shared<const Beams>(make_beams(sensor, frame_interval(sensor, number)));
-}
-
 void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> moments) {
   const lockstep::Measure& measure = job.measure;
   const Mount& mount = session_.mounts[measure.sensor];
+  Simulator& simulator = *mount.simulator;
   std::vector<std::shared_ptr<const Beams>> beams;
   std::vector<Motion> motions;
-  std::vector<Setup> setups;
   if (frames_.size() < moments.size()) frames_.resize(moments.size());
-  for (const lockstep::Moment& moment : moments) {
-    beams.push_back(beams_of(measure.sensor, moment.number));
+  const std::span<Frame> frames = std::span(frames_).first(moments.size());
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const lockstep::Moment& moment = moments[i];
+    beams.push_back(simulator.beams(moment.number));
     motions.push_back(motion_of(motion_at(moment, session_), mount));
-    Frame& frame = frames_[beams.size() - 1];
-    frame.stamp_ns = moment.t_ns;
-    frame.seed = moment.seed;
-    frame.number = moment.number;
-    frame.sensor_id = mount.id;
+    frames[i].stamp_ns = moment.t_ns;
+    frames[i].seed = moment.seed;
+    frames[i].number = moment.number;
+    frames[i].sensor_id = mount.id;
   }
+  simulator.simulate_batch(motions, glidar::fields_needed_by(measure.columns), frames);
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    setups.push_back({.scene = session_.scene,
-                      .sensor = mount.sensor,
-                      .beams = *beams[i],
-                      .motion = motions[i],
-                      .renderer = *session_.renderer});
-    if (session_.paper) setups.back().replace_returns = woods2016_measurement(*session_.paper);
-  }
-  simulate_batch(setups, glidar::fields_needed_by(measure.columns),
-                 std::span(frames_).first(moments.size()));
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    if (recorder_) job.frames.push_back(line_of(measure.sensor, frames_[i], &moments[i]));
-    job.replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
+    if (recorder_) job.frames.push_back(line_of(measure.sensor, frames[i], &moments[i]));
+    job.replies.push_back(cloud_of(measure, frames[i], *beams[i]));
   }
 }
 

@@ -53,8 +53,6 @@ class LockstepRun {
   void check_deadline(const Job& job) const;
   [[nodiscard]] std::size_t frames_at_once(const Job& job) const;
   void measure_some(Job& job, std::span<const lockstep::Moment> moments);
-  [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t sensor,
-                                                      std::uint32_t number) const;
   [[nodiscard]] lockstep::CloudReply cloud_of(const lockstep::Measure& measure, const Frame& frame,
                                               const Beams& beams);
   void finish(const std::string& ending);
@@ -67,7 +65,6 @@ class LockstepRun {
   lockstep::Server server_;
   std::unique_ptr<Recorder> recorder_;
   Session session_;
-  std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
   link::CloudPool clouds_;
   std::vector<Frame> frames_;
   std::vector<double> frame_s_;  ///< duration of each sensor's last frame; 0: unknown

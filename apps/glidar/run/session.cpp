@@ -238,6 +238,10 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   if (flags.quantized_framebuffer) {
     session.paper = make_paper_camera(session.scene, flags.renderer);
   }
+  for (Mount& mount : session.mounts) {
+    mount.simulator =
+        make_simulator(session, std::make_shared<const BeamCache>(mount.sensor, mount.beams));
+  }
 }
 
 std::string label_of(const RenderFlags& flags, const Mount& mount) {
@@ -255,24 +259,18 @@ Motion motion_of(RigMotion motion, const Mount& mount) {
           .world_from_instance = std::move(motion.world_from_instance)};
 }
 
-void start_frame(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame) {
-  const FrameInterval window = frame_interval(mount.sensor, number);
-  if (number > 0) mount.beams = make_beams(mount.sensor, window);
+void start_frame(const RenderFlags& flags, std::uint32_t number, const Mount& mount, Frame& frame) {
   frame.number = number;
   frame.sensor_id = mount.id;
-  frame.stamp_ns = window.start_ns;
+  frame.stamp_ns = frame_interval(mount.sensor, number).start_ns;
   frame.seed = flags.seed;
 }
 
-Setup setup_of(const Session& session, const Mount& mount, Console& console) {
-  Setup setup{.scene = session.scene,
-              .sensor = mount.sensor,
-              .beams = mount.beams,
-              .motion = mount.motion,
-              .renderer = *session.renderer,
-              .progress = [&console](double fraction) { console.set_progress(fraction); }};
-  if (session.paper) setup.replace_returns = woods2016_measurement(*session.paper);
-  return setup;
+std::shared_ptr<Simulator> make_simulator(const Session& session,
+                                          const std::shared_ptr<const BeamCache>& sensor) {
+  auto simulator = std::make_shared<Simulator>(session.scene, sensor, *session.renderer);
+  if (session.paper) simulator->set_return_replacement(woods2016_measurement(*session.paper));
+  return simulator;
 }
 
 }  // namespace glidar::app

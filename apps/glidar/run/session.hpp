@@ -4,7 +4,7 @@
 
 #include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <glidar/simulate/setup.hpp>
+#include <glidar/simulate/simulator.hpp>
 #include <glidar/woods2016/framebuffer.hpp>
 
 #include <cstdint>
@@ -26,9 +26,10 @@ struct Mount {
   std::uint32_t id = 0;   ///< index in the scene file; its random numbers depend on it
   Sensor sensor;
   Pose rig_from_sensor = Pose::Identity();
-  Beams beams = {};  ///< of the current frame, initially frame 0
+  Beams beams = {};  ///< of frame 0
   Motion motion = {};
-  std::uint32_t frames = 1;  ///< in the requested duration
+  std::uint32_t frames = 1;                   ///< in the requested duration
+  std::shared_ptr<Simulator> simulator = {};  ///< made by open()
 };
 
 /// A prepared measurement: the loaded scene and sensors with their poses and motion.
@@ -56,11 +57,12 @@ Mount& only_mount(Session& session);
 /// The motion of a sensor and all instances.
 Motion motion_of(RigMotion motion, const Mount& mount);
 
-/// Starts a frame of the sequence: sets its beams, number, stamp and seed.
-void start_frame(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame);
+/// Starts a frame of the sequence: sets its number, sensor, stamp and seed.
+void start_frame(const RenderFlags& flags, std::uint32_t number, const Mount& mount, Frame& frame);
 
-/// The inputs of simulate() for a sensor of the session; all must outlive it.
-Setup setup_of(const Session& session, const Mount& mount, Console& console);
+/// A simulator of the session's scene, with the framebuffer that its options select.
+std::shared_ptr<Simulator> make_simulator(const Session& session,
+                                          const std::shared_ptr<const BeamCache>& sensor);
 
 /// Prints advice as warnings.
 void print_advice(const std::vector<std::string>& advice, Console& console);

@@ -12,7 +12,6 @@
 #include <apps/glidar/run/stream_report.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/sidecar.hpp>
-#include <glidar/simulate/simulate.hpp>
 
 #include <fmt/format.h>
 
@@ -33,11 +32,6 @@ constexpr std::chrono::milliseconds kStatusInterval{200};
 
 /// How often the handshakes of peers are polled.
 constexpr std::chrono::milliseconds kPeerPollInterval{20};
-
-/// Whether every frame has the same beams; those of scanners depend on the frame.
-bool has_fixed_beams(const Sensor& sensor) {
-  return std::holds_alternative<Pinhole>(sensor.optics);
-}
 
 legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
   return {
@@ -105,9 +99,6 @@ void StreamRun::open_session() {
       flags_.render, [&] { refuse_overwrite_of_inputs(session_.files, outputs); }, console_,
       session_);
   files_ = outputs_by_sensor(flags_.render, session_, console_);
-  for (const Mount& mount : session_.mounts) {
-    frame_beams_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
-  }
   reserved_files_ = reserved_files(flags_, session_.files);
   std::vector<std::string> columns;
   if (publisher_) {
@@ -277,13 +268,7 @@ void StreamRun::move(const RigMotion& motion) {
 
 void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
   const Mount& mount = session_.mounts[request.mount];
-  auto& [beams, number] = frame_beams_[request.mount];
-  const FrameInterval window = frame_interval(mount.sensor, request.number);
-  if (request.number != number && !has_fixed_beams(mount.sensor)) {
-    beams = std::make_shared<const Beams>(make_beams(mount.sensor, window));
-    number = request.number;
-  }
-  measured.beams = beams;
+  measured.beams = mount.simulator->beams(request.number);
   measured.index = request.index;
   measured.mount = request.mount;
   measured.placed = placed_;
@@ -291,17 +276,13 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
   measured.due = request.due;
   measured.frame.number = request.number;
   measured.frame.sensor_id = mount.id;
-  measured.frame.stamp_ns = request.stamp_ns.value_or(window.start_ns);
+  measured.frame.stamp_ns =
+      request.stamp_ns.value_or(frame_interval(mount.sensor, request.number).start_ns);
   measured.frame.seed = request.seed.value_or(flags_.render.seed);
-  Setup setup{.scene = session_.scene,
-              .sensor = mount.sensor,
-              .beams = *beams,
-              .motion = mount.motion,
-              .renderer = *session_.renderer};
-  if (session_.paper) setup.replace_returns = woods2016_measurement(*session_.paper);
-  simulate(setup, fields_, measured.frame);
+  mount.simulator->simulate(mount.motion, fields_, measured.frame);
   if (measured_++ > 0) return;
-  print_advice(view_advice({session_.scene, mount.sensor, *beams, measured.frame}), console_);
+  print_advice(view_advice({session_.scene, mount.sensor, *measured.beams, measured.frame}),
+               console_);
 }
 
 bool StreamRun::is_wanted(std::uint64_t index) const {

@@ -69,11 +69,6 @@ class StreamRun {
   std::shared_ptr<const lockstep::Moment> placed_;    ///< poses of the simulator's last message
   double duration_s_ = 0.0;
   Session session_;
-  struct FrameBeams {
-    std::shared_ptr<const Beams> beams;
-    std::uint32_t number = 0;  ///< of their frame
-  };
-  std::vector<FrameBeams> frame_beams_;      ///< of each sensor
   std::vector<std::string> reserved_files_;  ///< files that no output may replace
   std::vector<OutputFlags> files_;           ///< of each sensor
   MovedScene moved_scene_;

@@ -155,7 +155,7 @@ void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch)
   Batch<double> normal;
   sample_shared_normals(batch.key, normal);
   std::copy_n(normal.begin(), batch.count,
-              view.frame.workspace.before.begin() + static_cast<std::ptrdiff_t>(batch.first));
+              view.workspace.before.begin() + static_cast<std::ptrdiff_t>(batch.first));
 }
 
 void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {

@@ -42,7 +42,7 @@ void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
 
 void prepare(const Crosstalk& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
-    view.frame.workspace.before[batch.first + i] = batch.range_m[i];
+    view.workspace.before[batch.first + i] = batch.range_m[i];
   }
 }
 
@@ -59,7 +59,7 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
     const std::uint64_t pick = std::uint64_t{words.word[1][i]} * (rows - 1U) >> 32U;
     const std::size_t block = beam / (std::size_t{rows} * cols) * rows;  // of this return
     const std::size_t row = block + (beam / cols % rows + 1U + pick) % rows;
-    const double other_m = view.frame.workspace.before[row * cols + beam % cols];
+    const double other_m = view.workspace.before[row * cols + beam % cols];
     if (!(other_m > step.near_m)) continue;  // that channel has no echo
     set_return_source(view, batch, i, ReturnSource::crosstalk);
     batch.range_m[i] = step.near_m + (other_m - step.near_m) * uniform(words.word[2][i]);

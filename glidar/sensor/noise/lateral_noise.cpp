@@ -12,7 +12,7 @@ double stored_depth(const NoiseView& view, double row, double col) {
   const bool inside = row >= 0.0 && col >= 0.0 && row < view.beams.rows && col < view.beams.cols;
   if (!inside) return kNone;
   const auto at = static_cast<std::size_t>(row) * view.beams.cols + static_cast<std::size_t>(col);
-  return view.frame.workspace.before[at];
+  return view.workspace.before[at];
 }
 
 double depth_between(const NoiseView& view, double row, double col) {
@@ -40,7 +40,7 @@ std::size_t sum_rows(const NoiseView& view, std::size_t row, std::size_t reach, 
   const std::size_t end = std::min<std::size_t>(view.beams.rows, row + reach + 1);
   std::fill(sums.begin(), sums.end(), 0.0);
   for (std::size_t r = top; r < end; ++r) {
-    const double* line = view.frame.workspace.before.data() + r * view.beams.cols + first;
+    const double* line = view.workspace.before.data() + r * view.beams.cols + first;
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += line[k];
   }
   return end - top;
@@ -50,7 +50,7 @@ std::size_t sum_rows(const NoiseView& view, std::size_t row, std::size_t reach, 
 
 void store_depth(const NoiseView& view, const NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
-    view.frame.workspace.before[batch.first + i] =
+    view.workspace.before[batch.first + i] =
         batch.depth_at_zero[i] + batch.depth_per_m[i] * batch.range_m[i];
   }
 }

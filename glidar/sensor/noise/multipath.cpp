@@ -29,7 +29,7 @@ struct alignas(64) Rows {
 /// Loads the pixels [col - 1, col + count + 1) of a row, which may be outside the image.
 void load_echoes(const NoiseView& view, std::ptrdiff_t row, std::ptrdiff_t col, std::size_t count,
                  Echoes& echoes) {
-  const Workspace& kept = view.frame.workspace;
+  const NoiseWorkspace& kept = view.workspace;
   const auto cols = static_cast<std::ptrdiff_t>(view.beams.cols);
   const bool is_inside = row >= 0 && row < static_cast<std::ptrdiff_t>(view.beams.rows);
   for (std::size_t k = 0; k < count + 2; ++k) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -96,19 +97,10 @@ void load_depth(const Beams& beams, NoiseBatch& batch) {
   }
 }
 
-/// Steps [begin, end) of a list; only the first may read neighbours.
-struct StepRange {
-  const std::vector<NoiseStep>& noise;
-  std::size_t begin;
-  std::size_t end;
-  double frame_s;
-
-  [[nodiscard]] bool is_last() const { return end == noise.size(); }
-};
-
-void load(const StepRange& steps, const NoiseView& view, NoiseBatch& batch) {
+void load(const NoisePlan& noise, const NoisePlan::Run& run, const NoiseView& view,
+          NoiseBatch& batch) {
   const Frame& frame = view.frame;
-  batch.frame_s = steps.frame_s;
+  batch.frame_s = noise.frame_s;
   load_column(frame.range_m, batch, kNaN, batch.range_m);
   load_column(frame.sigma_m, batch, 0.0, batch.variance_m2);
   square(batch.variance_m2);
@@ -118,9 +110,7 @@ void load(const StepRange& steps, const NoiseView& view, NoiseBatch& batch) {
   load_column(frame.status, batch, Status::invalid_pixel, batch.status);
   batch.depth_per_m.fill(1.0);
   batch.depth_at_zero.fill(0.0);
-  const auto first = steps.noise.begin() + static_cast<std::ptrdiff_t>(steps.begin);
-  const auto last = steps.noise.begin() + static_cast<std::ptrdiff_t>(steps.end);
-  if (std::any_of(first, last, uses_depth)) load_depth(view.beams, batch);
+  if (run.reads_depth) load_depth(view.beams, batch);
 }
 
 /// Columns of a frame from the first beam of a batch.
@@ -160,8 +150,8 @@ void store(const NoiseView& view, NoiseBatch& batch) {
 }
 
 /// Calls body(batch) for all batches of a frame, loaded.
-template <class Body>
-void for_batches(const StepRange& steps, const NoiseView& view, ThreadPool& thread_pool,
+template <class Load, class Body>
+void for_batches(const Load& load_batch, const NoiseView& view, ThreadPool& thread_pool,
                  const Body& body) {
   const std::size_t size = view.frame.range_m.size();
   const std::size_t batches = (size + kSampleBatch - 1) / kSampleBatch;
@@ -170,29 +160,30 @@ void for_batches(const StepRange& steps, const NoiseView& view, ThreadPool& thre
     for (std::size_t number = begin; number < end; ++number) {
       batch.first = number * kSampleBatch;
       batch.count = std::min(kSampleBatch, size - batch.first);
-      load(steps, view, batch);
+      load_batch(batch);
       body(batch);
     }
   });
 }
 
-void prepare_step(const StepRange& steps, const NoiseView& view, NoiseBatch& batch) {
-  batch.key = rng_key(view.frame, rng_purpose(steps.begin), batch.first);
+void prepare_step(const NoisePlan& noise, std::size_t k, const NoiseView& view, NoiseBatch& batch) {
+  batch.key = rng_key(view.frame, rng_purpose(k), batch.first);
   std::visit(
       [&](const auto& step) {
         if constexpr (kReadsNeighbours<std::decay_t<decltype(step)>>) prepare(step, view, batch);
       },
-      steps.noise[steps.begin]);
+      noise.steps[k]);
 }
 
-void apply_steps(const StepRange& steps, const NoiseView& view, NoiseBatch& batch) {
-  for (std::size_t k = steps.begin; k < steps.end; ++k) {
+void apply_steps(const NoisePlan& noise, const NoisePlan::Run& run, const NoiseView& view,
+                 NoiseBatch& batch) {
+  for (std::size_t k = run.begin; k < run.end; ++k) {
     batch.key = rng_key(view.frame, rng_purpose(k), batch.first);
     std::visit(
         [&](const auto& step) {
           if constexpr (!kPerturbsBeams<std::decay_t<decltype(step)>>) apply(step, view, batch);
         },
-        steps.noise[k]);
+        noise.steps[k]);
   }
 }
 
@@ -210,17 +201,34 @@ void perturb_beams(const std::vector<NoiseStep>& noise, const Frame& frame, Beam
   }
 }
 
-/// Applies steps of which at most the first reads neighbours.
-void apply_range(const StepRange& steps, const NoiseView& view, ThreadPool& thread_pool) {
-  if (reads_neighbours(steps.noise[steps.begin])) {
-    for_batches(steps, view, thread_pool,
-                [&](NoiseBatch& batch) { prepare_step(steps, view, batch); });
+void apply_run(const NoisePlan& noise, const NoisePlan::Run& run, const NoiseView& view,
+               ThreadPool& thread_pool) {
+  const auto load_batch = [&](NoiseBatch& batch) { load(noise, run, view, batch); };
+  if (run.reads_neighbours) {
+    for_batches(load_batch, view, thread_pool,
+                [&](NoiseBatch& batch) { prepare_step(noise, run.begin, view, batch); });
   }
-  for_batches(steps, view, thread_pool, [&](NoiseBatch& batch) {
-    apply_steps(steps, view, batch);
-    if (steps.is_last()) invalidate_nonpositive_ranges(batch);
+  const bool is_last = run.end == noise.steps.size();
+  for_batches(load_batch, view, thread_pool, [&](NoiseBatch& batch) {
+    apply_steps(noise, run, view, batch);
+    if (is_last) invalidate_nonpositive_ranges(batch);
     store(view, batch);
   });
+}
+
+/// Splits the steps before those that read neighbours.
+std::vector<NoisePlan::Run> runs_of(const std::vector<NoiseStep>& steps) {
+  std::vector<NoisePlan::Run> runs;
+  for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
+    const auto first = steps.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = std::find_if(first + 1, steps.end(), reads_neighbours);
+    end = static_cast<std::size_t>(last - steps.begin());
+    runs.push_back({.begin = begin,
+                    .end = end,
+                    .reads_neighbours = reads_neighbours(*first),
+                    .reads_depth = std::any_of(first, last, uses_depth)});
+  }
+  return runs;
 }
 
 }  // namespace
@@ -238,54 +246,57 @@ void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fiel
       });
 }
 
-const Beams& perturbed_beams(const std::vector<NoiseStep>& noise, const Beams& beams,
-                             ThreadPool& thread_pool, Frame& frame) {
-  Beams& aimed = frame.workspace.aimed;
-  if (std::none_of(noise.begin(), noise.end(), perturbs_beams)) {
-    aimed.directions.clear();
-    return beams;
-  }
-  aimed = beams;
-  aimed.pinhole.reset();  // no longer a regular grid
-  const std::size_t batches = (beams.firings() + kSampleBatch - 1) / kSampleBatch;
-  thread_pool.parallel_for(batches, kGrain / kSampleBatch, [&](std::size_t begin, std::size_t end) {
-    perturb_beams(noise, frame,
-                  {begin * kSampleBatch, std::min(end * kSampleBatch, aimed.firings())}, aimed);
-  });
-  for (std::size_t i = aimed.firings(); i < aimed.size(); ++i) {
-    aimed.directions[i] =
-        aimed.directions[i - aimed.firings()];  // all returns of a pulse have its direction
-  }
-  return aimed;
+NoisePlan plan_noise(std::vector<NoiseStep> steps, double frame_s) {
+  NoisePlan plan{.steps = std::move(steps), .frame_s = frame_s};
+  const auto any = [&](const auto& holds) {
+    return std::any_of(plan.steps.begin(), plan.steps.end(), holds);
+  };
+  plan.runs = runs_of(plan.steps);
+  plan.perturbs_directions = any(perturbs_beams);
+  plan.changes_returns = any([](const NoiseStep& step) { return !perturbs_beams(step); });
+  plan.reads_neighbours = any(reads_neighbours);
+  plan.adds_returns = any(makes_returns);
+  return plan;
 }
 
-void apply_noise_prefix(const std::vector<NoiseStep>& noise, std::size_t count, double frame_s,
-                        const Beams& beams, ThreadPool& thread_pool, Frame& frame) {
-  if (std::all_of(noise.begin(), noise.end(), perturbs_beams)) {
+const Beams& perturb_directions(const NoisePlan& noise, const Beams& beams, const Frame& frame,
+                                ThreadPool& thread_pool, Beams& perturbed) {
+  if (!noise.perturbs_directions) return beams;
+  perturbed = beams;
+  perturbed.pinhole.reset();  // no longer a regular grid
+  const std::size_t firings = beams.firings();
+  const std::size_t batches = (firings + kSampleBatch - 1) / kSampleBatch;
+  thread_pool.parallel_for(batches, kGrain / kSampleBatch, [&](std::size_t begin, std::size_t end) {
+    perturb_beams(noise.steps, frame, {begin * kSampleBatch, std::min(end * kSampleBatch, firings)},
+                  perturbed);
+  });
+  for (std::size_t i = firings; i < perturbed.size(); ++i) {
+    // all returns of a pulse have its direction
+    perturbed.directions[i] = perturbed.directions[i - firings];
+  }
+  return perturbed;
+}
+
+void apply_noise(const NoisePlan& noise, const Beams& beams, ThreadPool& thread_pool,
+                 NoiseWorkspace& workspace, Frame& frame, std::size_t count) {
+  if (!noise.changes_returns) {
     frame.sigma_m.clear();
     return;
   }
   frame.sigma_m.assign(frame.range_m.size(), 0.0F);
-  if (std::any_of(noise.begin(), noise.end(), reads_neighbours)) {
-    frame.workspace.before.resize(frame.range_m.size());
-    frame.workspace.amplitude.resize(frame.range_m.size());
+  if (noise.reads_neighbours) {
+    workspace.before.resize(frame.range_m.size());
+    workspace.amplitude.resize(frame.range_m.size());
   }
-  if (frame.return_source.empty() && std::any_of(noise.begin(), noise.end(), makes_returns)) {
+  if (frame.return_source.empty() && noise.adds_returns) {
     frame.return_source.assign(frame.range_m.size(), ReturnSource::surface);
   }
-  const NoiseView view{beams, frame};
-  const auto last = noise.begin() + static_cast<std::ptrdiff_t>(count);
-  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
-    const auto next = std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1, last,
-                                   reads_neighbours);
-    end = static_cast<std::size_t>(next - noise.begin());
-    apply_range({noise, begin, end, frame_s}, view, thread_pool);
+  const NoiseView view{beams, frame, workspace};
+  for (NoisePlan::Run run : noise.runs) {
+    if (run.begin >= count) break;
+    run.end = std::min(run.end, count);
+    apply_run(noise, run, view, thread_pool);
   }
-}
-
-void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
-                 ThreadPool& thread_pool, Frame& frame) {
-  apply_noise_prefix(noise, noise.size(), frame_s, beams, thread_pool, frame);
 }
 
 }  // namespace glidar

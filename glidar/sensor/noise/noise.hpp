@@ -7,6 +7,7 @@
 #include <glidar/sensor/noise/depth_noise.hpp>
 #include <glidar/sensor/noise/dropout.hpp>
 #include <glidar/sensor/noise/intensity_noise.hpp>
+#include <glidar/sensor/noise/noise_workspace.hpp>
 #include <glidar/sensor/noise/pointing_noise.hpp>
 #include <glidar/sensor/noise/range_bias.hpp>
 #include <glidar/sensor/noise/range_noise.hpp>
@@ -34,19 +35,36 @@ Purpose rng_purpose(std::size_t step);
 /// Adds the ground truth columns that the steps read to `fields`.
 void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fields);
 
-/// The beams as fired: `beams` itself if no step has pointing noise, else a copy in the frame's
-/// workspace with the pointing noise of this frame, given by its seed, sensor_id and number.
-const Beams& perturbed_beams(const std::vector<NoiseStep>& noise, const Beams& beams,
-                             ThreadPool& thread_pool, Frame& frame);
+/// Noise steps with what is the same for all frames, see plan_noise().
+struct NoisePlan {
+  /// Steps that are applied to a batch of beams before the next batch is loaded.
+  struct Run {
+    std::size_t begin = 0;  ///< index of the first step
+    std::size_t end = 0;
+    bool reads_neighbours = false;  ///< the first step does, the others do not
+    bool reads_depth = false;
+  };
+  std::vector<NoiseStep> steps;
+  double frame_s = 0.0;  ///< from one frame to the next
+  std::vector<Run> runs = {};
+  bool perturbs_directions = false;  ///< by pointing noise
+  bool changes_returns = false;      ///< there are steps other than pointing noise
+  bool reads_neighbours = false;
+  bool adds_returns = false;
+};
 
-/// Applies all other steps in order to a measured frame; frame_s is the frame period in seconds.
-/// `beams` are the nominal beams, without pointing noise. The result does not depend on the number
-/// of threads. Returns whose final range is not positive get the status too_near.
-void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
-                 ThreadPool& thread_pool, Frame& frame);
+/// Prepares the steps for a sensor that measures a frame every frame_s seconds.
+NoisePlan plan_noise(std::vector<NoiseStep> steps, double frame_s);
 
-/// Applies only the first `count` steps of the list.
-void apply_noise_prefix(const std::vector<NoiseStep>& noise, std::size_t count, double frame_s,
-                        const Beams& beams, ThreadPool& thread_pool, Frame& frame);
+/// The beams as fired: `beams` itself if no step has pointing noise, else `perturbed`, which
+/// receives a copy with the pointing noise of this frame, given by its seed, sensor_id and number.
+const Beams& perturb_directions(const NoisePlan& noise, const Beams& beams, const Frame& frame,
+                                ThreadPool& thread_pool, Beams& perturbed);
+
+/// Applies the other ones of the first `count` steps in order to a measured frame. `beams` are the
+/// nominal beams, without pointing noise. The result does not depend on the number of threads.
+/// Returns whose final range is not positive get the status too_near.
+void apply_noise(const NoisePlan& noise, const Beams& beams, ThreadPool& thread_pool,
+                 NoiseWorkspace& workspace, Frame& frame, std::size_t count = kMaxNoiseSteps);
 
 }  // namespace glidar

@@ -4,6 +4,7 @@
 
 #include <glidar/core/frame.hpp>
 #include <glidar/math/gaussian.hpp>
+#include <glidar/sensor/noise/noise_workspace.hpp>
 
 namespace glidar {
 
@@ -28,7 +29,8 @@ struct alignas(64) NoiseBatch {
 /// The frame and the beams of a batch, as a noise step sees them.
 struct NoiseView {
   const Beams& beams;
-  Frame& frame;  ///< columns of other batches must not be accessed, except for the workspace
+  Frame& frame;  ///< columns of other batches must not be accessed
+  NoiseWorkspace& workspace;
 };
 
 /// Removes the return of a beam of the batch.

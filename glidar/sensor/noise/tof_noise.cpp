@@ -214,8 +214,8 @@ double unambiguous_m(const std::vector<double>& frequencies_hz) {
 
 void prepare(const ContinuousWave& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
-    view.frame.workspace.before[batch.first + i] = batch.range_m[i];
-    view.frame.workspace.amplitude[batch.first + i] = static_cast<float>(batch.intensity[i]);
+    view.workspace.before[batch.first + i] = batch.range_m[i];
+    view.workspace.amplitude[batch.first + i] = static_cast<float>(batch.intensity[i]);
   }
 }
 

@@ -5,10 +5,10 @@
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/link/lockstep/messages.hpp>
-#include <glidar/simulate/simulate.hpp>
 
 #include "support/data.hpp"
 #include "support/error_text.hpp"
+#include "support/simulate.hpp"
 
 #include <gmock/gmock.h>
 
@@ -28,7 +28,7 @@ TEST(ReplySize, OfEachColumnIsThatOfItsNumbers) {
   for (const std::string& name : cloud_column_names()) {
     const std::vector<std::string> columns = {name};
     Frame frame;
-    simulate({scene, sensor, beams, motion, *renderer}, fields_needed_by(columns), frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, fields_needed_by(columns), frame);
     PointCloud cloud;
     make_point_cloud(frame, beams, scene, {.frame_id = beams.frame_id}, columns, cloud);
     EXPECT_EQ(static_cast<std::int64_t>(lockstep::bytes_of(cloud.columns.at(0)).size()),

@@ -28,7 +28,8 @@ TEST(ApplyNoise, RemovesNonPositiveRangesAfterTheLastStepOnly) {
 TEST(ApplyNoisePrefix, KeepsNonPositiveRangesBeforeTheLastStep) {
   NoiseStage stage(1, 4, 3.0);
   const std::vector<NoiseStep> noise = {RangeBias{.offset_m = -5.0}, RangeBias{.offset_m = 5.0}};
-  apply_noise_prefix(noise, 1, 0.1, stage.beams, stage.thread_pool, stage.frame);
+  apply_noise(plan_noise(noise, 0.1), stage.beams, stage.thread_pool, stage.workspace, stage.frame,
+              1);
   EXPECT_EQ(stage.frame.status[0], Status::hit);
   EXPECT_NEAR(stage.frame.range_m[0], -2.0, 1e-12);
 }

@@ -280,7 +280,7 @@ struct LookingAhead : NoiseStage {
 void hold(const PointingJitter& /*kind*/) {
   LookingAhead stage;
   const std::vector<NoiseStep> noise = {RangeGaussian{}, PointingJitter{1e-4, 2e-4}};
-  const Beams& aimed = perturbed_beams(noise, stage.beams, stage.thread_pool, stage.frame);
+  const Beams& aimed = stage.perturb(noise);
   for (const std::size_t entry : {0U, 255U, 256U, 777U}) {
     const auto draws = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
     ASSERT_EQ(draws.size(), 2U);
@@ -294,7 +294,7 @@ void hold(const EncoderError& /*kind*/) {
   for (const std::uint32_t frame : {0U, 1U, 77U}) {
     stage.frame.number = frame;
     const std::vector<NoiseStep> noise = {RangeGaussian{}, EncoderError{.turn_sigma_rad = 1e-3}};
-    const Beams& aimed = perturbed_beams(noise, stage.beams, stage.thread_pool, stage.frame);
+    const Beams& aimed = stage.perturb(noise);
     for (const std::size_t entry : {0U, 255U, 777U}) {
       const auto draws = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
       ASSERT_EQ(draws.size(), 1U);

@@ -25,7 +25,7 @@ void look(double azimuth, double elevation, NoiseStage& stage) {
 }
 
 const Beams& aimed(NoiseStage& stage, const NoiseStep& step) {
-  return perturbed_beams({step}, stage.beams, stage.thread_pool, stage.frame);
+  return stage.perturb({step});
 }
 
 TEST(PointingJitter, HasTheStatedAnglesOnTheSphere) {

@@ -5,7 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/model.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
-#include <glidar/simulate/simulate.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -101,14 +101,11 @@ TEST_F(WindowTest, CloudsAreTheSameWithTheContextOfAWindowAndWithout) {
   add_model(scene, load_model("builtin:asteroid", {}, {}));
   Sensor sensor;
   sensor.optics = pinhole_from_fov(96, 64, 0.5);
-  const Beams beams = make_beams(sensor);
   const Motion motion =
       static_motion(scene, look_at({6.0, -4.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
   const auto measured = [&](std::unique_ptr<Renderer> renderer) {
     Frame frame;
-    simulate(
-        {.scene = scene, .sensor = sensor, .beams = beams, .motion = motion, .renderer = *renderer},
-        kAllHitFields, frame);
+    Simulator(scene, sensor, *renderer).simulate(motion, kAllHitFields, frame);
     return frame;
   };
   const Frame with = measured(make_opengl_renderer(scene, {}, std::make_unique<GlfwContext>()));

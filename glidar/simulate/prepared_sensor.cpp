@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/simulate/prepared_sensor.hpp>
+
+#include <glidar/simulate/mirrors.hpp>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// The weather for this sensor's beams; without a footprint they are those of BeamShape.
+std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
+  if (!sensor.weather) return {};
+  check_weather(sensor);
+  BeamShape beam;
+  if (sensor.footprint) {
+    const Footprint& f = *sensor.footprint;
+    beam = {.divergence_rad = std::sqrt(f.divergence_x_rad * f.divergence_y_rad),
+            .exit_diameter_m = std::sqrt(f.exit_x_m * f.exit_y_m)};
+  }
+  return prepare_weather(*sensor.weather, *sensor.pulse, sensor.wavelength_m, beam,
+                         sensor.receiver.pulse_fwhm_s);
+}
+
+PulseModel pulse_model(const Sensor& sensor, const Scene& scene) {
+  PulseModel model;
+  model.sub_rays = sensor.footprint ? sample_footprint(*sensor.footprint) : std::vector<SubRay>(1);
+  model.weather = weather_of(sensor);
+  model.lidar_equation = model.weather ? model.weather->light : *sensor.pulse;
+  model.has_mirrors = has_mirrors(scene);
+  return model;
+}
+
+HitFieldMask required_fields(const Sensor& sensor) {
+  HitFieldMask fields;
+  fields.shading = true;
+  fields.diffuse = sensor.pulse.has_value();
+  fields.reflectance = !sensor.pulse;
+  fields.normal = sensor.projector_origin_m.has_value();
+  add_required_fields(sensor.noise, fields);
+  return fields;
+}
+
+}  // namespace
+
+bool needs_waveform(const Sensor& sensor, const Scene& scene) {
+  if (sensor.weather) return true;
+  if (!sensor.pulse) return false;
+  const Receiver& receiver = sensor.receiver;
+  const Return& first = receiver.returns[0];
+  const bool reports_strongest =
+      receiver.returns.size() == 1 && first.order == Return::Order::strongest && first.rank == 0;
+  return sensor.footprint || !reports_strongest || receiver.timing != Receiver::Timing::centroid ||
+         has_mirrors(scene);
+}
+
+PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
+  PreparedSensor prepared{.sensor = sensor,
+                          .noise = plan_noise(sensor.noise, 1.0 / sensor.rate_hz),
+                          .required_fields = required_fields(sensor),
+                          .pulses = {}};
+  if (needs_waveform(sensor, scene)) prepared.pulses = pulse_model(sensor, scene);
+  return prepared;
+}
+
+}  // namespace glidar

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/simulate/pulse_cast.hpp>
+
+#include <glidar/simulate/mirrors.hpp>
+
+#include <algorithm>
+
+namespace glidar {
+namespace {
+
+// For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
+constexpr std::size_t kSubRaysPerBlock = std::size_t{1} << 14U;
+
+constexpr HitFieldMask kSignalFields = {.shading = true, .diffuse = true};
+
+/// Casts the sub-rays that hit a mirror once more.
+void cast_mirrored(const Simulation& s) {
+  SubRayWorkspace& memory = s.workspace.sub_rays;
+  Beams& beams = memory.mirrored;
+  beams.directions.clear();
+  beams.origins_m.clear();
+  beams.times_ns.clear();
+  beams.boresight = s.fired->boresight;
+  memory.mirrored_from.clear();
+  const Hits& hits = memory.hits;
+  for (std::size_t i = 0; i < hits.range_m.size(); ++i) {
+    if (hits.instance[i] == kInvalidId || material_hit(s.scene, hits, i).mirror <= 0.0F) continue;
+    add_reflected_beam(memory.beams, hits, i, beams);
+    memory.mirrored_from.push_back(static_cast<std::uint32_t>(i));
+  }
+  beams.rows = 1;
+  beams.cols = static_cast<std::uint32_t>(beams.directions.size());
+  if (beams.directions.empty()) return;
+  cast(s, cast_request(s, beams, kSignalFields), memory.mirrored_hits);
+}
+
+/// Casts the sub-rays of a block of pulses.
+void cast_block(const Simulation& s, BeamRange block) {
+  SubRayWorkspace& memory = s.workspace.sub_rays;
+  const PulseModel& model = *s.sensor.pulses;
+  HitFieldMask fields = s.fields | kSignalFields;
+  fields.shading_normal = fields.shading_normal || model.has_mirrors;
+  fields.normal = fields.normal || model.sub_rays.size() > 1;
+  memory.first_pulse = block.begin;
+  expand_beams(model.sub_rays, *s.fired, block, s.renderer.thread_pool(), memory.beams);
+  const auto fraction = [&](std::size_t pulse) {
+    return static_cast<double>(pulse) / static_cast<double>(s.fired->firings());
+  };
+  CastRequest request = cast_request(s, memory.beams, fields);
+  request.progress = subrange(s.progress, fraction(block.begin), fraction(block.end));
+  cast(s, request, memory.hits);
+  memory.mirrored_from.clear();
+  if (model.has_mirrors) cast_mirrored(s);
+  memory.signals.resize(memory.beams.size());
+}
+
+}  // namespace
+
+std::size_t first_sub_ray(const Simulation& s, std::size_t pulse) {
+  return (pulse - s.workspace.sub_rays.first_pulse) * s.sensor.pulses->sub_rays.size();
+}
+
+void cast_pulses(const Simulation& s, BeamRange pulses, FunctionRef<void(BeamRange)> on_tile_done) {
+  resize(s.frame.ground_truth, s.fired->size(), s.fields);
+  s.frame.return_source.resize(s.fired->size());
+  ThreadPool& threads = s.renderer.thread_pool();
+  const std::size_t sub_rays = kSubRaysPerBlock * threads.threads();
+  const std::size_t tasks = sub_rays / s.sensor.pulses->sub_rays.size() / kPulsesPerTask;
+  const std::size_t step = std::max<std::size_t>(1, tasks) * kPulsesPerTask;
+  for (std::size_t begin = pulses.begin; begin < pulses.end; begin += step) {
+    const BeamRange block{begin, std::min(begin + step, pulses.end)};
+    cast_block(s, block);
+    const std::size_t runs = (block.end - block.begin + kPulsesPerTask - 1) / kPulsesPerTask;
+    threads.parallel_for(runs, 1, [&](std::size_t first, std::size_t end) {
+      on_tile_done({block.begin + first * kPulsesPerTask,
+                    std::min(block.begin + end * kPulsesPerTask, block.end)});
+    });
+  }
+}
+
+}  // namespace glidar

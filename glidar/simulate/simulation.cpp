@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/simulate/simulation.hpp>
+
+namespace glidar {
+
+TimedScene timed_scene(const Simulation& s) {
+  return {s.renderer, s.scene, s.motion, s.frame.stamp_ns};
+}
+
+CastRequest cast_request(const Simulation& s, const Beams& beams, const HitFieldMask& fields) {
+  return {.beams = beams,
+          .world_from_sensor = s.frame.world_from_sensor,
+          .world_from_instance = s.frame.world_from_instance,
+          .fields = fields,
+          .cull_back_faces = s.sensor.sensor.cull_back_faces};
+}
+
+void cast(const Simulation& s, const CastRequest& request, Hits& hits) {
+  if (s.is_moving) {
+    cast_moving(timed_scene(s), request, s.workspace.moving_cast, hits);
+  } else {
+    s.renderer.cast(request, hits);
+  }
+}
+
+}  // namespace glidar

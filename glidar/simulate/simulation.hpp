@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/simulate/moving_cast.hpp>
+#include <glidar/simulate/prepared_sensor.hpp>
+#include <glidar/simulate/return_replacement.hpp>
+#include <glidar/simulate/waveform_trace.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// Beams that are cast beside those of the sensor: sub-rays of pulses, beams from a projector.
+struct SubRayWorkspace {
+  std::size_t first_pulse = 0;  ///< whose sub-rays come first
+  Beams beams;
+  Hits hits;                                 ///< of `beams`
+  std::vector<double> signals;               ///< per sub-ray: what it would bring back alone
+  Beams mirrored;                            ///< what mirrors reflect
+  Hits mirrored_hits;                        ///< of `mirrored`
+  std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-ray
+};
+
+/// Memory that simulations of one sensor in one scene reuse from frame to frame.
+struct Workspace {
+  Beams fired;  ///< the sensor's beams with their pointing errors
+  NoiseWorkspace noise;
+  MovingCastWorkspace moving_cast;
+  SubRayWorkspace sub_rays;
+};
+
+/// One frame to be simulated: what is measured, with what, and where the result is written.
+struct Simulation {
+  const Scene& scene;
+  const PreparedSensor& sensor;
+  Renderer& renderer;
+  const Beams& beams;  ///< as the sensor reports them
+  const Motion& motion;
+  HitFieldMask fields;  ///< ground truth that the frame keeps
+  Workspace& workspace;
+  Frame& frame;
+  ProgressCallback progress;
+  const ReturnReplacement& replace_returns;
+  bool is_moving = moves_during_frame(motion, beams);
+  const Beams* fired = &beams;               ///< the beams with their pointing errors
+  std::size_t noise_steps = kMaxNoiseSteps;  ///< how many of them are applied
+  WaveformTrace* trace = nullptr;            ///< of a pulse; nullptr: none
+};
+
+/// The scene of the frame.
+TimedScene timed_scene(const Simulation& s);
+
+/// A cast of beams from the sensor's pose at the frame's start.
+CastRequest cast_request(const Simulation& s, const Beams& beams, const HitFieldMask& fields);
+
+/// Casts the request, each beam at its own firing time where something moves.
+void cast(const Simulation& s, const CastRequest& request, Hits& hits);
+
+}  // namespace glidar

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/simulate/simulator.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/simulate/simulate.hpp>
+
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+
+struct Simulator::State {
+  const Scene& scene;
+  std::shared_ptr<const BeamCache> beams;
+  Renderer& renderer;
+  PreparedSensor sensor;
+  std::unique_ptr<Renderer> own_renderer = {};  ///< empty: shared
+  ReturnReplacement replace_returns = {};
+  std::deque<Workspace> workspaces = {};  ///< of frames that are simulated together
+};
+
+namespace {
+
+void require_motions(std::size_t motions, std::size_t frames) {
+  if (motions == frames) return;
+  throw Error(
+      {.where = "batch",
+       .found = std::to_string(motions) + " motions for " + std::to_string(frames) + " frames",
+       .allowed = "one motion per frame",
+       .remedy = ""});
+}
+
+}  // namespace
+
+Simulator::Simulator(const Scene& scene, const std::shared_ptr<const BeamCache>& sensor,
+                     Renderer& renderer)
+    : state_(std::make_unique<State>(State{.scene = scene,
+                                           .beams = sensor,
+                                           .renderer = renderer,
+                                           .sensor = prepare_sensor(sensor->sensor(), scene)})) {}
+
+Simulator::Simulator(const Scene& scene, Sensor sensor, Renderer& renderer)
+    : Simulator(scene, std::make_shared<const BeamCache>(std::move(sensor)), renderer) {}
+
+Simulator::Simulator(const Scene& scene, Sensor sensor, std::unique_ptr<Renderer> renderer)
+    : Simulator(scene, std::move(sensor), *renderer) {
+  state_->own_renderer = std::move(renderer);
+}
+
+Simulator::Simulator(const Scene& scene, Sensor sensor, const RendererOptions& options)
+    : Simulator(scene, std::move(sensor), make_renderer(scene, options)) {}
+
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
+Simulator::~Simulator() = default;
+
+Frame Simulator::simulate(const Pose& world_from_sensor, const HitFieldMask& fields,
+                          std::uint64_t seed) {
+  Frame frame;
+  frame.seed = seed;
+  simulate(static_motion(state_->scene, world_from_sensor), fields, frame);
+  return frame;
+}
+
+void Simulator::simulate(const Motion& motion, const HitFieldMask& fields, Frame& frame,
+                         const ProgressCallback& progress) {
+  const std::shared_ptr<const Beams> beams = state_->beams->beams(frame.number);
+  Simulation simulation = prepare(*beams, motion, fields, frame, progress);
+  glidar::simulate({&simulation, 1});
+}
+
+void Simulator::simulate_batch(std::span<const Motion> motions, const HitFieldMask& fields,
+                               std::span<Frame> frames, const ProgressCallback& progress) {
+  require_motions(motions.size(), frames.size());
+  std::vector<std::shared_ptr<const Beams>> beams;
+  std::vector<Simulation> together;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    beams.push_back(state_->beams->beams(frames[i].number));
+    Simulation one =
+        prepare(*beams.back(), motions[i], fields, frames[i], progress, together.size());
+    if (takes_one_cast(one)) {
+      together.push_back(one);
+    } else {
+      glidar::simulate({&one, 1});
+    }
+  }
+  if (!together.empty()) glidar::simulate(together);
+}
+
+Simulation Simulator::prepare(const Beams& beams, const Motion& motion, const HitFieldMask& fields,
+                              Frame& frame, const ProgressCallback& progress, std::size_t slot) {
+  State& state = *state_;
+  while (state.workspaces.size() <= slot) state.workspaces.emplace_back();
+  return {.scene = state.scene,
+          .sensor = state.sensor,
+          .renderer = state.renderer,
+          .beams = beams,
+          .motion = motion,
+          .fields = fields | state.sensor.required_fields,
+          .workspace = state.workspaces[slot],
+          .frame = frame,
+          .progress = progress,
+          .replace_returns = state.replace_returns};
+}
+
+void Simulator::set_return_replacement(ReturnReplacement replacement) {
+  state_->replace_returns = std::move(replacement);
+}
+
+const Scene& Simulator::scene() const {
+  return state_->scene;
+}
+
+const Sensor& Simulator::sensor() const {
+  return state_->beams->sensor();
+}
+
+Renderer& Simulator::renderer() const {
+  return state_->renderer;
+}
+
+std::shared_ptr<const Beams> Simulator::beams(std::uint32_t frame) const {
+  return state_->beams->beams(frame);
+}
+
+}  // namespace glidar

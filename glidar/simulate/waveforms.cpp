@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/simulate/waveforms.hpp>
+
+#include <glidar/math/constants.hpp>
+#include <glidar/math/gaussian.hpp>
+#include <glidar/sensor/lidar/beam_surfaces.hpp>
+#include <glidar/sensor/lidar/weather_echoes.hpp>
+#include <glidar/simulate/mirrors.hpp>
+#include <glidar/simulate/pulse_cast.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// The path over a mirror: the light is reflected twice and travels both legs.
+EchoContribution ghost_path(const Simulation& s, std::size_t mirrored, double energy) {
+  const SubRayWorkspace& memory = s.workspace.sub_rays;
+  const Hits& hits = memory.mirrored_hits;
+  const std::uint32_t ray = memory.mirrored_from[mirrored];
+  const double share = material_hit(s.scene, memory.hits, ray).mirror;
+  const double range_m = memory.hits.range_m[ray] + hits.range_m[mirrored];
+  const double sent = energy * share * share *
+                      backscatter_at(s.scene, s.sensor.sensor.wavelength_m, hits, mirrored);
+  return {range_m, received_signal(s.sensor.pulses->lidar_equation, sent, range_m), ray,
+          ReturnSource::ghost, kGhostSurface};
+}
+
+/// All contributions of surfaces to the waveform of a pulse.
+void collect_paths(const Simulation& s, std::size_t beam, BeamSurfaces& surfaces,
+                   WaveformBuffer& waveform) {
+  const SubRayWorkspace& memory = s.workspace.sub_rays;
+  const std::vector<SubRay>& rays = s.sensor.pulses->sub_rays;
+  const std::size_t first = first_sub_ray(s, beam);
+  const bool is_spread = rays.size() > 1;
+  if (is_spread) surfaces.find(memory.beams, memory.hits, first, rays.size());
+  waveform.paths = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const std::size_t ray = first + k;
+    if (memory.hits.instance[ray] == kInvalidId) continue;
+    waveform.add({memory.hits.range_m[ray], rays[k].share * memory.signals[ray],
+                  static_cast<std::uint32_t>(ray), ReturnSource::surface,
+                  is_spread ? surfaces.of_ray(k) : std::uint16_t{0}});
+  }
+  const std::vector<std::uint32_t>& from = memory.mirrored_from;
+  auto at = std::lower_bound(from.begin(), from.end(), first);
+  for (; at != from.end() && *at < first + rays.size(); ++at) {
+    const auto mirrored = static_cast<std::size_t>(at - from.begin());
+    if (memory.mirrored_hits.instance[mirrored] == kInvalidId) continue;
+    waveform.add(ghost_path(s, mirrored, rays[*at - first].share));
+  }
+}
+
+/// Adds the echoes of the air before a surface.
+void add_weather(const std::optional<PreparedWeather>& weather, const RngKey& key, double surface_m,
+                 std::vector<WeatherEcho>& echoes, WaveformBuffer& waveform) {
+  if (!weather) return;
+  echoes.clear();
+  weather_echoes(*weather, surface_m, key, echoes);
+  for (const WeatherEcho& echo : echoes) {
+    waveform.add({echo.range_m, echo.signal, kInvalidId, echo.return_source});
+  }
+}
+
+/// Adds the receiver's noise to the echoes and keeps those at or above the threshold. The k-th echo
+/// of a pulse samples block k.
+void detect_echoes(const LidarEquation& light, const RngKey& key, double first_noise,
+                   WaveformBuffer& waveform) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < waveform.echoes; ++k) {
+    PulseEcho echo = waveform.echo[k];
+    if (light.noise_sigma > 0.0) {
+      RngKey echo_key = key;
+      echo_key.block = static_cast<std::uint32_t>(k);
+      echo.signal =
+          with_noise(light, echo.signal, k == 0 ? first_noise : normals(random_words(echo_key))[0]);
+    }
+    if (echo.signal >= 1.0) waveform.echo[kept++] = echo;
+  }
+  waveform.echoes = kept;
+}
+
+void report_echo(const Simulation& s, const PulseEcho& echo, const EchoContribution& path,
+                 std::size_t entry) {
+  Frame& frame = s.frame;
+  const Sensor& sensor = s.sensor.sensor;
+  const double saturation = s.sensor.pulses->lidar_equation.saturation;
+  const double range_m = reported_range_m(sensor.receiver, echo);
+  Status status = check_limits(sensor.limits, *s.fired, entry, range_m);
+  if (status == Status::hit && saturation > 0.0 && echo.signal >= saturation)
+    status = Status::saturated;
+  if (status != Status::hit) return invalidate_return(frame, entry, status);
+  frame.status[entry] = Status::hit;
+  frame.range_m[entry] = range_m;
+  frame.intensity[entry] = static_cast<float>(echo.signal);
+  const bool is_mixed = echo.is_mixed && path.return_source == ReturnSource::surface;
+  frame.return_source[entry] = is_mixed ? ReturnSource::mixed_pixel : path.return_source;
+}
+
+/// The strongest path, whose ground truth a pulse without a return gets.
+EchoContribution strongest_surface(const WaveformBuffer& waveform) {
+  if (waveform.paths == 0) return {kNaN, 0.0, kInvalidId, ReturnSource::none};
+  return *std::max_element(
+      waveform.path.begin(), waveform.path.begin() + static_cast<std::ptrdiff_t>(waveform.paths),
+      [](const EchoContribution& a, const EchoContribution& b) { return a.signal < b.signal; });
+}
+
+/// Why a pulse has no echo: no surface, or too weak a signal, maybe by weather.
+Status missing_return_status(const Simulation& s, const EchoContribution& surface,
+                             double strongest_signal, std::size_t beam) {
+  if (surface.source == kInvalidId) {
+    return std::isnan(s.fired->directions[beam].x()) ? Status::invalid_pixel : Status::miss;
+  }
+  return classify_weak_return(s.sensor.pulses->lidar_equation, strongest_signal, surface.range_m);
+}
+
+/// Writes what a sub-ray hit, or a miss.
+void write_ground_truth(const Simulation& s, std::uint32_t source, std::size_t entry) {
+  if (source == kInvalidId) {
+    write_misses(s.fields, entry, 1, s.frame.ground_truth);
+    return;
+  }
+  copy_hit(s.workspace.sub_rays.hits, source, s.fields, s.frame.ground_truth, entry);
+}
+
+/// Random numbers of the receiver for a run of pulses.
+struct ReceiverSamples {
+  RngKey key;  ///< of the first pulse
+  Batch<double> noise{};
+};
+
+void sample_receiver(const LidarEquation& light, const Frame& frame, std::size_t first,
+                     ReceiverSamples& samples) {
+  samples.key = rng_key(frame, Purpose::detection, first);
+  if (light.noise_sigma > 0.0) sample_normals(samples.key, samples.noise);
+}
+
+/// Memory of a thread, for one pulse after the other.
+struct PulseMemory {
+  WaveformBuffer waveform;
+  ReceiverSamples samples;
+  std::vector<WeatherEcho> weather;
+  BeamSurfaces surfaces;
+};
+
+/// The instance that a ghost shows.
+std::uint32_t reflected_by(const SubRayWorkspace& memory, std::uint32_t sub_ray) {
+  const auto at =
+      std::lower_bound(memory.mirrored_from.begin(), memory.mirrored_from.end(), sub_ray);
+  return memory.mirrored_hits.instance[static_cast<std::size_t>(at - memory.mirrored_from.begin())];
+}
+
+bool traces(const Simulation& s, std::size_t beam) {
+  return s.trace != nullptr && s.trace->pulse == beam;
+}
+
+void trace_echoes(const Simulation& s, std::size_t beam, const WaveformBuffer& waveform) {
+  WaveformTrace& trace = *s.trace;
+  const std::vector<SubRay>& rays = s.sensor.pulses->sub_rays;
+  const std::size_t first = first_sub_ray(s, beam);
+  trace.sub_rays = rays.size();
+  trace.light_paths.clear();
+  for (std::size_t k = 0; k < waveform.paths; ++k) {
+    WaveformTrace::LightPath light_path{.path = waveform.path[k]};
+    if (light_path.path.source != kInvalidId) {
+      const SubRayWorkspace& memory = s.workspace.sub_rays;
+      light_path.instance = memory.hits.instance[light_path.path.source];
+      if (light_path.path.return_source == ReturnSource::ghost)
+        light_path.reflected = reflected_by(memory, light_path.path.source);
+      light_path.path.source -= static_cast<std::uint32_t>(first);
+      light_path.share = rays[light_path.path.source].share;
+    }
+    trace.light_paths.push_back(light_path);
+  }
+  trace.echoes.assign(waveform.echo.begin(),
+                      waveform.echo.begin() + static_cast<std::ptrdiff_t>(waveform.echoes));
+}
+
+/// Finds the echoes that the receiver detects. Returns the status of a pulse without any.
+Status find_returns(const Simulation& s, std::size_t beam, const EchoContribution& surface,
+                    PulseMemory& memory) {
+  WaveformBuffer& waveform = memory.waveform;
+  const Sensor& sensor = s.sensor.sensor;
+  const PulseModel& model = *s.sensor.pulses;
+  const double width_m =
+      sensor.footprint && waveform.paths > 0 ? diameter_m(*sensor.footprint, surface.range_m) : 0.0;
+  RngKey key = memory.samples.key;
+  key.beam = static_cast<std::uint32_t>(beam);
+  add_weather(model.weather, key, surface.range_m, memory.weather, waveform);
+  detect_peaks(pulse_sigma_m(sensor.receiver), width_m, waveform);
+  if (traces(s, beam)) trace_echoes(s, beam, waveform);
+  double strongest_signal = 0.0;
+  for (std::size_t k = 0; k < waveform.echoes; ++k) {
+    const bool is_surface = waveform.path[waveform.echo[k].strongest].source != kInvalidId;
+    if (is_surface) strongest_signal = std::max(strongest_signal, waveform.echo[k].signal);
+  }
+  const std::size_t in_run = beam - memory.samples.key.beam;
+  detect_echoes(model.lidar_equation, key, memory.samples.noise[in_run], waveform);
+  enforce_min_separation(sensor.receiver.separation_m, waveform);
+  return missing_return_status(s, surface, strongest_signal, beam);
+}
+
+void measure_pulse(const Simulation& s, std::size_t beam, PulseMemory& memory) {
+  WaveformBuffer& waveform = memory.waveform;
+  const Receiver& receiver = s.sensor.sensor.receiver;
+  collect_paths(s, beam, memory.surfaces, waveform);
+  const EchoContribution surface = strongest_surface(waveform);
+  const Status missing = find_returns(s, beam, surface, memory);
+  std::array<int, kMaxReturns> chosen;
+  select_returns(receiver, {waveform.echo.data(), waveform.echoes}, chosen);
+  if (traces(s, beam)) {
+    s.trace->received.assign(waveform.echo.begin(),
+                             waveform.echo.begin() + static_cast<std::ptrdiff_t>(waveform.echoes));
+    s.trace->returns.assign(chosen.begin(),
+                            chosen.begin() + static_cast<std::ptrdiff_t>(receiver.returns.size()));
+  }
+  for (std::size_t r = 0; r < receiver.returns.size(); ++r) {
+    const std::size_t entry = r * s.fired->firings() + beam;
+    if (chosen[r] >= 0) {
+      const PulseEcho& echo = waveform.echo[static_cast<std::size_t>(chosen[r])];
+      const EchoContribution& path = waveform.path[echo.strongest];
+      write_ground_truth(s, path.source == kInvalidId ? surface.source : path.source, entry);
+      report_echo(s, echo, path, entry);
+    } else {
+      const bool has_reason = (r == 0 && waveform.echoes == 0) || missing == Status::invalid_pixel;
+      write_ground_truth(s, surface.source, entry);
+      invalidate_return(s.frame, entry, has_reason ? missing : Status::no_return_of_rank);
+    }
+  }
+}
+
+/// The signal of each sub-ray of a run of pulses alone.
+void find_signals(const Simulation& s, BeamRange range) {
+  SubRayWorkspace& memory = s.workspace.sub_rays;
+  const BeamRange sub_rays{first_sub_ray(s, range.begin), first_sub_ray(s, range.end)};
+  received_signals(s.sensor.pulses->lidar_equation, s.scene, s.sensor.sensor.wavelength_m,
+                   memory.hits, sub_rays, std::span(memory.signals).subspan(sub_rays.begin));
+}
+
+}  // namespace
+
+void measure_waveforms(const Simulation& s, BeamRange tile) {
+  PulseMemory memory;
+  for (std::size_t first = tile.begin; first < tile.end; first += kPulsesPerTask) {
+    const BeamRange run{first, std::min(first + kPulsesPerTask, tile.end)};
+    find_signals(s, run);
+    sample_receiver(s.sensor.pulses->lidar_equation, s.frame, first, memory.samples);
+    for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) measure_pulse(s, pulse, memory);
+  }
+}
+
+WaveformTrace trace_waveform(const Simulation& s, std::size_t pulse, Frame frame) {
+  WaveformTrace trace;
+  trace.pulse = pulse;
+  const Simulation again{.scene = s.scene,
+                         .sensor = s.sensor,
+                         .renderer = s.renderer,
+                         .beams = s.beams,
+                         .motion = s.motion,
+                         .fields = {},
+                         .workspace = s.workspace,
+                         .frame = frame,
+                         .progress = s.progress,
+                         .replace_returns = s.replace_returns,
+                         .fired = s.fired,
+                         .trace = &trace};
+  const std::size_t first = pulse - pulse % kPulsesPerTask;
+  const std::size_t last = std::min(first + kPulsesPerTask, s.fired->firings());
+  const auto measure = [&](BeamRange tile) { measure_waveforms(again, tile); };
+  cast_pulses(again, {first, last}, FunctionRef<void(BeamRange)>(measure));
+  return trace;
+}
+
+}  // namespace glidar
