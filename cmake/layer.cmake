@@ -16,7 +16,9 @@ target_compile_options(
             $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>
             $<$<BOOL:${GLIDAR_WARNINGS_AS_ERRORS}>:-Werror>
             # GCC 14 takes the content of empty std::optionals for uninitialised
-            $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>)
+            $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>
+            # GCC 14 takes references that outlive an argument for references into it
+            $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-reference>)
 glidar_harden(glidar_settings INTERFACE)
 
 # glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,
