@@ -3,6 +3,7 @@
 #include <glidar/sensor/sensor.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <cmath>
@@ -91,6 +92,23 @@ Beams make_beams(const Sensor& sensor, const FrameInterval& interval) {
 
 Beams make_beams(const Sensor& sensor) {
   return make_beams(sensor, frame_interval(sensor, 0));
+}
+
+void describe(Limits& limits, FieldVisitor& visitor) {
+  using Along = Limits::Along;
+  constexpr std::array<Named<Along>, 2> kNames = {
+      {{"depth", Along::depth}, {"range", Along::range}}};
+  visitor.number({"near_m", "shortest reported distance", kUnitMetre}, kFromZero, limits.near_m);
+  visitor.number(
+      {"far_m", "longest reported distance, beyond `near_m`", kUnitMetre, false, "no limit"},
+      kAboveZero, limits.far_m);
+  visit_choice(visitor,
+               {"along", "whether limits apply along the boresight or along the beam", kNoUnit,
+                false, "`depth` for cameras, else `range`"},
+               kNames, limits.along);
+  if (visitor.is_reading() && limits.far_m <= limits.near_m) {
+    visitor.reject("far_m", "{}, not beyond near_m", "a finite number above near_m");
+  }
 }
 
 }  // namespace glidar

@@ -22,6 +22,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 using Optics = std::variant<Pinhole, Spinning, LineScan, Prism, RayTable>;
 
 /// The distances that the sensor reports. A surface outside them still blocks the beam.
@@ -31,6 +33,9 @@ struct Limits {
   double far_m = std::numeric_limits<double>::infinity();
   Along along = Along::depth;  ///< the limits apply to depth (boresight) or range (beam)
 };
+
+/// Keys of `limits` in sensor files.
+void describe(Limits& limits, FieldVisitor& visitor);
 
 /// A 3D sensor, as plain numbers.
 struct Sensor {

@@ -20,7 +20,6 @@ from ._state import Immutable, key_of, part, restoring, make_state
 
 _MAX_DEPTH = 32
 _MAX_INTEGER = 10**300
-_OPTICS_TYPES = ("camera", "spinning", "raster", "prism", "table")
 
 
 def _key_text(key: object) -> str:
@@ -161,8 +160,8 @@ class Sensor(Immutable):
 
     @property
     def kind(self) -> str:
-        """Type of its optics: "camera", "spinning", "raster", "prism" or "table"."""
-        return _OPTICS_TYPES[self._core.kind]
+        """Type of its optics: "camera", "spinning", "line_scan", "prism" or "table"."""
+        return "camera" if self._core.kind == "pinhole" else self._core.kind
 
     @property
     def rows(self) -> int:

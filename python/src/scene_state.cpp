@@ -74,7 +74,7 @@ void add(const Brdf& backscatter, Digest& digest) {
     Digest& to;
     void operator()(const Lambert& /*none*/) const {}
     void operator()(const PhongLike& s) const {
-      to.add(s.specular_share);
+      to.add(s.specular_fraction);
       to.add(s.exponent);
     }
     void operator()(const OrenNayar& s) const { to.add(s.roughness_rad); }
@@ -83,7 +83,7 @@ void add(const Brdf& backscatter, Digest& digest) {
       to.add(s.width_rad);
     }
     void operator()(const Glossy& s) const {
-      to.add(s.matt_share);
+      to.add(s.diffuse_fraction);
       to.add(s.lobe_gain);
       to.add(s.width_rad);
     }

@@ -5,6 +5,7 @@
 #include "convert.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/io/config/sensor_document.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_options.hpp>
@@ -168,7 +169,8 @@ void bind_sensor(nb::module_& module) {
   nb::class_<SensorHandle>(module, "Sensor")
       .def_prop_ro("name", [](const SensorHandle& self) { return self.sensor().name; })
       .def_prop_ro("rate_hz", [](const SensorHandle& self) { return self.sensor().rate_hz; })
-      .def_prop_ro("kind", [](const SensorHandle& self) { return self.sensor().optics.index(); })
+      .def_prop_ro("kind",
+                   [](const SensorHandle& self) { return type_info(self.sensor().optics).name; })
       .def_prop_ro("rows", [](const SensorHandle& self) { return self.beams(0)->rows; })
       .def_prop_ro("cols", [](const SensorHandle& self) { return self.beams(0)->cols; })
       .def_prop_ro("returns", [](const SensorHandle& self) { return self.beams(0)->returns; })

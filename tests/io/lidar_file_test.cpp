@@ -12,8 +12,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 Sensor load(const std::string& content) {
   const TestFolder folder;
   return load_sensor_file(folder.write("s.yaml", content));
@@ -32,10 +30,10 @@ optics:
   elevation_deg: [-10, 10]
   azimuth_right_deg: [1, -2]
   fire_time_us: [0, 2.5]
-  ring: rising_elevation
-  origin_out_mm: 1
-  origin_left_mm: [2, 3]
-  origin_up_mm: 4
+  channel_order: rising_elevation
+  beam_origin_radial_mm: 1
+  beam_origin_tangential_mm: [2, 3]
+  beam_origin_axial_mm: 4
   beam_origin_mm: 15
   azimuth_range: {from_deg: -60, to_deg: 30}
 )");
@@ -60,7 +58,7 @@ optics:
 
 TEST(LidarFile, ReadsRastersAndPrisms) {
   const Sensor sensor = load(
-      "rate_hz: 15\noptics: {type: raster, azimuth_deg: {from: -1, to: 1, count: 3}, "
+      "rate_hz: 15\noptics: {type: line_scan, azimuth_deg: {from: -1, to: 1, count: 3}, "
       "elevation_deg: [5, 6], point_us: 10, line_us: 100, bidirectional: true}\n");
   const auto& raster = std::get<LineScan>(sensor.optics);
   EXPECT_EQ(raster.scan_hz, 15.0);
@@ -146,9 +144,10 @@ TEST_P(BadLidarFile, IsReportedWithLocationAndReason) {
 INSTANTIATE_TEST_SUITE_P(
     All, BadLidarFile,
     ::testing::Values(
-        BadFile{"type", "optics: {type: spining}\n",
-                "s.yaml:1:16: optics.type: 'spining'; allowed: pinhole, spinning, raster, prism, "
-                "table, ouster; did you mean 'spinning'?"},
+        BadFile{
+            "type", "optics: {type: spining}\n",
+            "s.yaml:1:16: optics.type: 'spining'; allowed: pinhole, spinning, line_scan, prism, "
+            "table, ouster; did you mean 'spinning'?"},
         BadFile{"counts",
                 "optics: {type: spinning, firing_period_us: 5, elevation_deg: [1, 2], "
                 "fire_time_us: [0]}\n",
@@ -166,11 +165,6 @@ INSTANTIATE_TEST_SUITE_P(
                 "falling.csv: the times fall at shot 2; allowed: times that rise; give "
                 "'point_us', the time from shot to shot, to ignore the file's"},
         BadFile{"missing", "optics: {type: table, file: none.csv}\n", "none.csv: no such file"},
-        BadFile{"limits",
-                "limits: {far_m: 1}\ndepth_limits: {far_m: 1}\noptics: {width: 1, height: 1, "
-                "fov_deg: 9}\n",
-                "s.yaml:2:15: depth_limits: given beside 'limits'; allowed: one of the two; remove "
-                "one of them"},
         BadFile{"source", "optics: {width: 1, height: 1, fov_deg: 9}\nsource: {optics.wdth: x}\n",
                 "s.yaml:2:23: source.optics.wdth: 'optics.wdth' is no key of this file; allowed: "
                 "a key such as optics.elevation_deg; did you mean 'optics.width'?"}),

@@ -55,14 +55,14 @@ def test_a_dict_can_contain_numpy_numbers():
     sensor = glidar.Sensor.from_dict(
         {
             "optics": {
-                "type": "raster",
+                "type": "line_scan",
                 "elevation_deg": np.linspace(-10, 10, 5),
                 "azimuth_deg": np.linspace(-20, 20, 9, dtype=np.float32),
             },
             "noise": [{"type": "range_gaussian", "sigma_m": np.float64(0.01)}],
         }
     )
-    assert (sensor.rows, sensor.cols, sensor.kind) == (5, 9, "raster")
+    assert (sensor.rows, sensor.cols, sensor.kind) == (5, 9, "line_scan")
 
 
 def test_camera_is_identical_to_that_of_the_command_line(tmp_path, program):

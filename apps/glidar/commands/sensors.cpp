@@ -5,12 +5,13 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/config/receiver_yaml.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/pictures/pattern_picture.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/lidar/return_names.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -61,8 +62,7 @@ struct Summary {
 };
 
 std::string kind_of(const Optics& optics) {
-  static const std::vector<std::string> kNames = {"camera", "spinning", "raster", "prism", "table"};
-  return kNames.at(optics.index());
+  return std::holds_alternative<Pinhole>(optics) ? "camera" : type_info(optics).name;
 }
 
 /// Angle in degrees between the first and the last of `count` pixels, `step` apart, that have a

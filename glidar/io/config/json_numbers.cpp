@@ -2,20 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/json_numbers.hpp>
 
-#include <fmt/format.h>
-
-#include <charconv>
-#include <string>
-
 namespace glidar {
-
-double in_unit(double value, double unit) {
-  const double quotient = value / unit;
-  const std::string text = fmt::format("{:.15g}", quotient);
-  double rounded = quotient;
-  std::from_chars(text.data(), text.data() + text.size(), rounded);
-  return rounded * unit == value ? rounded : quotient;
-}
 
 void remove_negative_zeros(nlohmann::ordered_json& json) {
   if (json.is_number_float() && json.get<double>() == 0.0) json = 0.0;

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/noise_text.hpp>
 
-#include <glidar/io/config/noise_yaml.hpp>
+#include <glidar/io/config/field_json.hpp>
 
 namespace glidar {
 
 std::string noise_text(const NoiseStep& step) {
-  const nlohmann::ordered_json told = noise_json({step}).at(0);
+  const nlohmann::ordered_json told = write_struct(FieldVisitor::Mode::report, step);
   std::string text;
   for (const auto& [key, value] : told.items()) {
     if (key == "type") {

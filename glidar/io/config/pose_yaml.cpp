@@ -10,7 +10,7 @@ namespace {
 
 Eigen::Quaterniond read_quaternion(const YamlField& field) {
   if (field.node.IsSequence()) {
-    reject(field, describe(field), "a map with the keys w, x, y, z",
+    reject(field, content_text(field), "a map with the keys w, x, y, z",
            "name the parts: {w: 1, x: 0, y: 0, z: 0}; their order in a list is ambiguous");
   }
   require_map(field, {"w", "x", "y", "z"});

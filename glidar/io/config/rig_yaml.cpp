@@ -44,7 +44,7 @@ fs::path find_bundled_sensor(const YamlField& field) {
 Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files) {
   if (field.node.IsMap()) return read_sensor(field);
   if (!field.node.IsScalar() || field.node.Scalar().empty()) {
-    reject(field, describe(field), "a map, or the path of a sensor file");
+    reject(field, content_text(field), "a map, or the path of a sensor file");
   }
   const std::string file = path_beside(field);
   const fs::path named = field.node.Scalar();

@@ -4,6 +4,7 @@
 
 // Private to glidar/io: a scene file as plain data, and how it becomes a scene.
 
+#include <glidar/io/config/material_keys.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/yaml_reader.hpp>
 #include <glidar/io/model/model.hpp>
@@ -15,23 +16,6 @@
 #include <vector>
 
 namespace glidar {
-
-/// What an instance changes of one of its model's materials.
-struct MaterialOverride {
-  std::string material;  ///< name in the model, "*" for all
-  std::string where;     ///< for errors
-  std::optional<Eigen::Vector3f> ambient;
-  std::optional<Eigen::Vector3f> diffuse;
-  std::optional<Eigen::Vector3f> specular;
-  std::optional<float> shininess;
-  std::optional<float> opacity;
-  std::optional<Brdf> backscatter;
-  LookupTable spectrum;  ///< empty: that of the model
-  std::optional<float> mirror;
-  std::optional<float> noise_scale;
-  std::string noise_texture;        ///< path of a PNG file; empty: as it was
-  std::string where_noise_texture;  ///< for errors
-};
 
 /// One entry of `models`.
 struct PlannedInstance {

@@ -5,10 +5,9 @@
 #include <glidar/io/config/length_unit.hpp>
 #include <glidar/io/config/motion_yaml.hpp>
 #include <glidar/io/config/pose_yaml.hpp>
-#include <glidar/io/config/pulse_yaml.hpp>
 #include <glidar/io/config/rig_yaml.hpp>
 #include <glidar/io/config/scene_builder.hpp>
-#include <glidar/io/config/surface_presets.hpp>
+#include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 
 #include <algorithm>
@@ -24,7 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr NumberRule kScale = {kMinScale, kMaxScale, false, "a number from 1e-15 to 1e15"};
 constexpr NumberRule kSize_m = {0.0, kMaxCoordinate_m, true, "metres above 0 and below 1e15"};
-constexpr NumberRule kShininess = {0.0, 128.0, false, "a number from 0 to 128"};
 
 std::string resolved(const YamlField& field) {
   const std::string source = text(field);
@@ -84,33 +82,11 @@ std::string read_source(const YamlField& field) {
 }
 
 MaterialOverride read_override(const std::string& material, const YamlField& field) {
-  require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity", "noise_scale",
-                      "noise_texture", "surface", "backscatter", "mirror", "spectrum"});
   MaterialOverride change;
   change.material = material;
   change.where = where(field);
-  const auto colour = [&](const char* key, std::optional<Eigen::Vector3f>& rgb) {
-    if (const auto value = find(field, key)) rgb = triple(*value, kZeroToOne).cast<float>();
-  };
-  const auto scalar = [&](const char* key, const NumberRule& rule, std::optional<float>& to) {
-    if (const auto value = find(field, key)) to = static_cast<float>(number(*value, rule));
-  };
-  colour("ambient", change.ambient);
-  colour("diffuse", change.diffuse);
-  colour("specular", change.specular);
-  scalar("shininess", kShininess, change.shininess);
-  scalar("opacity", kZeroToOne, change.opacity);
-  scalar("mirror", kZeroToOne, change.mirror);
-  scalar("noise_scale", kFromZero, change.noise_scale);
-  if (const auto name = find(field, "surface")) {
-    const SurfacePreset surface = find_surface(text(*name), where(*name));
-    change.spectrum = surface.spectrum;
-    change.backscatter = surface.backscatter;
-  }
-  if (const auto value = find(field, "backscatter")) change.backscatter = read_backscatter(*value);
-  if (const auto value = find(field, "spectrum")) change.spectrum = read_spectrum(*value);
+  read_struct(field, change);
   if (const auto texture = find(field, "noise_texture")) {
-    change.noise_texture = resolved(*texture);
     change.where_noise_texture = where(*texture);
   }
   return change;

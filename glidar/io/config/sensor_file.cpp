@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/sensor_file.hpp>
 
-#include <glidar/io/config/noise_yaml.hpp>
-#include <glidar/io/config/optics_yaml.hpp>
-#include <glidar/io/config/pulse_yaml.hpp>
-#include <glidar/io/config/receiver_yaml.hpp>
+#include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/sensor_yaml.hpp>
-#include <glidar/io/config/weather_yaml.hpp>
+#include <glidar/io/config/yaml_field_reader.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -17,133 +14,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kDefaultLidarRate_hz = 10.0;
-constexpr NumberRule kWavelength = {100.0, 20000.0, false, "nanometres from 100 to 20000"};
-constexpr NumberRule kPlace_m = {-1e3, 1e3, false, "metres from -1000 to 1000"};
-
-Optics read_optics(const YamlField& field) {
-  static const std::vector<std::string> kTypes = {"pinhole", "spinning", "raster",
-                                                  "prism",   "table",    "ouster"};
-  if (!field.node.IsMap()) reject(field, describe(field), "a map with the key 'type'");
-  const auto type = find(field, "type");
-  switch (type ? one_of(*type, kTypes) : 0) {
-    case 1:
-      return read_spinning(field);
-    case 2:
-      return read_line_scan(field);
-    case 3:
-      return read_prism(field);
-    case 4:
-      return read_beam_table(field);
-    case 5:
-      return read_ouster(field);
-    default:
-      return read_pinhole(field);
-  }
-}
-
-bool is_camera(const Sensor& sensor) {
-  return std::holds_alternative<Pinhole>(sensor.optics);
-}
-
-/// The rate that the optics bring along, or what is usual for their kind.
-double usual_rate_hz(const Sensor& sensor) {
-  if (const auto* spinning = std::get_if<Spinning>(&sensor.optics)) return spinning->rotation_hz;
-  return is_camera(sensor) ? sensor.rate_hz : kDefaultLidarRate_hz;
-}
-
-void read_ends(const YamlField& field, Limits& limits) {
-  limits.near_m = number_or(field, "near_m", kFromZero, limits.near_m);
-  const auto far = find(field, "far_m");
-  if (!far) return;
-  limits.far_m = number(*far, kAboveZero);
-  if (limits.far_m <= limits.near_m) {
-    reject(*far, describe(*far) + ", not beyond near_m", "a finite number above near_m");
-  }
-}
-
-/// `limits`, or `depth_limits` for limits along the depth.
-Limits read_limits(const YamlField& sensor_field, const Sensor& sensor) {
-  const auto general = find(sensor_field, "limits");
-  const auto depth = find(sensor_field, "depth_limits");
-  Limits limits;
-  limits.along = is_camera(sensor) ? Limits::Along::depth : Limits::Along::range;
-  if (general && depth) {
-    reject(*depth, "given beside 'limits'", "one of the two", "remove one of them");
-  }
-  if (depth) {
-    require_map(*depth, {"near_m", "far_m"});
-    limits.along = Limits::Along::depth;
-    read_ends(*depth, limits);
-  }
-  if (!general) return limits;
-  require_map(*general, {"near_m", "far_m", "along"});
-  if (const auto along = find(*general, "along")) {
-    limits.along =
-        one_of(*along, {"depth", "range"}) == 0 ? Limits::Along::depth : Limits::Along::range;
-  }
-  read_ends(*general, limits);
-  return limits;
-}
-
-PhongHeadlight read_light(const YamlField& field) {
-  require_map(field, {"attenuation", "ambient"});
-  PhongHeadlight light;
-  light.ambient = number_or(field, "ambient", kFromZero, light.ambient);
-  const auto attenuation = find(field, "attenuation");
-  if (!attenuation) return light;
-  require_map(*attenuation, {"constant", "linear_per_m", "quadratic_per_m2"});
-  const auto read = [&](const char* key, double& value) {
-    value = number_or(*attenuation, key, kFromZero, value);
-  };
-  read("constant", light.attenuation_constant);
-  read("linear_per_m", light.attenuation_linear_per_m);
-  read("quadratic_per_m2", light.attenuation_quadratic_per_m2);
-  if (light.attenuation_constant == 0.0 && light.attenuation_linear_per_m == 0.0 &&
-      light.attenuation_quadratic_per_m2 == 0.0) {
-    reject(*attenuation, "all three are 0", "at least one above 0");
-  }
-  return light;
-}
-
-/// The paper's lamp, or pulses, of which the lamp's light would be no part.
-void read_lights(const YamlField& field, Sensor& sensor) {
-  const auto light = find(field, "light");
-  const auto pulse = find(field, "lidar_equation");
-  if (light && pulse) {
-    reject(*light, "given beside 'lidar_equation', in whose place it would be",
-           "one of light, lidar_equation", "remove one of them");
-  }
-  if (light) sensor.light = read_light(*light);
-  if (pulse) sensor.pulse = read_lidar_equation(*pulse);
-}
-
-/// What only a sensor of pulses has.
-void read_beam_shape(const YamlField& field, Sensor& sensor) {
-  for (const char* key : {"footprint", "receiver"}) {
-    const auto value = find(field, key);
-    if (value && !sensor.pulse)
-      reject(*value, "given without 'lidar_equation'", "together with lidar_equation",
-             "add lidar_equation, the range equation that weighs what comes back");
-  }
-  if (const auto footprint = find(field, "footprint"))
-    sensor.footprint = read_footprint(*footprint);
-  if (const auto receiver = find(field, "receiver")) sensor.receiver = read_receiver(*receiver);
-}
-
-/// Needs the light, on which weather acts.
-void read_weather_of(const YamlField& field, Sensor& sensor) {
-  sensor.weather = read_weather(field);
-  if (!sensor.pulse) {
-    reject(field, "given without 'lidar_equation'", "weather for a sensor with pulsed light",
-           "add 'lidar_equation: ...'");
-  }
-  if (sensor.weather->visibility_m > 0.0 && !(sensor.wavelength_m > 0.0)) {
-    reject(field, "a visibility without 'wavelength_nm', on which fog's extinction depends",
-           "fog for light of a known wavelength", "add 'wavelength_nm: ...'");
-  }
-}
-
 /// "optics.elevation_deg" and all that it stands under: "optics".
 bool covers(const std::string& key, const std::string& path) {
   return path == key || path.starts_with(key + ".") || path.starts_with(key + "[");
@@ -151,12 +21,12 @@ bool covers(const std::string& key, const std::string& path) {
 
 std::string value_text(const YamlField& field) {
   if (field.node.IsScalar()) return field.node.Scalar();
-  if (!field.node.IsSequence()) return describe(field);
+  if (!field.node.IsSequence()) return content_text(field);
   constexpr std::size_t kShown = 8;
   std::string shown;
   const std::size_t count = field.node.size();
   for (std::size_t i = 0; i < count && i < kShown; ++i) {
-    if (!field.node[i].IsScalar()) return describe(field);
+    if (!field.node[i].IsScalar()) return content_text(field);
     shown += (i > 0 ? ", " : "") + field.node[i].Scalar();
   }
   return count > kShown ? shown + ", ... (" + std::to_string(count) + " in all)" : shown;
@@ -229,51 +99,18 @@ std::vector<DatasheetEntry> read_entries(const YamlField& root) {
   return sheet;
 }
 
-/// Optics from the file, or beams that stand in their place.
-void read_or_take_optics(const YamlField& field, std::optional<RayTable> table, Sensor& sensor) {
-  if (table) {
-    if (const auto optics = find(field, "optics")) {
-      reject(*optics, "given beside a table of beams", "one of the two", "remove one of them");
-    }
-    sensor.optics = *std::move(table);
-    return;
-  }
-  const YamlField optics = need(field, "optics");
-  sensor.optics = read_optics(optics);
-  if (const auto file = find(optics, "file")) sensor.files.push_back(path_beside(*file));
-}
-
 Sensor read_sensor_with(const YamlField& field, std::optional<RayTable> table) {
-  require_map(field, {"name", "optics", "rate_hz", "wavelength_nm", "limits", "depth_limits",
-                      "light", "lidar_equation", "footprint", "receiver", "weather",
-                      "projector_origin_m", "noise", "cull_back_faces", "source", "unverified"});
-  Sensor sensor;
-  read_or_take_optics(field, std::move(table), sensor);
-  if (!is_camera(sensor)) sensor.name = "lidar";
-  if (const auto name = find(field, "name")) sensor.name = text(*name);
-  set_rate(sensor, number_or(field, "rate_hz", kAboveZero, usual_rate_hz(sensor)));
-  if (const auto wavelength = find(field, "wavelength_nm")) {
-    sensor.wavelength_m = number(*wavelength, kWavelength) * 1e-9;
-  }
-  sensor.limits = read_limits(field, sensor);
-  read_lights(field, sensor);
-  read_beam_shape(field, sensor);
-  if (const auto weather = find(field, "weather")) read_weather_of(*weather, sensor);
-  if (const auto projector = find(field, "projector_origin_m")) {
-    if (sensor.pulse) {
-      reject(*projector, "given beside 'lidar_equation'", "a projector of continuous light",
-             "remove one of them");
-    }
-    sensor.projector_origin_m = triple(*projector, kPlace_m);
-  }
-  if (const auto noise = find(field, "noise")) sensor.noise = read_noise(*noise);
-  if (const auto cull = find(field, "cull_back_faces")) sensor.cull_back_faces = boolean(*cull);
+  SensorKeys keys;
+  keys.has_table = table.has_value();
+  if (table) keys.sensor.optics = *std::move(table);
+  read_struct(field, keys);
+  if (std::string file = file_of(keys.optics); !file.empty()) keys.sensor.files = {file};
   if (find(field, "source") || find(field, "unverified")) {
     YamlField root = field;
     root.path.clear();  // keys count from the sensor's own map
     read_entries(root);
   }
-  return sensor;
+  return std::move(keys.sensor);
 }
 
 }  // namespace

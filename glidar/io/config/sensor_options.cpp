@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
-#include <glidar/io/config/receiver_yaml.hpp>
+#include <glidar/sensor/lidar/return_names.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

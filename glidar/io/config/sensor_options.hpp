@@ -21,8 +21,6 @@ struct SensorOptions {
   std::optional<double> snow_mm_per_h;           ///< of melted water, 0 to 1000; for pulsed light
 };
 
-inline constexpr std::int64_t kMaxColumnsPerTurn = 1 << 20;
-
 /// What the user calls the options; errors name them so.
 struct SensorOptionNames {
   std::string rate = "rate_hz";

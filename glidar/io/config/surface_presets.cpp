@@ -4,7 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
-#include <glidar/io/config/pulse_yaml.hpp>
+#include <glidar/io/config/material_keys.hpp>
+#include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/files/data_folder.hpp>
 
 #include <algorithm>
@@ -13,12 +14,8 @@ namespace glidar {
 namespace {
 
 SurfacePreset read_surface(const std::string& name, const YamlField& field) {
-  require_map(field, {"about", "spectrum", "backscatter", "source", "unverified"});
-  SurfacePreset surface{.name = name,
-                        .about = text(need(field, "about")),
-                        .spectrum = read_spectrum(need(field, "spectrum")),
-                        .source = text(need(field, "source"))};
-  if (const auto form = find(field, "backscatter")) surface.backscatter = read_backscatter(*form);
+  SurfacePreset surface{.name = name, .about = "", .spectrum = {}, .source = ""};
+  read_struct(field, surface);
   if (const auto unverified = find(field, "unverified")) {
     for (const YamlField& key : items(*unverified)) one_of(key, {"spectrum", "backscatter"});
     surface.verified = false;
@@ -27,6 +24,14 @@ SurfacePreset read_surface(const std::string& name, const YamlField& field) {
 }
 
 }  // namespace
+
+void describe(SurfacePreset& surface, FieldVisitor& visitor) {
+  visitor.text({"about", "one line about the surface", kNoUnit, kRequired}, surface.about);
+  visit_spectrum(visitor, kRequired, surface.spectrum);
+  visit_object(visitor, {"backscatter", "how the surface reflects pulses"}, surface.backscatter);
+  visitor.text({"source", "where the numbers come from", kNoUnit, kRequired}, surface.source);
+  visitor.other({"unverified", "keys whose numbers are not published"}, "list");
+}
 
 std::vector<SurfacePreset> load_surfaces() {
   const YamlField root = read_yaml(data_folder("materials", "GLIDAR_MATERIALS") / "surfaces.yaml");

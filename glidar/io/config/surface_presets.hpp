@@ -19,6 +19,9 @@ struct SurfacePreset {
   bool verified = true;
 };
 
+/// Keys of one entry of materials/surfaces.yaml.
+void describe(SurfacePreset& surface, FieldVisitor& visitor);
+
 /// The surfaces that come with GLIDAR, in the order of the file: materials/surfaces.yaml of the
 /// source, in share/glidar where it is installed, or in the folder that GLIDAR_MATERIALS names.
 std::vector<SurfacePreset> load_surfaces();

@@ -73,7 +73,7 @@ struct Entry {
 };
 
 std::vector<Entry> checked_entries(const YamlField& field) {
-  if (!field.node.IsMap()) reject(field, describe(field), "a map (key: value)");
+  if (!field.node.IsMap()) reject(field, content_text(field), "a map (key: value)");
   std::vector<Entry> result;
   std::set<std::string> seen;
   for (const auto& pair : field.node) {
@@ -107,12 +107,6 @@ std::optional<double> spelled_number(const YAML::Node& node) {
   return problem == std::errc{} ? std::optional(value) : std::nullopt;
 }
 
-bool keeps(const NumberRule& rule, double value) {
-  if (!std::isfinite(value)) return false;
-  if (rule.without_ends) return value > rule.least && value < rule.most;
-  return value >= rule.least && value <= rule.most;
-}
-
 /// The one map of a file; `name` is the file's.
 YamlField root_of(const std::string& name, const std::vector<YAML::Node>& documents) {
   if (documents.empty() || documents[0].IsNull()) {
@@ -124,7 +118,8 @@ YamlField root_of(const std::string& name, const std::vector<YAML::Node>& docume
     throw Error({position(name, second), "a second document", "one document in a file",
                  "remove the line '---' before it"});
   }
-  if (!root.node.IsMap()) reject(root, describe(root), "a map (key: value)", "see docs/files.md");
+  if (!root.node.IsMap())
+    reject(root, content_text(root), "a map (key: value)", "see docs/files.md");
   return root;
 }
 
@@ -158,7 +153,7 @@ void reject_at(const std::string& where, const Error& error) {
   throw Error({where, place + parts.found, parts.allowed, parts.remedy});
 }
 
-std::string describe(const YamlField& field) {
+std::string content_text(const YamlField& field) {
   switch (field.node.Type()) {
     case YAML::NodeType::Null:
       return "no value";
@@ -198,7 +193,7 @@ std::vector<std::pair<std::string, YamlField>> entries(const YamlField& field) {
 }
 
 std::vector<YamlField> items(const YamlField& field) {
-  if (!field.node.IsSequence()) reject(field, describe(field), "a list");
+  if (!field.node.IsSequence()) reject(field, content_text(field), "a list");
   std::vector<YamlField> result;
   for (const YAML::Node& item : field.node) {
     const std::string path = field.path + "[" + std::to_string(result.size()) + "]";
@@ -223,9 +218,9 @@ YamlField need(const YamlField& map, std::string_view key) {
 
 double number(const YamlField& field, const NumberRule& rule) {
   const std::optional<double> value = spelled_number(field.node);
-  if (value && keeps(rule, *value)) return *value;
+  if (value && accepts(rule, *value)) return *value;
   const bool quoted = field.node.IsScalar() && field.node.Tag() == "!";
-  reject(field, describe(field), rule.allowed, quoted ? "remove the quotes" : "");
+  reject(field, content_text(field), rule.allowed, quoted ? "remove the quotes" : "");
 }
 
 double number_or(const YamlField& map, std::string_view key, const NumberRule& rule,
@@ -234,11 +229,11 @@ double number_or(const YamlField& map, std::string_view key, const NumberRule& r
   return field ? number(*field, rule) : otherwise;
 }
 
-std::uint32_t whole_number(const YamlField& field, std::uint32_t least, std::uint32_t most) {
+std::uint32_t whole_number(const YamlField& field, std::uint32_t min, std::uint32_t max) {
   const std::string allowed =
-      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
-  const double value = number(field, {least * 1.0, most * 1.0, false, allowed.c_str()});
-  if (value != std::floor(value)) reject(field, describe(field), allowed);
+      "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
+  const double value = number(field, {min * 1.0, max * 1.0, false, allowed.c_str()});
+  if (value != std::floor(value)) reject(field, content_text(field), allowed);
   return static_cast<std::uint32_t>(value);
 }
 
@@ -248,7 +243,7 @@ bool boolean(const YamlField& field) {
 
 std::string text(const YamlField& field) {
   if (!field.node.IsScalar() || field.node.Scalar().empty()) {
-    reject(field, describe(field), "a text that is not empty");
+    reject(field, content_text(field), "a text that is not empty");
   }
   return field.node.Scalar();
 }
@@ -257,7 +252,7 @@ std::string path_beside(const YamlField& field) {
   constexpr std::size_t kMaxPath_bytes = 4096;  // Linux' own limit
   const std::string named = text(field);
   if (named.size() > kMaxPath_bytes || named.find('\0') != std::string::npos)
-    reject(field, describe(field), "a path of at most 4096 bytes without zero bytes");
+    reject(field, content_text(field), "a path of at most 4096 bytes without zero bytes");
   fs::path path = fs::path(field.file).parent_path() / named;
   // Behind a link, "link/.." is the parent of what it points to: only the system knows.
   const bool goes_up = std::find(path.begin(), path.end(), "..") != path.end();
@@ -268,7 +263,7 @@ std::size_t one_of(const YamlField& field, const std::vector<std::string>& words
   const std::string word = field.node.IsScalar() ? field.node.Scalar() : "";
   const auto at = std::find(words.begin(), words.end(), word);
   if (at == words.end()) {
-    reject(field, describe(field), joined(words), word.empty() ? "" : suggestion(word, words));
+    reject(field, content_text(field), joined(words), word.empty() ? "" : suggestion(word, words));
   }
   return static_cast<std::size_t>(at - words.begin());
 }
@@ -279,10 +274,10 @@ LookupTable table(const YamlField& field, const NumberRule& place, const NumberR
   LookupTable pairs;
   for (const YamlField& entry : items(field)) {
     const std::vector<YamlField> pair = items(entry);
-    if (pair.size() != 2) reject(entry, describe(entry), "a pair of numbers");
+    if (pair.size() != 2) reject(entry, content_text(entry), "a pair of numbers");
     pairs.push_back({number(pair[0], place) * unit, number(pair[1], value)});
     if (pairs.size() > 1 && pairs.back()[0] <= pairs[pairs.size() - 2][0]) {
-      reject(pair[0], describe(pair[0]) + ", not above the one before", "numbers that rise");
+      reject(pair[0], content_text(pair[0]) + ", not above the one before", "numbers that rise");
     }
   }
   if (pairs.empty() || pairs.size() > kMax) {
@@ -293,7 +288,7 @@ LookupTable table(const YamlField& field, const NumberRule& place, const NumberR
 
 Eigen::Vector3d triple(const YamlField& field, const NumberRule& rule) {
   if (!field.node.IsSequence() || field.node.size() != 3) {
-    reject(field, describe(field), "a list of 3 numbers");
+    reject(field, content_text(field), "a list of 3 numbers");
   }
   const std::vector<YamlField> parts = items(field);
   return {number(parts[0], rule), number(parts[1], rule), number(parts[2], rule)};

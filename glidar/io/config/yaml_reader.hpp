@@ -5,6 +5,7 @@
 // Private to glidar/io: reading YAML so that every error tells file:line:column and the field.
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/math/lookup_table.hpp>
 
@@ -13,11 +14,10 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glidar {
@@ -30,22 +30,8 @@ struct YamlField {
   YAML::Node node;
 };
 
-/// The numbers a field takes, in words for the error.
-struct NumberRule {
-  double least = -std::numeric_limits<double>::max();
-  double most = std::numeric_limits<double>::max();
-  bool without_ends = false;  ///< least and most themselves are not allowed
-  const char* allowed = "a finite number";
-};
-
-inline constexpr NumberRule kFinite = {};
-inline constexpr NumberRule kAboveZero = {0.0, std::numeric_limits<double>::max(), true,
-                                          "a finite number above 0"};
-inline constexpr NumberRule kFromZero = {0.0, std::numeric_limits<double>::max(), false,
-                                         "a finite number from 0"};
 inline constexpr NumberRule kCoordinate = {-kMaxCoordinate_m, kMaxCoordinate_m, false,
                                            "a number from -1e15 to 1e15"};
-inline constexpr NumberRule kZeroToOne = {0.0, 1.0, false, "a number from 0 to 1"};
 
 /// Reads a file that holds one YAML map in UTF-8. Throws Error: missing, no file, over 8 MiB, bad
 /// syntax, empty, nested too deeply, too many values, several documents, not a map.
@@ -65,7 +51,7 @@ std::string where(const YamlField& field);
 [[noreturn]] void reject_at(const std::string& where, const Error& error);
 
 /// What a field holds, for error texts: "a map", "the text 'abc'" ...
-std::string describe(const YamlField& field);
+std::string content_text(const YamlField& field);
 
 /// " did you mean ..." for a word that is none of `known`; empty when none is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
@@ -89,8 +75,8 @@ YamlField need(const YamlField& map, std::string_view key);
 double number(const YamlField& field, const NumberRule& rule);
 double number_or(const YamlField& map, std::string_view key, const NumberRule& rule,
                  double otherwise);
-/// A whole number between least and most, both included.
-std::uint32_t whole_number(const YamlField& field, std::uint32_t least, std::uint32_t most);
+/// A whole number from min to max.
+std::uint32_t whole_number(const YamlField& field, std::uint32_t min, std::uint32_t max);
 bool boolean(const YamlField& field);
 /// Any scalar but an empty one.
 std::string text(const YamlField& field);

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/sidecar_file.hpp>
 
+#include <glidar/core/unit_conversion.hpp>
 #include <glidar/core/version.hpp>
+#include <glidar/io/config/camera_info.hpp>
+#include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/json_numbers.hpp>
-#include <glidar/io/config/noise_yaml.hpp>
-#include <glidar/io/config/optics_json.hpp>
-#include <glidar/io/config/receiver_yaml.hpp>
-#include <glidar/io/config/weather_yaml.hpp>
+#include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
 
@@ -21,9 +21,6 @@ namespace {
 
 // Keys keep their order. Numbers that JSON cannot represent (NaN, infinity) become null.
 using Json = nlohmann::ordered_json;
-
-constexpr double kMilli = 1e-3;
-constexpr double kNano = 1e-9;
 
 Json vector_json(const Eigen::Vector3d& v) {
   return Json::array({v.x(), v.y(), v.z()});
@@ -42,65 +39,31 @@ Json pose_json(const Pose& pose) {
           {"orientation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
 }
 
-Json pulse_json(const LidarEquation& light) {
-  return {{"reference_reflectance", light.reference_reflectance},
-          {"reference_range_m", light.reference_range_m},
-          {"range_exponent", light.range_exponent},
-          {"overlap", light.overlap},
-          {"extinction_per_m", light.extinction_per_m},
-          {"noise_sigma", light.noise_sigma},
-          {"saturation", light.saturation}};
-}
-
-Json footprint_json(const Footprint& f) {
-  return {{"divergence_mrad",
-           {in_unit(f.divergence_x_rad, kMilli), in_unit(f.divergence_y_rad, kMilli)}},
-          {"exit_mm", {in_unit(f.exit_x_m, kMilli), in_unit(f.exit_y_m, kMilli)}},
-          {"width_definition", "1/e2"},
-          {"rings", f.rings}};
-}
-
-Json receiver_json(const Receiver& receiver) {
-  Json returns = Json::array();
-  for (const Return& one : receiver.returns) returns.push_back(return_name(one));
-  const bool is_centroid = receiver.timing == Receiver::Timing::centroid;
-  return {{"pulse_ns", in_unit(receiver.pulse_fwhm_s, kNano)},
-          {"timing", is_centroid ? "centroid" : "leading_edge"},
-          {"min_return_separation_m", receiver.separation_m},
-          {"returns", returns}};
+/// What a sidecar tells of a sensor beside its keys, after one of them.
+Json beside_key(const std::string& key, const Sensor& sensor, const Beams& beams) {
+  if (key == "name") {
+    return {{"frame_id", beams.frame_id},
+            {"rows", beams.rows},
+            {"cols", beams.cols},
+            {"boresight", vector_json(beams.boresight)}};
+  }
+  if (key == "optics") return {{"camera_info", camera_info_json(sensor.optics)}};
+  // the quotient has few digits, unlike the product that reading a sensor file computes
+  if (key == "wavelength_nm") {
+    return {{"range_offset_m", in_unit(beams.range_offset_m, kMillimetre_m) / 1000.0}};
+  }
+  return Json::object();
 }
 
 /// All numbers of a sensor.
 Json sensor_json(const Sensor& sensor, const Beams& beams) {
-  const PhongHeadlight& light = sensor.light;
-  return {{"name", sensor.name},
-          {"frame_id", beams.frame_id},
-          {"rows", beams.rows},
-          {"cols", beams.cols},
-          {"boresight", vector_json(beams.boresight)},
-          {"optics", optics_json(sensor.optics)},
-          {"camera_info", camera_info_json(sensor.optics)},
-          {"rate_hz", sensor.rate_hz},
-          {"wavelength_nm", in_unit(sensor.wavelength_m, kNano)},
-          // the quotient has few digits, unlike the product that reading a sensor file computes
-          {"range_offset_m", in_unit(beams.range_offset_m, kMilli) / 1000.0},
-          {"limits",
-           {{"near_m", sensor.limits.near_m},
-            {"far_m", sensor.limits.far_m},
-            {"along", sensor.limits.along == Limits::Along::depth ? "depth" : "range"}}},
-          {"light",
-           {{"attenuation_constant", light.attenuation_constant},
-            {"attenuation_linear_per_m", light.attenuation_linear_per_m},
-            {"attenuation_quadratic_per_m2", light.attenuation_quadratic_per_m2},
-            {"ambient", light.ambient}}},
-          {"lidar_equation", sensor.pulse ? pulse_json(*sensor.pulse) : Json()},
-          {"footprint", sensor.footprint ? footprint_json(*sensor.footprint) : Json()},
-          {"receiver", sensor.pulse ? receiver_json(sensor.receiver) : Json()},
-          {"weather", sensor.weather ? weather_json(*sensor.weather) : Json()},
-          {"projector_origin_m",
-           sensor.projector_origin_m ? vector_json(*sensor.projector_origin_m) : Json()},
-          {"noise", noise_json(sensor.noise)},
-          {"cull_back_faces", sensor.cull_back_faces}};
+  Json json;
+  const Json keys = write_struct(FieldVisitor::Mode::report, sensor_keys(sensor));
+  for (const auto& [key, value] : keys.items()) {
+    json[key] = value;
+    json.update(beside_key(key, sensor, beams));
+  }
+  return json;
 }
 
 Json sensor_json(const CloudFile& job) {

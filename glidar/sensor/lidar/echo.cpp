@@ -3,9 +3,11 @@
 #include <glidar/sensor/lidar/echo.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
+#include <glidar/sensor/lidar/return_names.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -235,6 +237,25 @@ int find_return(const Return& wanted, std::span<const PulseEcho> echoes,
   return -1;
 }
 
+/// Returns by name, or how many of the nearest.
+void visit_returns(FieldVisitor& visitor, std::vector<Return>& returns) {
+  std::vector<std::string> names;
+  for (const Return& one : returns) names.push_back(return_name(one));
+  const auto max_size = static_cast<std::uint32_t>(kMaxReturns);
+  const auto size = static_cast<std::uint32_t>(returns.size());
+  std::uint32_t count = visitor.is_document() && are_nearest(returns) ? size : 0;
+  visitor.words_or_count(
+      {"returns", "reported returns, or N for the N nearest echoes; `--returns` overrides it"},
+      return_words(), max_size, names, count);
+  if (!visitor.is_reading()) return;
+  if (count > 0) {
+    returns = nearest_returns(count);
+    return;
+  }
+  returns.clear();
+  for (const std::string& name : names) returns.push_back(return_named(name));
+}
+
 }  // namespace
 
 void validate(const Receiver& receiver) {
@@ -326,6 +347,20 @@ void select_returns(const Receiver& receiver, std::span<const PulseEcho> echoes,
     if (index >= 0 && is_told(index, r)) index = strongest_untold(r);
     chosen[r] = index;
   }
+}
+
+void describe(Receiver& receiver, FieldVisitor& visitor) {
+  using Timing = Receiver::Timing;
+  constexpr std::array<Named<Timing>, 2> kNames = {
+      {{"centroid", Timing::centroid}, {"leading_edge", Timing::leading_edge}}};
+  visitor.number({"pulse_ns", "full width of the pulse at half maximum", kUnitNanosecond},
+                 {0.0, 1e6, true, "nanoseconds above 0, up to 1e6"}, receiver.pulse_fwhm_s);
+  visit_choice(visitor, {"timing", "how an echo is timed"}, kNames, receiver.timing);
+  visitor.number({"min_return_separation_m",
+                  "an echo closer than this to a stronger one is not reported", kUnitMetre},
+                 {0.0, 1e6, false, "metres from 0 to 1e6"}, receiver.separation_m);
+  visit_returns(visitor, receiver.returns);
+  if (visitor.is_reading()) validate(receiver);
 }
 
 }  // namespace glidar

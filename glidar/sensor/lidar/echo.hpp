@@ -11,6 +11,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 /// Selects one echo to report: the rank-th nearest, farthest or strongest, from 0.
 struct Return {
   enum class Order : std::uint8_t { nearest, farthest, strongest };
@@ -35,6 +37,9 @@ struct Receiver {
 
 /// Throws Error with the number that is out of range.
 void validate(const Receiver& receiver);
+
+/// Keys of `receiver` in sensor files.
+void describe(Receiver& receiver, FieldVisitor& visitor);
 
 /// Standard deviation of the pulse in range, metres: c / 2 times that of its duration.
 double pulse_sigma_m(const Receiver& receiver);

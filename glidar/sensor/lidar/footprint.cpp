@@ -3,6 +3,8 @@
 #include <glidar/sensor/lidar/footprint.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
+#include <glidar/core/unit_conversion.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/simd.hpp>
 
@@ -136,6 +138,32 @@ void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange 
   }
 }
 
+enum class Width : std::uint8_t { e2, fwhm };
+
+/// The definition by which numbers of a file give the widths exactly.
+Width exact_width(const Footprint& f) {
+  for (const double width : {f.divergence_x_rad, f.divergence_y_rad, f.exit_x_m, f.exit_y_m}) {
+    if (!find_exact_in(width, kUnitMilliradian.size)) return Width::fwhm;
+  }
+  return Width::e2;
+}
+
+/// One number for both, or [across, up].
+void visit_pair(FieldVisitor& visitor, const FieldInfo& field, const NumberRule& rule,
+                double& across, double& up) {
+  std::vector<double> both = {across, up};
+  visitor.numbers(field,
+                  {.number = rule,
+                   .min_size = 2,
+                   .max_size = 2,
+                   .takes_one = true,
+                   .allowed = "one number, or two: [across, up]"},
+                  both);
+  if (!visitor.is_reading()) return;
+  across = both[0];
+  up = both[1];
+}
+
 }  // namespace
 
 void validate(const Footprint& f) {
@@ -200,6 +228,28 @@ void expand_beams(const std::vector<SubRay>& rays, const Beams& beams, BeamRange
                                spread_some(rays, beams, {beam, beam + some}, k * rays.size(), out);
                              }
                            });
+}
+
+void describe(Footprint& f, FieldVisitor& visitor) {
+  constexpr std::array<Named<Width>, 2> kNames = {{{"1/e2", Width::e2}, {"fwhm", Width::fwhm}}};
+  const FieldInfo definition = {
+      "width_definition",
+      "definition of both widths; 1/e² is 1.699 times the full width at half maximum"};
+  Width width = visitor.is_document() ? exact_width(f) : Width::e2;
+  if (visitor.is_reading())
+    visit_choice(visitor, definition, kNames, width);  // the unit of the rest
+  const double size = kUnitMilliradian.size * (width == Width::fwhm ? kWidthPerFwhm : 1.0);
+  visit_pair(
+      visitor,
+      {"divergence_mrad", "full angle: one number, or `[across, up]`", {"mrad", size}, kRequired},
+      {0.0, 1500.0, false, "milliradians from 0 to 1500"}, f.divergence_x_rad, f.divergence_y_rad);
+  visit_pair(visitor,
+             {"exit_mm", "full width at the exit: one number, or `[across, up]`", {"mm", size}},
+             {0.0, 1e5, false, "millimetres from 0 to 1e5"}, f.exit_x_m, f.exit_y_m);
+  visit_choice(visitor, definition, kNames, width);
+  visitor.whole_number({"rings", "rings of sub-rays around the middle one: 7, 19, 37 ... sub-rays"},
+                       {1, kMaxRings}, f.rings);
+  if (visitor.is_reading()) validate(f);
 }
 
 }  // namespace glidar

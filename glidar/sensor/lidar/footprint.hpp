@@ -10,6 +10,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 /// The cross-section of a beam: a Gaussian, given by its full widths where the irradiance is 1/e^2
 /// of the maximum. The width at range R is sqrt(exit^2 + (divergence R)^2), horizontally (x) and
 /// upwards (y) in the sensor frame.
@@ -29,6 +31,9 @@ inline constexpr double kWidthPerFwhm = 1.6986436005760381;
 
 /// Throws Error with the number that is out of range.
 void validate(const Footprint& footprint);
+
+/// Keys of `footprint` in sensor files.
+void describe(Footprint& footprint, FieldVisitor& visitor);
 
 /// The larger of the two widths at a range, metres.
 double diameter_m(const Footprint& footprint, double range_m);

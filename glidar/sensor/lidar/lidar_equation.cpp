@@ -3,6 +3,7 @@
 #include <glidar/sensor/lidar/lidar_equation.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
@@ -33,7 +34,7 @@ double relative(const Lambert& /*surface*/, double cosine) {
 double relative(const PhongLike& s, double cosine) {
   const double lobe =
       portable_pow(std::abs(2.0 * cosine * cosine - 1.0), s.exponent);  // cos 2 theta
-  return (1.0 - s.specular_share) * cosine + s.specular_share * lobe;
+  return (1.0 - s.specular_fraction) * cosine + s.specular_fraction * lobe;
 }
 
 double relative(const OrenNayar& s, double cosine) {
@@ -50,7 +51,7 @@ double relative(const RetroReflector& s, double cosine) {
 
 double relative(const Glossy& s, double cosine) {
   const double x = incidence_rad(cosine) / s.width_rad;
-  return s.matt_share * cosine + s.lobe_gain * portable_exp(-0.5 * x * x);
+  return s.diffuse_fraction * cosine + s.lobe_gain * portable_exp(-0.5 * x * x);
 }
 
 /// The backscatter of a material at one wavelength.
@@ -143,6 +144,27 @@ void measure_hit(const LidarEquation& light, double received, std::size_t beam, 
   }
   if (light.saturation > 0.0 && received >= light.saturation)
     invalidate_return(frame, beam, Status::saturated);
+}
+
+constexpr NumberRule kEquationRange = {0.0, 1e9, true, "metres above 0, up to 1e9"};
+
+/// The noise by the range at which a data sheet promises a detection of 90 %.
+void visit_range90(FieldVisitor& visitor, LidarEquation& light) {
+  if (visitor.is_writing()) return;
+  visitor.at_most_one({{"noise_sigma", "range90_m"}, "one of range90_m, noise_sigma"});
+  double range90_m = 0.0;
+  visitor.number({"range90_m",
+                  "instead of `noise_sigma`: range at which the data sheet specifies 90 % "
+                  "detection, below `reference_range_m`",
+                  kUnitMetre, false, ""},
+                 kEquationRange, range90_m);
+  if (!visitor.has("range90_m")) return;
+  if (range90_m >= light.reference_range_m) {
+    visitor.reject("range90_m", "{}, not below the reference range",
+                   "metres below reference_range_m, which is seen with probability 1/2");
+  }
+  if (visitor.is_reading())
+    light.noise_sigma = noise_sigma_of(light.reference_range_m, range90_m, light.range_exponent);
 }
 
 }  // namespace
@@ -264,6 +286,30 @@ void shade_lidar(const LidarEquation& light, const Scene& scene, double waveleng
       frame.intensity[i] = 0.0F;
     }
   }
+}
+
+void describe(LidarEquation& light, FieldVisitor& visitor) {
+  constexpr NumberRule kReflectance = {0.0, 1000.0, true, "a number above 0, up to 1000"};
+  constexpr NumberRule kOverlapRange = {0.0, 1e9, false, "metres from 0 to 1e9"};
+  constexpr NumberRule kExponent = {0.0, 16.0, false, "a number from 0 to 16"};
+  visitor.number({"reference_reflectance", "rho_ref", kNoUnit, kRequired}, kReflectance,
+                 light.reference_reflectance);
+  visitor.number(
+      {"reference_range_m",
+       "R_ref: range at which a surface of that reflectance is detected with probability 1/2",
+       kUnitMetre, kRequired},
+      kEquationRange, light.reference_range_m);
+  visitor.number({"range_exponent", "q"}, kExponent, light.range_exponent);
+  visitor.table({"overlap", "O: pairs `[range, O]`, linear between them, constant outside",
+                 kUnitMetre, false, "1 everywhere"},
+                kOverlapRange, kFromZero, light.overlap);
+  visitor.number({"extinction_per_m", "alpha"}, kFromZero, light.extinction_per_m);
+  visit_range90(visitor, light);
+  visitor.number({"noise_sigma", "standard deviation of the signal"}, kFromZero, light.noise_sigma);
+  visitor.number(
+      {"saturation", "signals at or above this value are reported as \"saturated\"; 0: none"},
+      kFromZero, light.saturation);
+  if (visitor.is_reading()) validate(light);
 }
 
 }  // namespace glidar

@@ -10,6 +10,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 /// The received signal by the lidar equation of an extended target (Wagner, ISPRS J. 60 (2006)
 /// 100-112): P = P_t rho(theta) D^2 eta exp(-2 alpha R) / (4 R^2). Data sheets state ranges, not
 /// powers, so the unit is the signal that is detected with probability 1/2, and one pair of
@@ -32,6 +34,9 @@ struct LidarEquation {
 
 /// Throws Error with the number that is out of range.
 void validate(const LidarEquation& light);
+
+/// Keys of `lidar_equation` in sensor files.
+void describe(LidarEquation& light, FieldVisitor& visitor);
 
 /// Backscatter of a surface relative to a white diffuse surface at normal incidence; core/brdf.hpp
 /// states the formulas. `cosine` is that of the incidence angle, 0..1.

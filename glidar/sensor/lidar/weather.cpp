@@ -3,6 +3,7 @@
 #include <glidar/sensor/lidar/weather.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/lidar/drop_size_distribution.hpp>
 
@@ -73,6 +74,48 @@ double extinction_per_m(const Weather& weather, double wavelength_m) {
     sum += geometric_extinction_per_m(snow_sizes(weather.snow_mm_per_h, weather.snow_model));
   }
   return sum;
+}
+
+void describe(Weather& weather, FieldVisitor& visitor) {
+  using W = Weather;
+  constexpr std::array<Named<W::Visibility>, 2> kVisibilities = {
+      {{"contrast", W::Visibility::contrast}, {"mor", W::Visibility::mor}}};
+  constexpr std::array<Named<W::FogModel>, 2> kFogModels = {
+      {{"kim", W::FogModel::kim}, {"kruse", W::FogModel::kruse}}};
+  constexpr std::array<Named<W::RainModel>, 2> kRainModels = {
+      {{"geometric", W::RainModel::geometric}, {"goodin", W::RainModel::goodin}}};
+  constexpr std::array<Named<W::SnowModel>, 2> kSnowModels = {
+      {{"gunn_marshall", W::SnowModel::gunn_marshall},
+       {"sekhon_srivastava", W::SnowModel::sekhon_srivastava}}};
+  constexpr NumberRule kVisibility = {0.0, kMaxVisibility_m, false,
+                                      "metres from 1 to 1e6, or 0 for clear air"};
+  constexpr NumberRule kRate = {0.0, kMaxFall_mm_per_h, false, "mm/h from 0 to 1000"};
+  visitor.number({"visibility_m", "in fog or haze; 0: clear air", kUnitMetre}, kVisibility,
+                 weather.visibility_m);
+  visit_choice(
+      visitor,
+      {"visibility_kind",
+       "distance at which 2 % of contrast remain (ln 50), or meteorological optical range (ln 20)"},
+      kVisibilities, weather.visibility_kind);
+  visit_choice(visitor, {"fog_model", "how extinction depends on the wavelength"}, kFogModels,
+               weather.fog_model);
+  visitor.number({"fog_backscatter_per_sr",
+                  "backscatter of fog times its meteorological optical range, 1/sr; 0.023 to 0.092 "
+                  "are measured"},
+                 kZeroToOne, weather.fog_backscatter_per_sr);
+  visitor.whole_number({"fog_looks", "echoes of fog vary by 1 / sqrt(looks); 0: not at all"},
+                       {0, kMaxFogLooks}, weather.fog_looks);
+  visitor.number({"rain_mm_per_h", "rain", {"mm/h"}}, kRate, weather.rain_mm_per_h);
+  visit_choice(visitor, {"rain_model", "extinction of rain"}, kRainModels, weather.rain_model);
+  visitor.number({"snow_mm_per_h", "snow, as melted water", {"mm/h"}}, kRate,
+                 weather.snow_mm_per_h);
+  visit_choice(visitor, {"snow_model", "sizes of snowflakes"}, kSnowModels, weather.snow_model);
+  visitor.number({"min_signal", "echoes of the air below this share of the threshold are ignored"},
+                 {1e-6, 1e6, false, "a number from 1e-6 to 1e6"}, weather.min_signal);
+  if (!visitor.is_reading()) return;
+  if (weather.visibility_m > 0.0 && weather.visibility_m < 1.0)
+    visitor.reject("visibility_m", "{}", kVisibility.allowed);
+  validate(weather);
 }
 
 }  // namespace glidar

@@ -6,6 +6,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 inline constexpr double kContrastDepth = 3.912;  ///< -ln 0.02, with the usual digits
 inline constexpr double kOpticalRangeDepth = 2.9957322735539909;  ///< ln 20
 
@@ -45,6 +47,9 @@ struct Weather {
 
 /// Throws Error with the number that is out of range.
 void validate(const Weather& weather);
+
+/// Keys of `weather` in sensor files.
+void describe(Weather& weather, FieldVisitor& visitor);
 
 /// Extinction by fog: 3.912 / V (550 nm / wavelength)^q, or 2.996 / V for the optical range. Kruse,
 /// McGlauchlin, McQuistan, "Elements of infrared technology", 1962: q = 1.6 above 50 km, 1.3 above

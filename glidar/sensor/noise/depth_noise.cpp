@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/depth_noise.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/noise/lateral_noise.hpp>
@@ -175,6 +176,59 @@ void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
            .rounds = step.step_px > 0.0},
           normal, batch);
   invalidate_infinite_ranges(batch);
+}
+
+void describe(DisparityQuantization& step, FieldVisitor& visitor) {
+  visitor.number({"k_m", "K", kUnitMetre, kRequired}, kAboveZero, step.k_m);
+  visitor.number({"offset_steps", "disparity of step 0, in steps"}, kFinite, step.offset_steps);
+}
+
+void describe(KinectV1& step, FieldVisitor& visitor) {
+  constexpr WholeRule kWindow = {1, 2 * kMaxWindowReach + 1};
+  visitor.number({"k_m", "K", kUnitMetre}, kAboveZero, step.k_m);
+  visitor.number({"offset_steps", "disparity of step 0, in steps"}, kFinite, step.offset_steps);
+  visitor.number({"sigma_steps", "standard deviation of the disparity, in steps"}, kFromZero,
+                 step.sigma_steps);
+  visitor.whole_number({"window", "side of the square whose pixels share errors; odd", kUnitPixel},
+                       kWindow, step.window);
+  if (visitor.is_reading() && step.window % 2 == 0) {
+    visitor.reject("window", "{}", "an odd number from 1 to 33");
+  }
+}
+
+void describe(Khoshelham& step, FieldVisitor& visitor) {
+  visitor.number({"sigma_per_m", "standard deviation at a depth of 1 m"}, kFromZero,
+                 step.sigma_per_m);
+}
+
+void describe(NguyenAxial& step, FieldVisitor& visitor) {
+  visitor.number({"a_m", "a", kUnitMetre}, kFromZero, step.a_m);
+  visitor.number({"b_per_m", "b"}, kFromZero, step.b_per_m);
+  visitor.number({"c_m", "c", kUnitMetre}, kFinite, step.c_m);
+  visitor.number({"grazing_coefficient", "factor of the error at grazing incidence"}, kFromZero,
+                 step.grazing_coefficient);
+}
+
+void describe(NguyenLateral& step, FieldVisitor& visitor) {
+  visitor.number({"a_px", "a", kUnitPixel}, kFromZero, step.a_px);
+  visitor.number({"b_px", "b", kUnitPixel}, kFromZero, step.b_px);
+}
+
+void describe(IclKinect& step, FieldVisitor& visitor) {
+  visitor.number({"k_m", "K", kUnitMetre}, kAboveZero, step.k_m);
+  visitor.number({"lateral_px", "standard deviation of the lateral shift", kUnitPixel}, kFromZero,
+                 step.lateral_px);
+  visitor.number({"sigma_steps", "standard deviation of the disparity, in steps"}, kFromZero,
+                 step.sigma_steps);
+}
+
+void describe(Stereo& step, FieldVisitor& visitor) {
+  visitor.number({"focal_px", "focal length f", kUnitPixel, kRequired}, kAboveZero, step.focal_px);
+  visitor.number({"baseline_m", "baseline b", kUnitMetre, kRequired}, kAboveZero, step.baseline_m);
+  visitor.number({"sigma_px", "standard deviation of the disparity", kUnitPixel, kRequired},
+                 kFromZero, step.sigma_px);
+  visitor.number({"step_px", "step of the disparity; 0: not rounded", kUnitPixel}, kFromZero,
+                 step.step_px);
 }
 
 }  // namespace glidar

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/field.hpp>
+
 namespace glidar {
 
+class FieldVisitor;
 struct NoiseBatch;
 struct NoiseView;
 
@@ -13,6 +16,9 @@ struct NoiseView;
 /// Disparity quantisation: z' = K / (n + offset) with an integer n; K = f b / step, and z^2 / K is
 /// the distance between levels.
 struct DisparityQuantization {
+  static constexpr TypeInfo kType = {"disparity_quantization",
+                                     "z = K / (n + offset), n integer; levels are z²/K apart",
+                                     "structured light, K = f b / step"};
   double k_m = 0.0;
   double offset_steps = 0.0;
 };
@@ -23,6 +29,9 @@ struct DisparityQuantization {
 /// and offset are those of OpenNI's table (PCL, openni_shift_to_depth_conversion.h):
 /// 1/z = (1089.4079 - shift) / K.
 struct KinectV1 {
+  static constexpr TypeInfo kType = {
+      "kinect_v1", "normal error of K/z, shared over window x window pixels, then rounded",
+      "OpenNI's table; noise of real frames"};
   double k_m = 9.0 / 0.02605;
   double offset_steps = 0.40787;
   double sigma_steps = 0.44;
@@ -32,6 +41,8 @@ struct KinectV1 {
 /// Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 12 (2012):
 /// sigma_z = 1.425e-3 z^2, half a step of disparity.
 struct Khoshelham {
+  static constexpr TypeInfo kType = {"khoshelham", "σ_z = 1.425e-3 z²",
+                                     "Khoshelham and Elberink, Sensors 12 (2012)"};
   double sigma_per_m = 1.425e-3;
 };
 
@@ -39,6 +50,9 @@ struct Khoshelham {
 /// sigma_z = 0.0012 + 0.0019 (z - 0.4)^2, and beyond an incidence of 60 degrees also
 /// 0.0001 / sqrt(z) theta^2 / (pi/2 - theta)^2. The coefficients differ between cameras.
 struct NguyenAxial {
+  static constexpr TypeInfo kType = {
+      "nguyen_axial", "σ_z = a + b (z - c)², beyond 60° + grazing_coefficient/√z θ²/(π/2 - θ)²",
+      "Nguyen, Izadi, Lovell, 3DIMPVT 2012"};
   double a_m = 0.0012;
   double b_per_m = 0.0019;
   double c_m = 0.4;
@@ -48,6 +62,9 @@ struct NguyenAxial {
 /// The same paper, lateral: the depth is that at a normal offset of sigma_L pixels along rows and
 /// columns, sigma_L = 0.8 + 0.035 theta / (pi/2 - theta).
 struct NguyenLateral {
+  static constexpr TypeInfo kType = {
+      "nguyen_lateral", "depth of the point σ_L x pixels away, σ_L = a + b θ/(π/2 - θ)",
+      "Nguyen, Izadi, Lovell, 3DIMPVT 2012"};
   double a_px = 0.8;
   double b_px = 0.035;
 };
@@ -55,6 +72,9 @@ struct NguyenLateral {
 /// The method of Barron and Malik (CVPR 2013) and Handa et al. (ICL-NUIM, ICRA 2014): the depth at
 /// an offset of N(0, lateral) pixels, disparity K / z plus N(0, sigma), rounded to whole steps.
 struct IclKinect {
+  static constexpr TypeInfo kType = {
+      "icl_kinect", "depth of the point N(0, lateral) away, K/z + N(0, σ), rounded",
+      "Barron and Malik 2013; Handa et al. 2014"};
   double k_m = 351.30;
   double lateral_px = 0.5;
   double sigma_steps = 1.0 / 6.0;
@@ -63,6 +83,9 @@ struct IclKinect {
 /// A stereo camera: disparity f b / z with a normal error, optionally rounded to whole steps.
 /// sigma_z = z^2 sigma / (f b).
 struct Stereo {
+  static constexpr TypeInfo kType = {"stereo",
+                                     "f b / z + σ x, rounded to steps if set; σ_z = z² σ / (f b)",
+                                     "propagation of the disparity error"};
   double focal_px = 0.0;
   double baseline_m = 0.0;
   double sigma_px = 0.0;
@@ -72,6 +95,15 @@ struct Stereo {
 /// The standard deviations of the models above.
 double nguyen_axial_sigma_m(const NguyenAxial& model, double z_m, double incidence_rad);
 double nguyen_lateral_sigma_px(const NguyenLateral& model, double incidence_rad);
+
+/// Keys in sensor files.
+void describe(DisparityQuantization& step, FieldVisitor& visitor);
+void describe(KinectV1& step, FieldVisitor& visitor);
+void describe(Khoshelham& step, FieldVisitor& visitor);
+void describe(NguyenAxial& step, FieldVisitor& visitor);
+void describe(NguyenLateral& step, FieldVisitor& visitor);
+void describe(IclKinect& step, FieldVisitor& visitor);
+void describe(Stereo& step, FieldVisitor& visitor);
 
 void apply(const DisparityQuantization& step, const NoiseView& view, NoiseBatch& batch);
 void prepare(const KinectV1& step, const NoiseView& view, NoiseBatch& batch);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/dropout.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
@@ -82,6 +83,33 @@ void apply(const FalseAlarms& step, const NoiseView& view, NoiseBatch& batch) {
     batch.intensity[i] = step.intensity;
     batch.status[i] = Status::hit;
     set_return_source(view, batch, i, ReturnSource::false_alarm);
+  }
+}
+
+void describe(Dropout& step, FieldVisitor& visitor) {
+  visitor.number({"probability", "p, for every return"}, kZeroToOne, step.probability);
+  visitor.table({"by_range_m", "p(R): pairs [range, probability]", kUnitMetre}, kFromZero,
+                kZeroToOne, step.by_range_m);
+  visitor.table({"by_incidence_deg", "p(θ): pairs [incidence, probability]", kUnitDegree},
+                kFromZero, kZeroToOne, step.by_incidence_rad);
+}
+
+void describe(Crosstalk& step, FieldVisitor& visitor) {
+  visitor.number({"probability", "of a wrong range", kNoUnit, kRequired}, kZeroToOne,
+                 step.probability);
+  visitor.number({"near_m", "shortest wrong range", kUnitMetre}, kFromZero, step.near_m);
+}
+
+void describe(FalseAlarms& step, FieldVisitor& visitor) {
+  visitor.number(
+      {"rate_hz", "false alarms per second while the gate is open", kUnitHertz, kRequired},
+      kFromZero, step.rate_hz);
+  visitor.number({"near_m", "start of the gate", kUnitMetre}, kFromZero, step.near_m);
+  visitor.number({"far_m", "end of the gate, beyond `near_m`", kUnitMetre, kRequired}, kAboveZero,
+                 step.far_m);
+  visitor.number({"intensity", "of a false alarm"}, kFromZero, step.intensity);
+  if (visitor.is_reading() && step.far_m <= step.near_m) {
+    visitor.reject("far_m", "{}, not beyond near_m", "a finite number above near_m");
   }
 }
 

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/field.hpp>
 #include <glidar/math/lookup_table.hpp>
 
 namespace glidar {
 
+class FieldVisitor;
 struct NoiseBatch;
 struct NoiseView;
 
 /// Random loss of returns, with the probability 1 - (1 - p) (1 - p(R)) (1 - p(incidence)).
 struct Dropout {
+  static constexpr TypeInfo kType = {"dropout",
+                                     "lost with probability 1 - (1-p)(1-p(R))(1-p(θ)): `dropped`",
+                                     "independent losses"};
   double probability = 0.0;
   LookupTable by_range_m{};
   LookupTable by_incidence_rad{};
@@ -19,6 +24,9 @@ struct Dropout {
 /// With this probability a beam reports a range that is uniform between near and the range of
 /// another beam of its column (another channel, which fires close in time).
 struct Crosstalk {
+  static constexpr TypeInfo kType = {
+      "crosstalk", "range uniform between near and the range of another beam of the column",
+      "echo of a pulse that another channel fired"};
   double probability = 0.0;
   double near_m = 0.0;
 };
@@ -28,6 +36,11 @@ struct Crosstalk {
 /// reported instead. The first arrival is exponentially distributed. Of several returns it affects
 /// the first. Its Frame::return_source is false_alarm.
 struct FalseAlarms {
+  static constexpr TypeInfo kType = {
+      "false_alarms",
+      "first arrival of a Poisson process in the gate, if before the echo; a data sheet's "
+      "probability P per beam is the rate -ln(1 - P) c / (2 (far - near))",
+      "waiting times of a Poisson process are exponential"};
   double rate_hz = 0.0;
   double near_m = 0.0;
   double far_m = 0.0;
@@ -36,6 +49,11 @@ struct FalseAlarms {
 
 /// The probability of losing a return.
 double drop_probability(const Dropout& step, double range_m, double cos_incidence);
+
+/// Keys in sensor files.
+void describe(Dropout& step, FieldVisitor& visitor);
+void describe(Crosstalk& step, FieldVisitor& visitor);
+void describe(FalseAlarms& step, FieldVisitor& visitor);
 
 void apply(const Dropout& step, const NoiseView& view, NoiseBatch& batch);
 void prepare(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch);

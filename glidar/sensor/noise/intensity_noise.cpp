@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/intensity_noise.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace glidar {
@@ -59,6 +61,23 @@ void apply(const IntensityScale& step, const NoiseView& /*view*/, NoiseBatch& ba
     const double times = compensates ? batch.range_m[i] / step.reference_m : 1.0;
     batch.intensity[i] = scaled_intensity(step, step.gain * batch.intensity[i] * times * times);
   }
+}
+
+void describe(IntensityGaussian& step, FieldVisitor& visitor) {
+  visitor.number({"sigma", "standard deviation at intensity 0"}, kFromZero, step.sigma);
+  visitor.number({"relative", "added, relative to the intensity"}, kFromZero, step.relative);
+}
+
+void describe(IntensityScale& step, FieldVisitor& visitor) {
+  using Kind = IntensityScale::Kind;
+  constexpr std::array<Named<Kind>, 3> kNames = {
+      {{"unit", Kind::unit}, {"vendor", Kind::vendor}, {"plain", Kind::plain}}};
+  constexpr NumberRule kAboveOne = {1.0, 1e300, true, "a finite number above 1"};
+  visitor.number({"gain", "factor"}, kAboveZero, step.gain);
+  visitor.number({"reference_m", "range of the range compensation; 0: none", kUnitMetre}, kFromZero,
+                 step.reference_m);
+  visitor.number({"largest", "reflectance that `vendor` reports as 255"}, kAboveOne, step.largest);
+  visit_choice(visitor, {"kind", "of the reported numbers"}, kNames, step.kind);
 }
 
 }  // namespace glidar

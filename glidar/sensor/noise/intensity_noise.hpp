@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/field.hpp>
+
 #include <cstdint>
 
 namespace glidar {
 
+class FieldVisitor;
 struct NoiseBatch;
 struct NoiseView;
 
 /// Normal error of the intensity: I' = max(0, I + (sigma + relative I) x).
 struct IntensityGaussian {
+  static constexpr TypeInfo kType = {"intensity_gaussian", "max(0, I + (sigma + relative I) x)",
+                                     "definition"};
   double sigma = 0.0;
   double relative = 0.0;
 };
@@ -22,6 +27,11 @@ struct IntensityGaussian {
 ///  vendor: an integer from 0 to 255: round(100 rho) up to 100 for diffuse surfaces;
 ///  101 + round(154 ln(rho) / ln(largest)), up to 255, for retro-reflectors.
 struct IntensityScale {
+  static constexpr TypeInfo kType = {
+      "intensity_scale",
+      "ρ = gain I, times (R/reference)² if set; `plain`: unchanged; `unit`: clipped to 0..1; "
+      "`vendor`: round(100 ρ), for retro-reflectors 101 + round(154 ln ρ / ln largest)",
+      "0-100 and 101-255 as Velodyne"};
   enum class Kind : std::uint8_t { unit, vendor, plain };
   Kind kind = Kind::unit;
   double gain = 1.0;
@@ -32,6 +42,10 @@ struct IntensityScale {
 double vendor_intensity(double reflectance, double largest);
 /// The apparent reflectance of a vendor intensity, the inverse of the scale.
 double vendor_reflectance(double intensity, double largest);
+
+/// Keys in sensor files.
+void describe(IntensityGaussian& step, FieldVisitor& visitor);
+void describe(IntensityScale& step, FieldVisitor& visitor);
 
 void apply(const IntensityGaussian& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const IntensityScale& step, const NoiseView& view, NoiseBatch& batch);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/noise.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
@@ -232,6 +233,10 @@ std::vector<NoisePlan::Run> runs_of(const std::vector<NoiseStep>& steps) {
 }
 
 }  // namespace
+
+void describe(NoiseStep& step, FieldVisitor& visitor) {
+  visit_variant(visitor, {"type", "the noise model", kNoUnit, kRequired}, step);
+}
 
 Purpose rng_purpose(std::size_t step) {
   return static_cast<Purpose>(static_cast<std::size_t>(Purpose::first_noise_step) + step);

@@ -29,6 +29,9 @@ using NoiseStep = std::variant<RangeGaussian, RangeSnr, RangeCrlb, RangeShotNois
 /// Maximum number of steps in a list, because purposes have 8 bits.
 inline constexpr std::size_t kMaxNoiseSteps = 224;
 
+/// Keys in sensor files: `type` and those of the step.
+void describe(NoiseStep& step, FieldVisitor& visitor);
+
 /// The purpose of the random numbers of step k.
 Purpose rng_purpose(std::size_t step);
 

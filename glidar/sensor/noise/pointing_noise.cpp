@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/pointing_noise.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
@@ -101,6 +102,8 @@ GLIDAR_SIMD void rotate_about_z(const PairBatch& angle, std::size_t count, doubl
   }
 }
 
+constexpr NumberRule kSmallAngle = {0.0, 5.0, false, "degrees from 0 to 5"};
+
 }  // namespace
 
 double encoder_error_rad(const EncoderError& model, double azimuth_rad) {
@@ -141,6 +144,23 @@ void perturb(const EncoderError& step, const RngKey& key, std::size_t first, std
     rotate_about_z(back, size, beams.directions[begin].data());
     if (!beams.origins_m.empty()) rotate_about_z(back, size, beams.origins_m[begin].data());
   }
+}
+
+void describe(PointingJitter& step, FieldVisitor& visitor) {
+  visitor.number({"sigma_azimuth_deg", "standard deviation sideways", kUnitDegree}, kSmallAngle,
+                 step.sigma_azimuth_rad);
+  visitor.number({"sigma_elevation_deg", "standard deviation upwards", kUnitDegree}, kSmallAngle,
+                 step.sigma_elevation_rad);
+}
+
+void describe(EncoderError& step, FieldVisitor& visitor) {
+  visitor.number({"step_deg", "step of the encoder; 0: not rounded", kUnitDegree}, kSmallAngle,
+                 step.step_rad);
+  visitor.number({"eccentricity_deg", "e", kUnitDegree}, kSmallAngle, step.eccentricity_rad);
+  visitor.number({"phase_deg", "phase of the eccentricity", kUnitDegree}, kFinite, step.phase_rad);
+  visitor.number(
+      {"turn_sigma_deg", "standard deviation of the error of a whole frame", kUnitDegree},
+      kSmallAngle, step.turn_sigma_rad);
 }
 
 }  // namespace glidar

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/range_bias.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
@@ -87,6 +88,19 @@ void apply(const RangeDrift& step, const NoiseView& view, NoiseBatch& batch) {
   }
   const double error = error_of(0);
   for (std::size_t i = 0; i < batch.count; ++i) batch.range_m[i] += error;
+}
+
+void describe(RangeBias& step, FieldVisitor& visitor) {
+  visitor.number({"offset_m", "error of all ranges", kUnitMetre}, kFinite, step.offset_m);
+  visitor.number({"sigma_m", "standard deviation of the rings' constant errors", kUnitMetre},
+                 kFromZero, step.sigma_m);
+}
+
+void describe(RangeDrift& step, FieldVisitor& visitor) {
+  constexpr NumberRule kDriftTime = {0.0, 1e6, true, "seconds above 0 and below 1e6"};
+  visitor.number({"sigma_m", "standard deviation", kUnitMetre, kRequired}, kFromZero, step.sigma_m);
+  visitor.number({"tau_s", "correlation time τ", kUnitSecond, kRequired}, kDriftTime, step.tau_s);
+  visitor.boolean({"per_ring", "each ring drifts independently"}, step.per_ring);
 }
 
 }  // namespace glidar

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/range_noise.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -129,6 +131,56 @@ void apply(const RangeUniform& step, const NoiseView& /*view*/, NoiseBatch& batc
 
 void apply(const RangeQuantization& step, const NoiseView& view, NoiseBatch& batch) {
   quantise(step.step_m, view.beams.range_offset_m, batch);
+}
+
+void describe(RangeGaussian& step, FieldVisitor& visitor) {
+  visitor.number({"sigma_m", "standard deviation at range 0", kUnitMetre}, kFromZero, step.sigma_m);
+  visitor.number({"sigma_per_m", "added for each metre of range"}, kFromZero, step.sigma_per_m);
+}
+
+void describe(RangeSnr& step, FieldVisitor& visitor) {
+  visitor.number({"floor_m", "standard deviation of strong signals", kUnitMetre}, kFromZero,
+                 step.floor_m);
+  visitor.number({"k_m", "standard deviation at an SNR of 1", kUnitMetre, kRequired}, kFromZero,
+                 step.k_m);
+  visitor.number({"snr_at_full_scale", "SNR of an intensity of 1", kNoUnit, kRequired}, kAboveZero,
+                 step.snr_at_full_scale);
+}
+
+void describe(RangeCrlb& step, FieldVisitor& visitor) {
+  visitor.number({"pulse_fwhm_ns", "duration of the pulse, full width at half maximum",
+                  kUnitNanosecond, kRequired},
+                 kAboveZero, step.pulse_fwhm_s);
+  visitor.number({"sample_ns", "time between samples", kUnitNanosecond, kRequired}, kAboveZero,
+                 step.sample_s);
+  visitor.number(
+      {"noise", "standard deviation of a sample, in units of intensity", kNoUnit, kRequired},
+      kFromZero, step.noise);
+}
+
+void describe(RangeShotNoise& step, FieldVisitor& visitor) {
+  visitor.number({"pulse_fwhm_ns", "duration of the pulse, full width at half maximum",
+                  kUnitNanosecond, kRequired},
+                 kAboveZero, step.pulse_fwhm_s);
+  visitor.number(
+      {"photons_at_full_scale", "photo-electrons of an intensity of 1", kNoUnit, kRequired},
+      kAboveZero, step.photons_at_full_scale);
+}
+
+void describe(RangeUniform& step, FieldVisitor& visitor) {
+  using Distribution = RangeUniform::Distribution;
+  constexpr std::array<Named<Distribution>, 2> kNames = {
+      {{"uniform", Distribution::uniform}, {"normal", Distribution::normal}}};
+  visitor.number({"additive_m", "factor of the additive error", kUnitMetre}, kFromZero,
+                 step.additive_m);
+  visitor.number({"multiplicative", "factor of the error relative to the range"}, kFromZero,
+                 step.multiplicative);
+  visit_choice(visitor, {"distribution", "of both errors"}, kNames, step.distribution);
+}
+
+void describe(RangeQuantization& step, FieldVisitor& visitor) {
+  visitor.number({"step_m", "distance between reported ranges", kUnitMetre, kRequired}, kAboveZero,
+                 step.step_m);
 }
 
 }  // namespace glidar

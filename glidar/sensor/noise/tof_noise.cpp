@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/tof_noise.hpp>
 
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/noise/multipath.hpp>
@@ -202,6 +203,17 @@ void unwrap(const Waves& waves, WavePhases& phases, BestFit& found, Batch<double
   }
 }
 
+/// A pixel tries all ranges at which the finest wave has the same phase, one by one.
+void check_frequencies(const ContinuousWave& step, FieldVisitor& visitor) {
+  const std::vector<double>& all = step.frequencies_hz;
+  const double finest = *std::max_element(all.begin(), all.end());
+  constexpr double kMaxWaves = 1000.0;
+  if (finest * unambiguous_m(all) <= kMaxWaves * kHalfLight_m_per_s) return;
+  visitor.reject("frequencies_hz",
+                 "their greatest common divisor is below a thousandth of the greatest",
+                 "frequencies in simple ratios", "round them to whole MHz");
+}
+
 }  // namespace
 
 double unambiguous_m(const std::vector<double>& frequencies_hz) {
@@ -234,6 +246,26 @@ void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch)
     const bool is_clear = phases.coherence[i] >= step.min_coherence && found.residual[i] <= most;
     if (!is_clear && is_hit(batch, i)) invalidate_return(batch, i, Status::phase_ambiguous);
   }
+}
+
+void describe(ContinuousWave& step, FieldVisitor& visitor) {
+  constexpr NumberRule kFrequency = {1.0, 1e12, false, "hertz from 1 to 1e12"};
+  constexpr NumberRule kUpToOne = {1e-9, 1.0, false, "a number above 0, up to 1"};
+  constexpr NumberRule kBelowOne = {0.0, 1.0 - 1e-9, false, "a number from 0 to below 1"};
+  visitor.number({"electrons_at_full_scale", "A of an intensity of 1", kNoUnit, kRequired},
+                 kAboveZero, step.electrons_at_full_scale);
+  visitor.number({"background_electrons", "B"}, kFromZero, step.background_electrons);
+  visitor.number({"contrast", "C, of the demodulation"}, kUpToOne, step.contrast);
+  visitor.number({"multipath_fraction", "share of light from neighbouring pixels"}, kBelowOne,
+                 step.mixing);
+  visitor.number({"min_coherence", "below it, mixed waves cancel"}, kZeroToOne, step.min_coherence);
+  visitor.number({"max_phase_residual", "above it, phases fit no range; rms, in turns"}, kFromZero,
+                 step.max_phase_residual);
+  visitor.numbers(
+      {"frequencies_hz", "of the modulation; 1 to 8 in simple ratios", kUnitHertz, kRequired},
+      {.number = kFrequency, .max_size = kMaxFrequencies, .allowed = "1 to 8 frequencies"},
+      step.frequencies_hz);
+  if (visitor.is_reading()) check_frequencies(step, visitor);
 }
 
 }  // namespace glidar

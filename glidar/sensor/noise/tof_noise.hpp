@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/field.hpp>
+
 #include <cstddef>
 #include <vector>
 
 namespace glidar {
 
+class FieldVisitor;
 struct NoiseBatch;
 struct NoiseView;
 
@@ -24,6 +27,11 @@ inline constexpr std::size_t kMaxFrequencies = 8;
 /// ranges cancels (|sum a exp| / sum a < min_coherence at some frequency), or where no range fits
 /// the phases (rms above max_phase_residual turns).
 struct ContinuousWave {
+  static constexpr TypeInfo kType = {
+      "continuous_wave",
+      "phases of mixed waves with errors √((B+A)/2)/(C A), the range that fits best; "
+      "`phase_ambiguous` where waves cancel or the phases fit no range",
+      "Lange and Seitz, IEEE JQE 37 (2001)"};
   std::vector<double> frequencies_hz{};
   double electrons_at_full_scale = 0.0;  ///< at intensity 1
   double background_electrons = 0.0;
@@ -40,6 +48,9 @@ double unambiguous_m(const std::vector<double>& frequencies_hz);
 inline bool has_multipath(const ContinuousWave& step) {
   return step.mixing > 0.0;
 }
+
+/// Keys in sensor files.
+void describe(ContinuousWave& step, FieldVisitor& visitor);
 
 void prepare(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch);

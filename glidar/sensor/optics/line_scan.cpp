@@ -3,6 +3,7 @@
 #include <glidar/sensor/optics/line_scan.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/sensor/optics/ray_table.hpp>
 
@@ -68,6 +69,37 @@ Beams make_beams(const LineScan& raster, const FrameInterval& interval) {
   const bool grid = beams.rows == raster.elevations_rad.size();
   if (grid && raster.bidirectional) reverse_lines(beams);
   return beams;
+}
+
+void describe(LineScan& scan, FieldVisitor& visitor) {
+  constexpr std::size_t kMaxAngles = 65536;
+  constexpr NumberRule kAzimuth = {-360.0, 360.0, false, "degrees from -360 to 360"};
+  constexpr NumberRule kElevation = {-90.0, 90.0, false, "degrees from -90 to 90"};
+  constexpr NumberRule kPointTime = {0.0, 1e6, false, "microseconds from 0 to 1e6"};
+  if (visitor.is_report())
+    visitor.number({"scan_hz", "scans per second", kUnitHertz}, kAboveZero, scan.scan_hz);
+  visitor.numbers(
+      {"elevation_deg",
+       "lines in the order of time: one number, a list, or `{from: , to: , count: }`", kUnitDegree},
+      {.number = kElevation, .max_size = kMaxAngles, .takes_one = true, .takes_range = true},
+      scan.elevations_rad);
+  visitor.numbers(
+      {"azimuth_deg", "points of a line in the order of time: a list, or `{from: , to: , count: }`",
+       kUnitDegree, kRequired},
+      {.number = kAzimuth, .max_size = kMaxAngles, .takes_one = true, .takes_range = true},
+      scan.azimuths_rad);
+  visitor.number({"point_us", "time between points", kUnitMicrosecond_ns}, kPointTime,
+                 scan.point_ns);
+  if (visitor.is_reading()) {
+    // as if the file had the number, in its unit
+    scan.line_ns = scan.point_ns * static_cast<double>(scan.azimuths_rad.size()) / kMicrosecond_ns *
+                   kMicrosecond_ns;
+  }
+  visitor.number({"line_us", "time between lines", kUnitMicrosecond_ns, false,
+                  "`point_us` times the points of a line"},
+                 kPointTime, scan.line_ns);
+  visitor.boolean({"bidirectional", "`true`: every second line is scanned in reverse"},
+                  scan.bidirectional);
 }
 
 }  // namespace glidar

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/field.hpp>
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
 #include <cstdint>
@@ -11,12 +12,17 @@
 
 namespace glidar {
 
-struct NoDistortion {};
+class FieldVisitor;
+
+struct NoDistortion {
+  static constexpr TypeInfo kType = {"none", "no distortion"};
+};
 
 /// OpenCV's rational radial-tangential model (calib3d documentation, "Detailed Description"):
 /// x'' = x' (1+k1 r2+k2 r4+k3 r6)/(1+k4 r2+k5 r4+k6 r6) + 2 p1 x'y' + p2 (r2 + 2 x'2), and
 /// y'' = y' (...)/(...) + p1 (r2 + 2 y'2) + 2 p2 x'y'.
 struct RadialTangential {
+  static constexpr TypeInfo kType = {"radial_tangential", "rational model", "OpenCV, calib3d"};
   double k1 = 0.0;
   double k2 = 0.0;
   double p1 = 0.0;
@@ -33,6 +39,7 @@ struct RadialTangential {
 /// OpenCV's fisheye model (calib3d "Fisheye camera model", after Kannala and Brandt 2006):
 /// theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8).
 struct Fisheye {
+  static constexpr TypeInfo kType = {"fisheye", "fisheye model", "OpenCV, calib3d"};
   double k1 = 0.0;
   double k2 = 0.0;
   double k3 = 0.0;
@@ -43,6 +50,14 @@ using Distortion = std::variant<NoDistortion, RadialTangential, Fisheye>;
 
 /// A camera: one ray per pixel, in the optical frame (x right, y down, z forward).
 struct Pinhole {
+  static constexpr TypeInfo kType = {"pinhole", "a camera, with or without lens distortion"};
+
+  /// Keys of `optics` in sensor files.
+  void describe(Pinhole& pinhole, FieldVisitor& visitor);
+  void describe(Distortion& distortion, FieldVisitor& visitor);
+  void describe(NoDistortion& none, FieldVisitor& visitor);
+  void describe(RadialTangential& k, FieldVisitor& visitor);
+  void describe(Fisheye& k, FieldVisitor& visitor);
   PinholeIntrinsics intrinsics;
   Distortion distortion;
 };

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
 #include <limits>
 #include <numbers>
@@ -108,6 +109,38 @@ Beams make_beams(const Prism& prism, const FrameInterval& interval) {
     }
   }
   return beams;
+}
+
+void describe(RisleyPrism& prism, FieldVisitor& visitor) {
+  using Slope = RisleyPrism::Slope;
+  constexpr std::array<Named<Slope>, 2> kNames = {{{"entry", Slope::entry}, {"exit", Slope::exit}}};
+  visitor.number(
+      {"rotation_hz", "turns per second; negative: the other direction", kUnitHertz, kRequired},
+      kFinite, prism.rotation_hz);
+  visitor.number({"apex_deg", "angle between the faces", kUnitDegree, kRequired},
+                 {0.0, 89.0, false, "degrees from 0 to 89"}, prism.apex_rad);
+  visitor.number({"phase_deg", "angle at time 0", kUnitDegree},
+                 {-360.0, 360.0, false, "degrees from -360 to 360"}, prism.phase_rad);
+  visitor.number({"refractive_index", "of the glass", kNoUnit, kRequired},
+                 {1.0, 10.0, false, "a number from 1 to 10"}, prism.refractive_index);
+  visit_choice(visitor,
+               {"slope", "the inclined face; the other one is perpendicular to the boresight"},
+               kNames, prism.slope);
+}
+
+void describe(Prism& prism, FieldVisitor& visitor) {
+  constexpr std::uint32_t kMaxParts = 64;
+  constexpr NumberRule kPulses = {0.0, 1e9, true, "a number above 0, below 1e9"};
+  constexpr NumberRule kSine = {-1.0, 1.0, true, "a number above -1 and below 1"};
+  visitor.number({"pulse_hz", "pulses per second of each beam", kUnitHertz, kRequired}, kPulses,
+                 prism.pulse_hz);
+  visit_list(visitor,
+             {"prisms", "prisms in the order in which the light passes them", kNoUnit, kRequired},
+             {1, kMaxParts}, "a list of 1 to 64 prisms", prism.prisms);
+  visitor.numbers({"incidence_tangent",
+                   "one beam for each number: sine of the angle to the right at which it enters "
+                   "the first prism"},
+                  {.number = kSine, .max_size = kMaxParts}, prism.incidence_tangent);
 }
 
 }  // namespace glidar

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/field.hpp>
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
 namespace glidar {
+
+class FieldVisitor;
 
 /// A wedge prism that rotates about the boresight.
 struct RisleyPrism {
@@ -23,12 +26,17 @@ struct RisleyPrism {
 
 /// Beams that rotating prisms steer along rosettes (Livox Mid-40, Mid-70, Avia).
 struct Prism {
+  static constexpr TypeInfo kType = {"prism", "a scanner with rotating prisms"};
   std::vector<RisleyPrism> prisms;  ///< in the order in which the light passes through them
   /// Sine of the angle of each beam to the right of the boresight, before the first prism. All fire
   /// at once; row = ring = index of the beam.
   std::vector<double> incidence_tangent = {0.0};
   double pulse_hz = 1e5;  ///< firings per second of each beam
 };
+
+/// Keys of `optics` in sensor files, and those of each of its `prisms`.
+void describe(Prism& prism, FieldVisitor& visitor);
+void describe(RisleyPrism& prism, FieldVisitor& visitor);
 
 /// rows = incident beams, cols = firings in the interval in time order; firing k is at k/pulse_hz.
 /// The rotation continues from interval to interval. Directions by vector refraction at every face

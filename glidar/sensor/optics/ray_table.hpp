@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/field.hpp>
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
 namespace glidar {
@@ -10,6 +11,7 @@ namespace glidar {
 /// Beams as arrays, rows x cols, row-major, for sensors whose pattern is known but has no formula.
 /// N = rows * cols. Sensor frame, metres.
 struct RayTable {
+  static constexpr TypeInfo kType = {"table", "any list of rays from a file"};
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
   std::vector<Eigen::Vector3d> directions;  ///< N, any length except 0; NaN: no beam

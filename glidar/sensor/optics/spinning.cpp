@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/optics/spinning_keys.hpp>
 #include <numeric>
 
 namespace glidar {
 namespace {
 
-constexpr std::size_t kMaxChannels = 4096;
 constexpr double kMaxTurns_hz = 1e4;
 
 void validate(const SpinningChannel& channel) {
@@ -127,6 +128,23 @@ void set_beam(const Spinning& s, const SpinningChannel& channel, double head_rad
                        offset.y() * left + offset.z() * Eigen::Vector3d::UnitZ();
 }
 
+/// What starts a firing sequence: the encoder or a clock.
+void visit_column_timing(FieldVisitor& visitor, Spinning& s) {
+  visitor.at_most_one({{"columns_per_turn", "firing_period_us"},
+                       "one of columns_per_turn and firing_period_us",
+                       "the time between columns is missing",
+                       "add 'columns_per_turn: ...'"});
+  visitor.whole_number(
+      {"columns_per_turn", "columns at equal angles", kNoUnit, false, "this or `firing_period_us`"},
+      {1, kMaxColumnsPerTurn}, s.columns_per_turn);
+  double period_ns = s.columns_per_turn > 0 ? 0.0 : s.sequence_ns;
+  if (visitor.is_report()) period_ns = sequence_period_ns(s);
+  visitor.number({"firing_period_us", "time between firing sequences", kUnitMicrosecond_ns, false,
+                  "this or `columns_per_turn`"},
+                 {1e-3, 1e6, false, "microseconds from 0.001 to 1e6"}, period_ns);
+  if (visitor.is_reading()) s.sequence_ns = period_ns;
+}
+
 }  // namespace
 
 double sequence_period_ns(const Spinning& s) {
@@ -153,6 +171,27 @@ Beams make_beams(const Spinning& s, const FrameInterval& interval) {
     }
   }
   return beams;
+}
+
+void describe(Spinning& s, FieldVisitor& visitor) {
+  using Turn = Spinning::Turn;
+  constexpr std::array<Named<Turn>, 2> kTurns = {
+      {{"clockwise", Turn::clockwise}, {"counterclockwise", Turn::counterclockwise}}};
+  constexpr NumberRule kAzimuth = {-360.0, 360.0, false, "degrees from -360 to 360"};
+  constexpr NumberRule kOffset = {-1e4, 1e4, false, "millimetres from -1e4 to 1e4"};
+  if (visitor.is_report())
+    visitor.number({"rotation_hz", "turns per second", kUnitHertz}, kAboveZero, s.rotation_hz);
+  visit_choice(visitor, {"rotation_direction", "rotation seen from above"}, kTurns, s.turn);
+  visitor.number({"start_azimuth_deg", "direction of the head at time 0", kUnitDegree}, kAzimuth,
+                 s.start_azimuth_rad);
+  visit_column_timing(visitor, s);
+  visitor.number(
+      {"beam_origin_mm",
+       "distance from the axis to the origin of all beams; ranges are measured from the axis",
+       kUnitMillimetre},
+      kOffset, s.beam_origin_m);
+  visit_azimuth_range(visitor, s);
+  visit_channels(visitor, s.channels);
 }
 
 }  // namespace glidar

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/field.hpp>
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
 #include <numbers>
 
 namespace glidar {
+
+class FieldVisitor;
 
 /// One laser of a spinning LiDAR. Azimuths are from +x towards +y (REP-103: counterclockwise from
 /// above), elevations towards +z.
@@ -22,6 +25,7 @@ struct SpinningChannel {
 
 /// A rotating head that fires all channels, sequence after sequence.
 struct Spinning {
+  static constexpr TypeInfo kType = {"spinning", "a rotating LiDAR with one beam per channel"};
   enum class Turn : std::uint8_t { clockwise, counterclockwise };  ///< seen from above
 
   std::vector<SpinningChannel> channels;
@@ -39,6 +43,12 @@ struct Spinning {
   double sector_start_rad = 0.0;
   double sector_width_rad = 2.0 * std::numbers::pi;
 };
+
+/// Most columns of a turn.
+inline constexpr std::uint32_t kMaxColumnsPerTurn = 1U << 20U;
+
+/// Keys of `optics` in sensor files.
+void describe(Spinning& spinning, FieldVisitor& visitor);
 
 /// One column per firing sequence whose first firing is in the interval, in time order; one row per
 /// channel, the highest beam in row 0. Frame lidar_frame (x forward, y left, z up), boresight +x.

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/unit_conversion.hpp>
 #include <glidar/io/config/json_numbers.hpp>
 
 #include <glidar/io/config/sensor_file.hpp>

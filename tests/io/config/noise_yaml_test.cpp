@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/config/noise_fields.hpp>
-#include <glidar/io/config/noise_yaml.hpp>
+#include <glidar/core/field_visitor.hpp>
+#include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/yaml_reader.hpp>
 
 #include "io/yaml_files.hpp"
 
@@ -16,6 +17,15 @@ const std::string kOptics = "optics: {width: 4, height: 2, fov_deg: 20}\n";
 std::vector<NoiseStep> read(const std::string& steps) {
   const TestFolder folder;
   return load_sensor_file(folder.write("s.yaml", kOptics + "noise:\n" + steps)).noise;
+}
+
+/// The steps as a sidecar has them.
+nlohmann::ordered_json report(const std::vector<NoiseStep>& noise) {
+  auto list = nlohmann::ordered_json::array();
+  for (const NoiseStep& step : noise) {
+    list.push_back(write_struct(FieldVisitor::Mode::report, step));
+  }
+  return list;
 }
 
 /// One step of each type with every key it has, at numbers that differ from the defaults.
@@ -55,16 +65,16 @@ TEST(NoiseYaml, ConvertsUnits) {
   const std::vector<NoiseStep> noise = read(kEvery);
   EXPECT_DOUBLE_EQ(std::get<RangeCrlb>(noise[2]).pulse_fwhm_s, 5e-9);
   EXPECT_DOUBLE_EQ(std::get<RangeCrlb>(noise[2]).sample_s, 0.5e-9);
-  EXPECT_DOUBLE_EQ(std::get<PointingJitter>(noise[21]).sigma_azimuth_rad, 0.1 * kDegree_rad);
-  EXPECT_DOUBLE_EQ(std::get<EncoderError>(noise[22]).phase_rad, 45.0 * kDegree_rad);
+  EXPECT_DOUBLE_EQ(std::get<PointingJitter>(noise[21]).sigma_azimuth_rad, 0.1 * kDegree);
+  EXPECT_DOUBLE_EQ(std::get<EncoderError>(noise[22]).phase_rad, 45.0 * kDegree);
   const auto& dropout = std::get<Dropout>(noise[8]);
   EXPECT_EQ(dropout.by_range_m, (LookupTable{{10.0, 0.0}, {50.0, 0.5}}));
-  EXPECT_DOUBLE_EQ(dropout.by_incidence_rad[0][0], 60.0 * kDegree_rad);
+  EXPECT_DOUBLE_EQ(dropout.by_incidence_rad[0][0], 60.0 * kDegree);
 }
 
 TEST(NoiseYaml, TellsInTheSidecarWhatTheFileSays) {
-  const nlohmann::ordered_json told = noise_json(read(kEvery));
-  ASSERT_EQ(told.size(), kNoiseTypes.size());
+  const nlohmann::ordered_json told = report(read(kEvery));
+  ASSERT_EQ(told.size(), std::variant_size_v<NoiseStep>);
   const auto near = [](const nlohmann::ordered_json& value, double expected) {
     EXPECT_NEAR(value.get<double>(), expected, 1e-12 * std::abs(expected));
   };
@@ -84,7 +94,7 @@ TEST(NoiseYaml, EveryNumberOfTheFileComesBackInTheSidecar) {
   const TestFolder folder;
   const YamlField file = read_yaml(folder.write("s.yaml", "noise:\n" + kEvery));
   const std::vector<YamlField> steps = items(need(file, "noise"));
-  const nlohmann::ordered_json told = noise_json(read(kEvery));
+  const nlohmann::ordered_json told = report(read(kEvery));
   for (std::size_t i = 0; i < steps.size(); ++i) {
     std::set<std::string> keys;
     for (const auto& [key, value] : entries(steps[i])) {

@@ -11,7 +11,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 const std::string kOptics = "optics: {width: 4, height: 2, fov_deg: 20}\n";
 
 LidarEquation pulse(const std::string& map) {
@@ -47,9 +46,9 @@ TEST(SurfacesInASceneFile, SendBackAsTold) {
   EXPECT_TRUE(std::holds_alternative<Lambert>(
       testing::material_of_keys("backscatter: {type: lambert}").backscatter));
   const auto phong = std::get<PhongLike>(
-      testing::material_of_keys("backscatter: {type: phong, specular_share: 0.4, exponent: 9}")
+      testing::material_of_keys("backscatter: {type: phong, specular_fraction: 0.4, exponent: 9}")
           .backscatter);
-  EXPECT_EQ(phong.specular_share, 0.4);
+  EXPECT_EQ(phong.specular_fraction, 0.4);
   EXPECT_EQ(phong.exponent, 9.0);
   EXPECT_NEAR(std::get<OrenNayar>(
                   testing::material_of_keys("backscatter: {type: oren_nayar, roughness_deg: 20}")
@@ -63,9 +62,9 @@ TEST(SurfacesInASceneFile, SendBackAsTold) {
   EXPECT_NEAR(retro.width_rad, 25.0 * kDegree, 1e-15);
   const auto glossy = std::get<Glossy>(
       testing::material_of_keys(
-          "backscatter: {type: glossy, matt_share: 0.1, lobe_gain: 4, width_deg: 2}")
+          "backscatter: {type: glossy, diffuse_fraction: 0.1, lobe_gain: 4, width_deg: 2}")
           .backscatter);
-  EXPECT_EQ(glossy.matt_share, 0.1);
+  EXPECT_EQ(glossy.diffuse_fraction, 0.1);
   EXPECT_EQ(glossy.lobe_gain, 4.0);
   EXPECT_NEAR(glossy.width_rad, 2.0 * kDegree, 1e-15);
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/config/receiver_yaml.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
+#include <glidar/sensor/lidar/return_names.hpp>
 #include <support/error_text.hpp>
 
 #include <gtest/gtest.h>

@@ -44,7 +44,7 @@ optics:
   cy: 240
   pixel_centre: 0
   distortion: {model: radial_tangential, k1: 1, k2: 2, p1: 3, p2: 4, k3: 5, k4: 6, k5: 7, k6: 8}
-depth_limits: {near_m: 0.1, far_m: 1000}
+limits: {near_m: 0.1, far_m: 1000}
 light: {attenuation: {constant: 2, linear_per_m: 3.0e-4, quadratic_per_m2: 4e-8}, ambient: 0.5}
 cull_back_faces: true
 )");
@@ -168,7 +168,7 @@ const BadFile kBadFiles[] = {
      "fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
     {"UnknownKeyFarFromAny", with_good_optics("zzzzzzzzz: 1\n"),
      "s.yaml:2:1: zzzzzzzzz: unknown key 'zzzzzzzzz'; allowed: name, optics, rate_hz, "
-     "wavelength_nm, limits, depth_limits, light, lidar_equation, footprint, receiver, weather, "
+     "wavelength_nm, limits, light, lidar_equation, footprint, receiver, weather, "
      "projector_origin_m, noise, cull_back_faces, "
      "source, "
      "unverified"},
@@ -215,10 +215,10 @@ const BadFile kBadFiles[] = {
      "s.yaml:1:17: optics.width: .nan; allowed: " + kSide},
     {"NanByName", optics("width: nan, height: 2, fov_deg: 20"),
      "s.yaml:1:17: optics.width: nan; allowed: " + kSide},
-    {"Infinite", with_good_optics("depth_limits: {far_m: .inf}\n"),
-     "s.yaml:2:23: depth_limits.far_m: .inf; allowed: a finite number above 0"},
-    {"BeyondDouble", with_good_optics("depth_limits: {far_m: 1e999}\n"),
-     "s.yaml:2:23: depth_limits.far_m: 1e999; allowed: a finite number above 0"},
+    {"Infinite", with_good_optics("limits: {far_m: .inf}\n"),
+     "s.yaml:2:17: limits.far_m: .inf; allowed: a finite number above 0"},
+    {"BeyondDouble", with_good_optics("limits: {far_m: 1e999}\n"),
+     "s.yaml:2:17: limits.far_m: 1e999; allowed: a finite number above 0"},
     {"FovZero", optics("width: 4, height: 2, fov_deg: 0"),
      "s.yaml:1:40: optics.fov_deg: 0; allowed: degrees above 0 and below 180"},
     {"FovStraight", optics("width: 4, height: 2, fov_x_deg: 180"),
@@ -236,7 +236,7 @@ const BadFile kBadFiles[] = {
      "s.yaml:1:58: optics.pixel_centre: 1; allowed: a number from 0 to below 1; 0.5 and 0 are "
      "usual"},
     {"UnknownOptics", optics("type: pinhoel, width: 4"),
-     "s.yaml:1:16: optics.type: 'pinhoel'; allowed: pinhole, spinning, raster, prism, table, "
+     "s.yaml:1:16: optics.type: 'pinhoel'; allowed: pinhole, spinning, line_scan, prism, table, "
      "ouster; did you mean 'pinhole'?"},
     {"UnknownDistortion", optics("width: 4, height: 2, fov_deg: 20, distortion: {model: fish_eye}"),
      "s.yaml:1:64: optics.distortion.model: 'fish_eye'; allowed: none, radial_tangential, fisheye; "
@@ -249,10 +249,10 @@ const BadFile kBadFiles[] = {
      optics("width: 4, height: 2, fov_deg: 20, distortion: {model: fisheye, p1: 1}"),
      "s.yaml:1:73: optics.distortion.p1: unknown key 'p1'; allowed: model, k1, k2, k3, k4; did you "
      "mean 'k1'?"},
-    {"NearNegative", with_good_optics("depth_limits: {near_m: -1}\n"),
-     "s.yaml:2:24: depth_limits.near_m: -1; allowed: a finite number from 0"},
-    {"FarBeforeNear", with_good_optics("depth_limits: {near_m: 2, far_m: 1}\n"),
-     "s.yaml:2:34: depth_limits.far_m: 1, not beyond near_m; allowed: a finite number above "
+    {"NearNegative", with_good_optics("limits: {near_m: -1}\n"),
+     "s.yaml:2:18: limits.near_m: -1; allowed: a finite number from 0"},
+    {"FarBeforeNear", with_good_optics("limits: {near_m: 2, far_m: 1}\n"),
+     "s.yaml:2:28: limits.far_m: 1, not beyond near_m; allowed: a finite number above "
      "near_m"},
     {"NoAttenuation",
      with_good_optics("light:\n  attenuation: {constant: 0, linear_per_m: 0, "
@@ -263,7 +263,7 @@ const BadFile kBadFiles[] = {
     {"TwoLights",
      with_good_optics("light: {ambient: 0}\n"
                       "lidar_equation: {reference_reflectance: 0.8, reference_range_m: 100}\n"),
-     "s.yaml:2:8: light: given beside 'lidar_equation', in whose place it would be; allowed: one "
+     "s.yaml:2:8: light: given beside 'lidar_equation'; allowed: one "
      "of "
      "light, lidar_equation; remove one of them"},
     {"NotABoolean", with_good_optics("cull_back_faces: yes\n"),
@@ -298,7 +298,7 @@ const BadFile kBadFiles[] = {
      "their path, do not put them into the file"},
     {"ControlCharactersAreNotPrinted", "\"a\\n\\e\": 1\n",
      "s.yaml:1:1: a?\?: unknown key 'a?\?'; allowed: name, optics, rate_hz, "
-     "wavelength_nm, limits, depth_limits, light, lidar_equation, footprint, receiver, weather, "
+     "wavelength_nm, limits, light, lidar_equation, footprint, receiver, weather, "
      "projector_origin_m, noise, cull_back_faces, "
      "source, "
      "unverified"},

@@ -69,7 +69,7 @@ double energy_of(const Glossy& form) {
     lobe += std::exp(-0.5 * std::pow(angle / width_rad, 2)) * std::sin(angle) * std::cos(angle);
   }
   // over a matt surface's radiance, 1 / pi: 2 pi / pi times the integral
-  return form.matt_share + form.lobe_gain * 2.0 * lobe * 0.5 * std::numbers::pi / kSteps;
+  return form.diffuse_fraction + form.lobe_gain * 2.0 * lobe * 0.5 * std::numbers::pi / kSteps;
 }
 
 TEST(Surfaces, ThatAreGlossyKeepTheEnergy) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/sensor_file.hpp>
-#include <glidar/io/config/weather_yaml.hpp>
 
 #include <gtest/gtest.h>
 #include <io/yaml_files.hpp>
@@ -54,7 +54,7 @@ TEST(WeatherYaml, IsClearByDefault) {
 }
 
 TEST(WeatherYaml, ComesBackInTheSidecarAsTheFileSaysIt) {
-  const nlohmann::ordered_json told = weather_json(weather(kEvery));
+  const nlohmann::ordered_json told = write_struct(FieldVisitor::Mode::report, weather(kEvery));
   EXPECT_EQ(
       told.dump(),
       R"({"visibility_m":200.0,"visibility_kind":"mor","fog_model":"kruse",)"

@@ -4,15 +4,11 @@
 
 // Private to glidar/io.
 
-#include <glidar/io/config/json_numbers.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <nlohmann/json.hpp>
 
 namespace glidar {
-
-/// Optics as sidecar files have them, in the units of sensor files. Keys stay in this order.
-nlohmann::ordered_json optics_json(const Optics& optics, InUnit convert = in_unit);
 
 /// Intrinsics and distortion of a camera as in ROS' sensor_msgs/CameraInfo, for OpenCV's convention
 /// that the first pixel's centre is (0, 0); null for other optics.

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/config/exact_unit.hpp>
+#include <glidar/core/unit_conversion.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/config/json_numbers.hpp>
 #include <glidar/math/constants.hpp>
 
+#include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 
@@ -18,6 +19,18 @@ bool is_same(double a, double b) {
 }
 
 }  // namespace
+
+double in_unit(double value, double unit) {
+  constexpr int kDigits = 15;
+  const double quotient = value / unit;
+  std::array<char, 32> text{};  // sign, digits, point and exponent take 23
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), quotient,
+                                 std::chars_format::general, kDigits)
+                       .ptr;
+  double rounded = quotient;
+  std::from_chars(text.data(), end, rounded);
+  return rounded * unit == value ? rounded : quotient;
+}
 
 std::optional<double> find_exact_in(double inside, double unit) {
   const double clean = in_unit(inside, unit);

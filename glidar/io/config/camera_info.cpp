@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/camera_info.hpp>
+
+#include <array>
+#include <string_view>
+
+namespace glidar {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The name of a model among ROS' (sensor_msgs/distortion_models.hpp) and its coefficients in
+/// OpenCV's order.
+struct NamedCoefficients {
+  std::string_view model;
+  std::vector<double> d;
+};
+
+NamedCoefficients coefficients_of(const NoDistortion& /*none*/) {
+  return {"plumb_bob", std::vector<double>(5, 0.0)};
+}
+
+NamedCoefficients coefficients_of(const RadialTangential& d) {
+  if (d.k4 == 0.0 && d.k5 == 0.0 && d.k6 == 0.0)
+    return {"plumb_bob", {d.k1, d.k2, d.p1, d.p2, d.k3}};
+  return {"rational_polynomial", {d.k1, d.k2, d.p1, d.p2, d.k3, d.k4, d.k5, d.k6}};
+}
+
+NamedCoefficients coefficients_of(const Fisheye& d) {
+  return {"equidistant", {d.k1, d.k2, d.k3, d.k4}};
+}
+
+}  // namespace
+
+Json camera_info_json(const Optics& optics) {
+  const auto* pinhole = std::get_if<Pinhole>(&optics);
+  if (pinhole == nullptr) return {};
+  const PinholeIntrinsics& i = pinhole->intrinsics;
+  const double cx = i.cx - i.pixel_centre;
+  const double cy = i.cy - i.pixel_centre;
+  const NamedCoefficients named =
+      std::visit([](const auto& d) { return coefficients_of(d); }, pinhole->distortion);
+  return {{"convention",
+           "pixel centres have whole coordinates, as in OpenCV, ROS and Open3D; those of optics "
+           "have optics.pixel_centre more"},
+          {"width", i.width},
+          {"height", i.height},
+          {"distortion_model", named.model},
+          {"d", named.d},
+          {"k", std::array{i.fx, 0.0, cx, 0.0, i.fy, cy, 0.0, 0.0, 1.0}},
+          {"r", std::array{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}},
+          {"p", std::array{i.fx, 0.0, cx, 0.0, 0.0, i.fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}}};
+}
+
+}  // namespace glidar
