@@ -32,8 +32,8 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help; also for view, stream, replay, explain, info, campaign, sensors and
-verify)";
+More: glidar render --help; also for view, stream, replay, explain, info, campaign, sensors,
+schema and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -153,6 +153,7 @@ int run(int argc, char** argv) {
                              {"info", add_info(program)},
                              {"campaign", add_campaign(program)},
                              {"sensors", add_sensors(program)},
+                             {"schema", add_schema(program)},
                              {"verify", add_verify(program)}};
   return parse_and_run(program, commands, argc, argv);
 }

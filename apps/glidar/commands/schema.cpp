@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <glidar/io/config/json_schema.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kSchemaExamples = R"(Examples:
+  glidar schema sensor > sensor.schema.json
+
+Editors with the YAML language server complete and check the keys of a sensor file with the line
+  # yaml-language-server: $schema=sensor.schema.json
+The schema of the bundled sensors is beside them, in the folder sensors.
+Exit codes: 0 done, 2 no such schema.)";
+
+}  // namespace
+
+Command add_schema(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("schema", "Print the JSON Schema of YAML files, for editors");
+  const auto name = std::make_shared<std::string>("sensor");
+  command.footer(kSchemaExamples);
+  command.add_option("KIND", *name, "sensor (default), materials or surfaces");
+  return [name] {
+    fmt::print("{}\n", json_schema(*name));
+    return kDone;
+  };
+}
+
+}  // namespace glidar::app

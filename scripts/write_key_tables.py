@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the tables of keys in docs/ and the schema in sensors/ from the descriptions in the program.
+
+usage: write_key_tables.py GLIDAR [ROOT]; GLIDAR is the program, ROOT the folder of the sources.
+A table is between the lines `<!-- keys: PATH -->` and `<!-- end of keys -->`. PATH is the kind of schema and
+keys from there on, for example `sensor lidar_equation`; an alternative of a type is named as `optics=pinhole`.
+"""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+SCHEMA_FILE = "sensors/sensor.schema.json"
+MARKED = re.compile(r"(<!-- keys: ([^\n]*) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
+
+
+def schema_text(program, kind):
+    return subprocess.run([program, "schema", kind], check=True, capture_output=True, text=True).stdout
+
+
+def type_of(alternative):
+    """The key that selects an alternative, and what is known of its word."""
+    return next((key, value) for key, value in alternative["properties"].items() if "const" in value)
+
+
+def find(schema, steps):
+    """The part of a schema that the steps lead to."""
+    for step in steps:
+        key, _, name = step.partition("=")
+        schema = schema.get("properties", {}).get(key, schema)
+        schema = schema.get("items", schema)
+        if name:
+            schema = next(one for one in schema["oneOf"] if type_of(one)[1]["const"] == name)
+    return schema
+
+
+def shown(value):
+    if isinstance(value, list):
+        return "`[" + ", ".join(str(part) for part in value) + "]`"
+    if isinstance(value, (bool, str)):
+        return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+    return f"{value:.6g}"
+
+
+def default_of(key, schema, required):
+    if key in required:
+        return "required"
+    if "x-default" in schema:
+        return schema["x-default"]
+    return shown(schema["default"]) if "default" in schema else ""
+
+
+def allowed_of(schema):
+    if "x-allowed" in schema:
+        return schema["x-allowed"]
+    if "enum" in schema:
+        return ", ".join(f"`{word}`" for word in schema["enum"])
+    if "anyOf" in schema:
+        return " or ".join(allowed_of(form) for form in schema["anyOf"])
+    if schema["type"] == "integer":
+        return f"a whole number from {schema['minimum']} to {schema['maximum']}"
+    if schema["type"] == "array":
+        item = schema.get("items")
+        is_list_of_values = isinstance(item, dict) and item.get("type") != "object"
+        return "a list of " + allowed_of(item) if is_list_of_values else "a list"
+    return {"object": "a map", "boolean": "`true`, `false`"}.get(str(schema["type"]), "a text")
+
+
+def rows_of(schema, prefix=""):
+    """Key, unit, default, allowed values, meaning; nested maps follow their key."""
+    for key, value in schema["properties"].items():
+        if "const" in value:
+            continue
+        yield (f"`{prefix}{key}`", value.get("x-unit", ""), default_of(key, value, schema.get("required", [])),
+               allowed_of(value), value["description"])
+        items = value.get("items")
+        if isinstance(items, dict) and "properties" in items:
+            yield from rows_of(items, f"{prefix}{key}[].")
+        elif "properties" in value:
+            yield from rows_of(value, f"{prefix}{key}.")
+
+
+def row(cells):
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def key_table(schema):
+    lines = [row(("key", "unit", "default", "allowed", "meaning")), "|---|---|---|---|---|"]
+    return lines + [row(cells) for cells in rows_of(schema)]
+
+
+def top_level(schema):
+    """The keys of a map without those of the maps inside."""
+    return {**schema, "properties": {key: {name: part for name, part in value.items() if name != "properties"}
+                                     for key, value in schema["properties"].items()}}
+
+
+def short_key(key, schema, required):
+    default = default_of(key, schema, required)
+    return f"`{key}`" if default == "required" else f"`{key}` ({default.strip('`')})"
+
+
+def type_table(schema):
+    """One row for each alternative, with all of its keys."""
+    selector = type_of(schema["oneOf"][0])[0]
+    lines = [row((f"`{selector}`", "keys (default)", "effect", "source")), "|---|---|---|---|"]
+    for one in schema["oneOf"]:
+        key, about = type_of(one)
+        keys = [short_key(name, value, one.get("required", [])) for name, value in one["properties"].items() if name != key]
+        lines.append(row((f"`{about['const']}`", ", ".join(keys), about["description"], about.get("x-source", ""))))
+    return lines
+
+
+def table(schemas, path):
+    kind, *steps = path.split()
+    is_top = bool(steps) and steps[-1] == "*"
+    schema = find(schemas(kind), steps[:-1] if is_top else steps)
+    if isinstance(schema.get("additionalProperties"), dict):
+        schema = find(schema["additionalProperties"], steps)
+    if "oneOf" in schema:
+        return type_table(schema)
+    return key_table(top_level(schema) if is_top else schema)
+
+
+def written(text, schemas):
+    """The text with the tables as they are now."""
+    def replaced(match):
+        return match[1] + "\n".join(table(schemas, match[2])) + "\n" + match[3]
+    return MARKED.sub(replaced, text)
+
+
+def main():
+    program = sys.argv[1]
+    root = Path(sys.argv[2] if len(sys.argv) > 2 else ".")
+    texts = {}
+
+    def schemas(kind):
+        if kind not in texts:
+            texts[kind] = schema_text(program, kind)
+        return json.loads(texts[kind])
+
+    for page in sorted(root.glob("docs/**/*.md")):
+        old = page.read_text(encoding="utf-8")
+        new = written(old, schemas)
+        if new != old:
+            page.write_text(new, encoding="utf-8")
+            print("wrote", page)
+    schema_file = root / SCHEMA_FILE
+    new = schema_text(program, "sensor")
+    if not schema_file.exists() or schema_file.read_text(encoding="utf-8") != new:
+        schema_file.write_text(new, encoding="utf-8")
+        print("wrote", schema_file)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tables of keys in docs/ and the schema in sensors/ are those of the program."""
+
+import importlib.util
+import json
+import subprocess
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def load_script():
+    spec = importlib.util.spec_from_file_location("write_key_tables", ROOT / "scripts/write_key_tables.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def run(*arguments):
+    return subprocess.run(["glidar", "schema", *arguments], capture_output=True, text=True, check=False)
+
+
+class Schema(unittest.TestCase):
+    def schemas(self, kind):
+        return json.loads(run(kind).stdout)
+
+    def test_the_schema_beside_the_presets_is_up_to_date(self):
+        kept = (ROOT / "sensors/sensor.schema.json").read_text(encoding="utf-8")
+        self.assertEqual(kept, run("sensor").stdout, "run scripts/write_key_tables.py GLIDAR")
+        self.assertEqual(kept, run().stdout)
+
+    def test_tables_in_the_documentation_are_up_to_date(self):
+        script = load_script()
+        tables = 0
+        for page in sorted(ROOT.glob("docs/**/*.md")):
+            text = page.read_text(encoding="utf-8")
+            tables += text.count("<!-- keys:")
+            self.assertEqual(text, script.written(text, self.schemas), f"{page}: run scripts/write_key_tables.py GLIDAR")
+        self.assertGreaterEqual(tables, 15)
+
+    def test_a_table_that_differs_is_written_again(self):
+        script = load_script()
+        old = "a\n<!-- keys: sensor limits -->\nold\n<!-- end of keys -->\nb\n"
+        new = script.written(old, self.schemas)
+        self.assertIn("| `near_m` | m | 0 | a finite number from 0 | shortest reported distance |", new)
+        self.assertNotIn("old", new)
+
+    def test_every_preset_refers_to_the_schema(self):
+        for preset in sorted((ROOT / "sensors").glob("*.yaml")):
+            first = preset.read_text(encoding="utf-8").splitlines()[0]
+            self.assertEqual(first, "# yaml-language-server: $schema=sensor.schema.json", preset)
+
+    def test_an_unknown_kind_is_an_error_with_the_nearest(self):
+        result = run("sensors")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("'sensors' has no schema; allowed: sensor, materials, surfaces; did you mean 'sensor'?", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
