@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 namespace {
 
 using std::chrono_literals::operator""ms;
@@ -241,4 +241,4 @@ void CloudPublisher::process_peer_events() {
   }
 }
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 
 /// The timestamp of a cloud: that of its pose, which is the frame's stamp_ns in the simulator's
 /// unit, or the number of the sensor's cloud, from 1, without a simulator.
@@ -108,4 +108,4 @@ class CloudPublisher final : public CloudSink {
   Counts counts_;
 };
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/woods2016/handshake_match.hpp>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 
 void HandshakeMatch::add_handshake() {
   if (early_ > 0) {
@@ -40,4 +40,4 @@ void HandshakeMatch::stop_waiting() {
   pending_ = 0;
 }
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

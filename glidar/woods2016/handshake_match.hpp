@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 
 /// Matches handshakes with subscriptions. The handshake and the subscription of a peer use
 /// different connections, arrive in any order, and cannot be associated: each handshake is matched
@@ -32,4 +32,4 @@ class HandshakeMatch {
   std::uint64_t absent_ = 0;  ///< handshakes whose subscriber left or timed out; it may still come
 };
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "messages are little-endian");
@@ -170,4 +170,4 @@ bool is_shutdown(Bytes message) {
          std::memcmp(message.data() + 1, kShutdown.data(), kShutdown.size()) == 0;
 }
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -14,7 +14,7 @@
 
 /// Messages of the Woods 2016 protocol; docs/link/woods2016-protocol.md has the tables. All numbers
 /// are little-endian, without padding; the first byte is both the type and the topic.
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 
 using Bytes = std::span<const std::byte>;
 
@@ -77,4 +77,4 @@ std::vector<std::byte> encode_shutdown(std::string_view topic);
 /// True for the end message of any topic.
 bool is_shutdown(Bytes message);
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 namespace {
 
 /// Poses are small; a peer that sends more is cut off. Smaller messages are read and refused.
@@ -179,4 +179,4 @@ void PoseReceiver::process_connection_events() {
   }
 }
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 
 struct PoseReceiverOptions {
   link::Endpoint endpoint;  ///< of the poses; the handshake uses the next port
@@ -75,4 +75,4 @@ class PoseReceiver {
   Counts counts_;
 };
 
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

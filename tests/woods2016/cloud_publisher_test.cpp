@@ -13,7 +13,7 @@
 
 #include <memory>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 namespace {
 
 using ::testing::HasSubstr;
@@ -354,4 +354,4 @@ TEST_F(CloudPublisherTest, ExplainsAPortInUse) {
 }
 
 }  // namespace
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

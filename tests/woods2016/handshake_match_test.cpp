@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 namespace {
 
 TEST(HandshakeMatch, NothingIsPendingAtFirst) {
@@ -75,4 +75,4 @@ TEST(HandshakeMatch, LateSubscriptionsMatchTheOldHandshakes) {
 }
 
 }  // namespace
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 namespace {
 
 using ::testing::HasSubstr;
@@ -185,4 +185,4 @@ TEST(ShutdownMessage, HasEightBytesForAnyTopic) {
 }
 
 }  // namespace
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

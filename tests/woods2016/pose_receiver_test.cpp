@@ -10,7 +10,7 @@
 #include <chrono>
 #include <memory>
 
-namespace glidar::legacy {
+namespace glidar::woods2016 {
 namespace {
 
 using ::testing::HasSubstr;
@@ -170,4 +170,4 @@ TEST_F(PoseReceiverTest, ReconnectsToARestartedSimulator) {
 }
 
 }  // namespace
-}  // namespace glidar::legacy
+}  // namespace glidar::woods2016

@@ -76,7 +76,7 @@ void MotionSource::wait_until_due(std::size_t mount) {
   while (Clock::now() < *due_ && !stop_.is_requested()) stop_.wait_until(*due_);
 }
 
-RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene) {
+RigMotion motion_of(const woods2016::Placement& placement, const MovedScene& scene) {
   RigMotion motion;
   motion.world_from_rig =
       ConstantPose{legacy_world_from_optical(placement.sensor, placement.translation_m) *
@@ -88,7 +88,7 @@ RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene)
   return motion;
 }
 
-SimulatorSource::SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene,
+SimulatorSource::SimulatorSource(woods2016::PoseReceiver& receiver, const MovedScene& scene,
                                  const Options& options, const StopRequest& stop)
     : receiver_(receiver), scene_(scene), options_(options), stop_(stop) {}
 
@@ -102,7 +102,7 @@ std::optional<FrameRequest> SimulatorSource::next() {
     const Clock::time_point due = last_ + seconds(1.0 / options_.schedule.rate_hz);
     while (Clock::now() < due && !stop_.is_requested()) stop_.wait_until(due);
   }
-  const std::optional<legacy::Placement> placement = wait_for_pose();
+  const std::optional<woods2016::Placement> placement = wait_for_pose();
   if (!placement) return std::nullopt;
   last_ = Clock::now();
   if (!first_) first_ = last_;
@@ -114,10 +114,10 @@ std::optional<FrameRequest> SimulatorSource::next() {
   return request_;
 }
 
-std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
+std::optional<woods2016::Placement> SimulatorSource::wait_for_pose() {
   const Clock::time_point begin = Clock::now();
   while (!is_done()) {
-    if (std::optional<legacy::Placement> placement = receiver_.receive()) return placement;
+    if (std::optional<woods2016::Placement> placement = receiver_.receive()) return placement;
     if (receiver_.is_over()) {
       ending_ = "the simulator ended";
     } else if (options_.timeout_s && seconds_since(begin) > *options_.timeout_s) {

@@ -87,7 +87,7 @@ struct MovedScene {
 };
 
 /// The poses of the rig and all instances by a message.
-RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene);
+RigMotion motion_of(const woods2016::Placement& placement, const MovedScene& scene);
 
 /// A frame of each sensor for each pose of a simulator. Its timestamps become the frames' stamps,
 /// in any unit.
@@ -99,8 +99,8 @@ class SimulatorSource final : public PoseSource {
     std::size_t mounts = 1;           ///< sensors measured at each pose
   };
   /// All must outlive it.
-  SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene, const Options& options,
-                  const StopRequest& stop);
+  SimulatorSource(woods2016::PoseReceiver& receiver, const MovedScene& scene,
+                  const Options& options, const StopRequest& stop);
   std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
   [[nodiscard]] bool has_timed_out() const { return has_timed_out_; }
@@ -108,10 +108,10 @@ class SimulatorSource final : public PoseSource {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::optional<legacy::Placement> wait_for_pose();
+  std::optional<woods2016::Placement> wait_for_pose();
   [[nodiscard]] bool is_done();
 
-  legacy::PoseReceiver& receiver_;
+  woods2016::PoseReceiver& receiver_;
   const MovedScene& scene_;
   Options options_;
   const StopRequest& stop_;

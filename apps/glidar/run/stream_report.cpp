@@ -10,12 +10,12 @@ namespace {
 
 constexpr double kMilli = 1e3;
 
-nlohmann::ordered_json json_of(const legacy::CloudPublisher::Counts& counts) {
+nlohmann::ordered_json json_of(const woods2016::CloudPublisher::Counts& counts) {
   return {{"sent", counts.sent},     {"missed", counts.missed}, {"repeated", counts.repeated},
           {"points", counts.points}, {"bytes", counts.bytes},   {"handshakes", counts.handshakes}};
 }
 
-nlohmann::ordered_json json_of(const legacy::PoseReceiver::Counts& counts) {
+nlohmann::ordered_json json_of(const woods2016::PoseReceiver::Counts& counts) {
   return {{"received", counts.received},
           {"refused", counts.refused},
           {"repeated", counts.repeated},
@@ -88,7 +88,7 @@ std::string ready_text(std::uint64_t ready, std::uint64_t expected) {
   return fmt::format("{} of {} ready", ready, count_text(expected, "subscriber"));
 }
 
-std::string publishing_text(const legacy::CloudPublisher::Counts& counts) {
+std::string publishing_text(const woods2016::CloudPublisher::Counts& counts) {
   return fmt::format(", {}, {} missed", count_text(counts.subscribers, "subscriber"),
                      counts.missed);
 }

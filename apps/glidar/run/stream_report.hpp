@@ -20,8 +20,8 @@ struct StreamSummary {
   std::string ending;
   std::uint64_t measured = 0;  ///< frames
   std::uint64_t late = 0;      ///< frames after their due time
-  std::optional<legacy::CloudPublisher::Counts> clouds = {};
-  std::optional<legacy::PoseReceiver::Counts> poses = {};
+  std::optional<woods2016::CloudPublisher::Counts> clouds = {};
+  std::optional<woods2016::PoseReceiver::Counts> poses = {};
   std::map<std::string, std::uint64_t> faults = {};
 };
 
@@ -38,6 +38,6 @@ std::string waiting_text(const StreamFlags& flags);
 std::string ready_text(std::uint64_t ready, std::uint64_t expected);
 
 /// The part of the status line about subscribers.
-std::string publishing_text(const legacy::CloudPublisher::Counts& counts);
+std::string publishing_text(const woods2016::CloudPublisher::Counts& counts);
 
 }  // namespace glidar::app

@@ -33,19 +33,19 @@ constexpr std::chrono::milliseconds kStatusInterval{200};
 /// How often the handshakes of peers are polled.
 constexpr std::chrono::milliseconds kPeerPollInterval{20};
 
-legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
-  return {
-      .endpoint = {flags.bind, *flags.port},
-      .keeps_newest = flags.publishes_latest,
-      .queue = flags.publish_queue,
-      .every = flags.publish_every,
-      .limits = flags.limits,
-      .timestamps = flags.pose_source ? legacy::Timestamps::of_poses : legacy::Timestamps::counted,
-      .subscription_timeout = std::chrono::round<std::chrono::milliseconds>(
-          std::chrono::duration<double>(flags.subscription_timeout_s))};
+woods2016::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
+  return {.endpoint = {flags.bind, *flags.port},
+          .keeps_newest = flags.publishes_latest,
+          .queue = flags.publish_queue,
+          .every = flags.publish_every,
+          .limits = flags.limits,
+          .timestamps =
+              flags.pose_source ? woods2016::Timestamps::of_poses : woods2016::Timestamps::counted,
+          .subscription_timeout = std::chrono::round<std::chrono::milliseconds>(
+              std::chrono::duration<double>(flags.subscription_timeout_s))};
 }
 
-legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
+woods2016::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
   return {.endpoint = *flags.pose_source, .queue = flags.pose_queue};
 }
 
@@ -77,7 +77,7 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
   if (flags_.port) {
     with_option_name("--bind, --port", [&] {
       publisher_ =
-          std::make_unique<legacy::CloudPublisher>(context_, publisher_options(flags_), faults_);
+          std::make_unique<woods2016::CloudPublisher>(context_, publisher_options(flags_), faults_);
     });
   }
   open_session();
@@ -86,7 +86,7 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
     prepare_poses();
     with_option_name("--pose-source", [&] {
       receiver_ =
-          std::make_unique<legacy::PoseReceiver>(context_, receiver_options(flags_), faults_);
+          std::make_unique<woods2016::PoseReceiver>(context_, receiver_options(flags_), faults_);
     });
   }
 }
@@ -116,7 +116,7 @@ std::map<std::uint32_t, std::string> StreamRun::topics() const {
   std::map<std::uint32_t, std::string> topics;
   for (const Mount& mount : session_.mounts) {
     const std::string label = label_of(flags_.render, mount);
-    if (!label.empty()) topics[mount.id] = legacy::rig_topic(label);
+    if (!label.empty()) topics[mount.id] = woods2016::rig_topic(label);
   }
   if (topics.size() > 1 && flags_.publishes_latest) {
     throw Error({"--publish-latest",

@@ -62,8 +62,8 @@ class StreamRun {
   link::ErrorLog faults_;
   std::unique_ptr<AtomicFile> stats_file_;
   link::Context context_;
-  std::unique_ptr<legacy::CloudPublisher> publisher_;
-  std::unique_ptr<legacy::PoseReceiver> receiver_;
+  std::unique_ptr<woods2016::CloudPublisher> publisher_;
+  std::unique_ptr<woods2016::PoseReceiver> receiver_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<link::RecordingReader> recording_;  ///< recording to repeat
   std::shared_ptr<const lockstep::Moment> placed_;    ///< poses of the simulator's last message
