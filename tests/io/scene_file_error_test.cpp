@@ -192,7 +192,7 @@ const BadFile kBadScenes[] = {
     {"LookAtAlongUp",
      with_model("sensor_pose: {look_at: {eye: [0, 0, 5], target: [0, 0, 0], up: [0, 0, 2]}}"),
      "s.yaml:2:24: sensor_pose.look_at: the up vector is parallel to the line of sight; allowed: "
-     "an up vector that is not; choose another up vector"},
+     "an up vector in another direction; choose another up vector"},
     {"LookAtWithoutTarget", with_model("sensor_pose: {look_at: {eye: [0, 0, 5]}}"),
      "s.yaml:2:24: sensor_pose.look_at: the key 'target' is missing; add 'target: ...'"},
 };
