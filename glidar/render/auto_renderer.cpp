@@ -74,12 +74,12 @@ class AutoRenderer final : public Renderer {
     if (!grid.misfit().empty()) return false;
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
-    const auto seen = scan_raster::estimate_visible(grid, request.beams, *base_);
-    const double most = grid.is_camera()
-                            ? kMaxPerLensBeam * seen.beams +
-                                  kMaxPerAnyLensBeam * static_cast<double>(request.beams.size())
-                            : kMaxPerScannerBeam * seen.beams;
-    return seen.triangles <= most;
+    const auto visible = scan_raster::estimate_visible(grid, request.beams, *base_);
+    const double max_triangles =
+        grid.is_camera() ? kMaxPerLensBeam * visible.beams +
+                               kMaxPerAnyLensBeam * static_cast<double>(request.beams.size())
+                         : kMaxPerScannerBeam * visible.beams;
+    return visible.triangles <= max_triangles;
   }
 
   bool is_for_raster(const CastRequest& request) {

@@ -17,17 +17,17 @@ bool extend(Eigen::AlignedBox2d& covered, const InstanceView& view,
   constexpr int kCorners = 8;
   for (int i = 0; i < kCorners; ++i) {
     const auto which = static_cast<Eigen::AlignedBox3d::CornerType>(i);
-    const Eigen::Vector3d seen =
+    const Eigen::Vector3d in_sensor =
         view.object_from_sensor.transpose() * (box.corner(which) - view.sensor_in_object);
-    if (!(seen.z() > kMinDepth * seen.norm())) return false;
-    covered.extend(Eigen::Vector2d(seen.x() / seen.z(), seen.y() / seen.z()));
+    if (!(in_sensor.z() > kMinDepth * in_sensor.norm())) return false;
+    covered.extend(Eigen::Vector2d(in_sensor.x() / in_sensor.z(), in_sensor.y() / in_sensor.z()));
   }
   return true;
 }
 
 /// Indices of a sorted row whose values are in [low, high], and one more on each side.
-std::pair<std::uint32_t, std::uint32_t> places(const std::vector<double>& row, double low,
-                                               double high) {
+std::pair<std::uint32_t, std::uint32_t> index_range(const std::vector<double>& row, double low,
+                                                    double high) {
   const auto first = std::lower_bound(row.begin(), row.end(), low) - row.begin();
   const auto end = std::upper_bound(row.begin(), row.end(), high) - row.begin();
   const auto last = static_cast<std::ptrdiff_t>(row.size());
@@ -38,20 +38,21 @@ std::pair<std::uint32_t, std::uint32_t> places(const std::vector<double>& row, d
 }  // namespace
 
 GridWindow visible_window(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
-                          std::span<const std::uint8_t> present, const PlanePoints& points) {
+                          std::span<const std::uint8_t> instance_enabled,
+                          const PlanePoints& points) {
   if (points.x.empty()) return {};
   const std::vector<Instance>& instances = resolver.scene().instances;
   Eigen::AlignedBox2d covered;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     const Eigen::AlignedBox3d& box = mesh_boxes[instances[i].mesh];
-    if (box.isEmpty() || (!present.empty() && present[i] == 0)) continue;
+    if (box.isEmpty() || (!instance_enabled.empty() && instance_enabled[i] == 0)) continue;
     const Eigen::Vector3d& origin_m = resolver.mesh(i).origin_m;
     const Eigen::AlignedBox3d relative(box.min() - origin_m, box.max() - origin_m);
     if (!extend(covered, resolver.view(i), relative)) return {};
   }
   if (covered.isEmpty()) return {.end_row = 0, .end_col = 0};
-  const auto [first_row, end_row] = places(points.y, covered.min().y(), covered.max().y());
-  const auto [first_col, end_col] = places(points.x, covered.min().x(), covered.max().x());
+  const auto [first_row, end_row] = index_range(points.y, covered.min().y(), covered.max().y());
+  const auto [first_col, end_col] = index_range(points.x, covered.min().x(), covered.max().x());
   return {first_row, end_row, first_col, end_col};
 }
 

@@ -29,6 +29,7 @@ struct GridWindow {
 /// boxes (one per mesh, see bounds()) and one beam more on each side. The whole grid when a corner
 /// is not in front of the sensor, and for other beams.
 GridWindow visible_window(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
-                          std::span<const std::uint8_t> present, const PlanePoints& points);
+                          std::span<const std::uint8_t> instance_enabled,
+                          const PlanePoints& points);
 
 }  // namespace glidar

@@ -30,12 +30,12 @@ struct PixelBatch {
 
 /// Three batches are in progress at a time: data that later steps of one need (planes and corners
 /// of its triangles) are prefetched while the next is collected.
-struct PixelBatchRing {
+struct PixelBatchQueue {
   std::array<PixelBatch, 3> batches;
   std::size_t started = 0;  ///< the last of them is being filled
 
   PixelBatch& filling() { return batches[started % batches.size()]; }
-  PixelBatch& before() { return batches[(started + batches.size() - 1) % batches.size()]; }
+  PixelBatch& previous() { return batches[(started + batches.size() - 1) % batches.size()]; }
 };
 
 /// The primitive to report, see Resolver::canonical_primitive.
@@ -135,15 +135,15 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
 
 /// Decodes the collected batch, prefetches the corners of the batch before, and finishes the
 /// oldest.
-void advance(const HitWriter& w, PixelBatchRing& ring) {
-  decode_triangles(w, ring.filling());
-  PixelBatch& before = ring.before();
+void advance(const HitWriter& w, PixelBatchQueue& queue) {
+  decode_triangles(w, queue.filling());
+  PixelBatch& previous = queue.previous();
   HitFieldMask fields = w.request.fields;
   // To find its uncertain lanes.
-  fields.barycentrics = fields.barycentrics || (before.block.mask & ~before.certain) != 0;
-  w.resolver.prefetch_corners(before.block, fields);
-  ++ring.started;
-  finish(w, ring.filling());
+  fields.barycentrics = fields.barycentrics || (previous.block.mask & ~previous.certain) != 0;
+  w.resolver.prefetch_corners(previous.block, fields);
+  ++queue.started;
+  finish(w, queue.filling());
 }
 
 /// Lists the non-empty columns in a section of a row; returns their number.
@@ -176,7 +176,7 @@ BeamRange beams_of(const HitWriter& w, std::uint32_t row) {
   return {first, first + w.written.cols};
 }
 
-void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchRing& ring) {
+void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchQueue& queue) {
   const std::size_t first = beams_of(w, row).begin;
   const std::uint32_t drawn_row = w.written.first_row - w.drawn.first_row + row;
   const std::uint32_t drawn_col = w.written.first_col - w.drawn.first_col;
@@ -188,12 +188,12 @@ void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchRing& ring) {
     const std::uint32_t count = list_filled(triangle_ids, begin, end, cols);
     // Misses are written in long runs, and hits over them.
     if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);
-    PixelBatch* batch = &ring.filling();
+    PixelBatch* batch = &queue.filling();
     for (std::uint32_t i = 0; i < count; ++i) {
       collect(w, drawn_row, drawn_col + cols[i], triangle_ids[cols[i]], *batch);
       if (batch->used < kLanes) continue;
-      advance(w, ring);
-      batch = &ring.filling();
+      advance(w, queue);
+      batch = &queue.filling();
     }
   }
 }
@@ -242,9 +242,9 @@ DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
 }
 
 void write_rows(const HitWriter& w, std::uint32_t begin, std::uint32_t end) {
-  PixelBatchRing ring;
-  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, ring);
-  for (std::size_t i = 0; i < ring.batches.size(); ++i) advance(w, ring);
+  PixelBatchQueue queue;
+  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, queue);
+  for (std::size_t i = 0; i < queue.batches.size(); ++i) advance(w, queue);
   if (!w.cast_hits.empty())
     write_cast_hits(w, {beams_of(w, begin).begin, beams_of(w, end - 1).end});
   if (!w.request.on_tile_done) return;

@@ -29,16 +29,16 @@ bool is_one_instance(const HitBlock& block) {
 }
 
 /// Copies the rays of the lanes that hit the instance.
-GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const ExactHits& seen,
+GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const ExactHits& source,
                            ExactHits& exact) {
   for (unsigned i = 0; i < kLanes; ++i) {
     const bool is_its = block.instance[i] == instance;
-    exact.origin.x[i] = is_its ? seen.origin.x[i] : exact.origin.x[i];
-    exact.origin.y[i] = is_its ? seen.origin.y[i] : exact.origin.y[i];
-    exact.origin.z[i] = is_its ? seen.origin.z[i] : exact.origin.z[i];
-    exact.direction.x[i] = is_its ? seen.direction.x[i] : exact.direction.x[i];
-    exact.direction.y[i] = is_its ? seen.direction.y[i] : exact.direction.y[i];
-    exact.direction.z[i] = is_its ? seen.direction.z[i] : exact.direction.z[i];
+    exact.origin.x[i] = is_its ? source.origin.x[i] : exact.origin.x[i];
+    exact.origin.y[i] = is_its ? source.origin.y[i] : exact.origin.y[i];
+    exact.origin.z[i] = is_its ? source.origin.z[i] : exact.origin.z[i];
+    exact.direction.x[i] = is_its ? source.direction.x[i] : exact.direction.x[i];
+    exact.direction.y[i] = is_its ? source.direction.y[i] : exact.direction.y[i];
+    exact.direction.z[i] = is_its ? source.direction.z[i] : exact.direction.z[i];
   }
 }
 
@@ -215,11 +215,11 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
     }
   }
   rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
-  ExactHits seen;
+  ExactHits source;
   for (std::uint32_t rest = lanes_not_on(block, block.instance[0]); rest != 0;) {
     const std::uint32_t instance = block.instance[static_cast<unsigned>(std::countr_zero(rest))];
-    rays_in(views_[instance], beams, seen.origin, seen.direction);
-    copy_rays(block, instance, seen, exact);
+    rays_in(views_[instance], beams, source.origin, source.direction);
+    copy_rays(block, instance, source, exact);
     rest &= lanes_not_on(block, instance);
   }
   intersect_planes(exact);
@@ -261,6 +261,13 @@ void Resolver::write(const Beams& beams, const HitFieldMask& fields, const HitBl
   });
   if (fields.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
   if (needs_corners(fields)) write_surface(fields, block, exact, hits);
+}
+
+void Resolver::write_batch(const Beams& beams, const HitFieldMask& fields, HitBatch& batch,
+                           Hits& hits) const {
+  if (batch.block.mask == 0) return;
+  intersect(batch.beams, batch.block, batch.exact);
+  write(beams, fields, batch.block, batch.exact, hits);
 }
 
 void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& front,

@@ -69,6 +69,13 @@ struct ExactHits {
   Lanes<double> distance;    ///< along the beam
 };
 
+/// A block of beams with their hits and the exact geometry of these.
+struct HitBatch {
+  HitBlock block;
+  BeamBlock beams;
+  ExactHits exact;
+};
+
 /// A vector at each corner of a block's triangles.
 struct CornerBlock {
   Lanes3<float> c0;
@@ -137,6 +144,10 @@ class Resolver {
   /// Writes the columns of an intersected block.
   void write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
              const ExactHits& exact, Hits& hits) const;
+
+  /// Intersects and writes the hits of a batch, if there are any.
+  void write_batch(const Beams& beams, const HitFieldMask& fields, HitBatch& batch,
+                   Hits& hits) const;
 
  private:
   void write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const;

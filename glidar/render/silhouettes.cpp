@@ -87,13 +87,13 @@ struct PixelLine {
 
 PixelLine project(Eigen::Vector3d from, Eigen::Vector3d to, const PinholeIntrinsics& k) {
   constexpr double kMinPart = 1e-6;  // of the farther end's depth
-  const double least = kMinPart * std::max(from.z(), to.z());
-  if (!(least > 0.0)) return {};
+  const double min_depth = kMinPart * std::max(from.z(), to.z());
+  if (!(min_depth > 0.0)) return {};
   const auto clip = [&](const Eigen::Vector3d& inner, Eigen::Vector3d& outer) {
-    if (outer.z() >= least) return;
-    const double part = (inner.z() - least) / (inner.z() - outer.z());
+    if (outer.z() >= min_depth) return;
+    const double part = (inner.z() - min_depth) / (inner.z() - outer.z());
     outer = inner + part * (outer - inner);
-    outer.z() = least;
+    outer.z() = min_depth;
   };
   clip(to, from);
   clip(from, to);
@@ -194,7 +194,7 @@ void SilhouettePixels::find_sides(const Resolver& resolver, std::uint32_t instan
 void SilhouettePixels::add(const CastRequest& request, const Resolver& resolver,
                            std::uint32_t instance, const std::vector<MeshEdge>& edges,
                            const PixelRect& part, ThreadPool& thread_pool) {
-  constexpr std::size_t kEdgesPerPiece = 16384;
+  constexpr std::size_t kEdgesPerSection = 16384;
   find_sides(resolver, instance, thread_pool);
   const EdgeView view{.edges = edges,
                       .sides = sides_,
@@ -203,17 +203,17 @@ void SilhouettePixels::add(const CastRequest& request, const Resolver& resolver,
                       .beams = request.beams,
                       .part = part,
                       .band_px = band_px_};
-  const std::size_t count = (edges.size() + kEdgesPerPiece - 1) / kEdgesPerPiece;
-  pieces_.resize(std::max(pieces_.size(), count));
+  const std::size_t count = (edges.size() + kEdgesPerSection - 1) / kEdgesPerSection;
+  section_pixels_.resize(std::max(section_pixels_.size(), count));
   thread_pool.parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      pieces_[i].clear();
-      view.add_pixels(i * kEdgesPerPiece, std::min((i + 1) * kEdgesPerPiece, edges.size()),
-                      pieces_[i]);
+      section_pixels_[i].clear();
+      view.add_pixels(i * kEdgesPerSection, std::min((i + 1) * kEdgesPerSection, edges.size()),
+                      section_pixels_[i]);
     }
   });
   for (std::size_t i = 0; i < count; ++i) {
-    pixels_.insert(pixels_.end(), pieces_[i].begin(), pieces_[i].end());
+    pixels_.insert(pixels_.end(), section_pixels_[i].begin(), section_pixels_[i].end());
   }
 }
 

@@ -48,7 +48,8 @@ class SilhouettePixels {
 
   double band_px_;
   std::vector<std::int8_t> sides_;  ///< per triangle of an instance: where the sensor is
-  std::vector<std::vector<std::size_t>> pieces_;  ///< pixels found in each piece of the edges
+  std::vector<std::vector<std::size_t>>
+      section_pixels_;  ///< pixels found in each piece of the edges
   std::vector<std::size_t> pixels_;
 };
 

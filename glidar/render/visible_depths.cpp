@@ -16,15 +16,17 @@ constexpr int kDepth = 4;  // the row that gives the depth
 /// Rows 0 to 3: signed distance of a point of the mesh inside each border of the view; borders are
 /// the outer edges of the image's pixels. Row 4: its depth.
 Planes view_planes(const InstanceView& view, const PinholeIntrinsics& k) {
-  const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(view);
+  const Eigen::Matrix<double, 3, 4> sensor_matrix = sensor_from_object(view);
   const double half = 0.5;
   const double left = (k.pixel_centre - half - k.cx) / k.fx;
   const double right = (k.width - 1 + k.pixel_centre + half - k.cx) / k.fx;
   const double top = (k.pixel_centre - half - k.cy) / k.fy;
   const double bottom = (k.height - 1 + k.pixel_centre + half - k.cy) / k.fy;
   Planes planes;
-  planes << seen.row(0) - left * seen.row(2), right * seen.row(2) - seen.row(0),
-      seen.row(1) - top * seen.row(2), bottom * seen.row(2) - seen.row(1), seen.row(2);
+  planes << sensor_matrix.row(0) - left * sensor_matrix.row(2),
+      right * sensor_matrix.row(2) - sensor_matrix.row(0),
+      sensor_matrix.row(1) - top * sensor_matrix.row(2),
+      bottom * sensor_matrix.row(2) - sensor_matrix.row(1), sensor_matrix.row(2);
   return planes;
 }
 
@@ -84,12 +86,12 @@ DepthSpan depths_of(const Planes& planes, const Mesh& mesh, const Triangle& tria
 template <class Body>
 DepthSpan join_spans(std::size_t count, ThreadPool& thread_pool, std::vector<DepthSpan>& spans,
                      const Body& body) {
-  constexpr std::size_t kDepthsPerPiece = 16384;
-  const std::size_t sections = (count + kDepthsPerPiece - 1) / kDepthsPerPiece;
+  constexpr std::size_t kDepthsPerSection = 16384;
+  const std::size_t sections = (count + kDepthsPerSection - 1) / kDepthsPerSection;
   spans.assign(sections, {});
   thread_pool.parallel_for(sections, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      spans[i] = body(i * kDepthsPerPiece, std::min(count, (i + 1) * kDepthsPerPiece));
+      spans[i] = body(i * kDepthsPerSection, std::min(count, (i + 1) * kDepthsPerSection));
     }
   });
   DepthSpan all;

@@ -63,8 +63,8 @@ class Stage {
 };
 
 Box grown(const Box& box, double by) {
-  const Eigen::Vector3d room = Eigen::Vector3d::Constant(by);
-  return {box.min() - room, box.max() + room};
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(by);
+  return {box.min() - margin, box.max() + margin};
 }
 
 constexpr double kRoom_m = 1e-3;  // above what the tree adds to boxes at 30 m

@@ -77,16 +77,16 @@ TEST_F(OpenglContext, ASharedContextDrawsTheSameHitsAndFramebuffer) {
   const std::unique_ptr<Renderer> theirs = renderer();
   const auto camera = make_paper_camera(scene_, {.threads = 1}, shared());
   Hits hits;
-  Woods2016Framebuffer picture;
+  Woods2016Framebuffer framebuffer;
   for (int frame = 0; frame < 3; ++frame) {  // in turns
     theirs->cast(request(), hits);
-    camera->draw(request(), {}, {}, picture);
+    camera->draw(request(), {}, {}, framebuffer);
   }
   EXPECT_GT(uses_, 6);
   EXPECT_EQ(hits.primitive, expected());
   Woods2016Framebuffer own;
   make_paper_camera(scene_, {.threads = 1})->draw(request(), {}, {}, own);
-  EXPECT_EQ(picture.rgba, own.rgba);
+  EXPECT_EQ(framebuffer.rgba, own.rgba);
 }
 
 TEST_F(OpenglContext, ThePreviousContextAndSurfaceAreRestored) {
@@ -147,9 +147,9 @@ TEST_F(OpenglContext, ResultsDoNotDependOnThePreviousState) {
   Hits hits;
   theirs->cast(request(), hits);
   EXPECT_EQ(hits.primitive, expected());
-  Woods2016Framebuffer picture;
-  camera->draw(request(), {}, {}, picture);
-  EXPECT_EQ(picture.rgba, before.rgba);
+  Woods2016Framebuffer framebuffer;
+  camera->draw(request(), {}, {}, framebuffer);
+  EXPECT_EQ(framebuffer.rgba, before.rgba);
 }
 
 TEST_F(OpenglContext, DrawingResetsTheStateThatItChanges) {

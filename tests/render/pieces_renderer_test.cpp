@@ -136,8 +136,8 @@ TEST_P(PiecesSuite, PosesEnabledInstancesAndBatchesReferToTheScene) {
   const Pose pose = look_at(target + Eigen::Vector3d(2.0, 1.0, 1.0), target);
   const std::array<Pose, 2> poses = {scene.instances[0].world_from_object, moved};
   const std::array<std::uint8_t, 2> only_first = {1, 0};
-  std::size_t told = 0;
-  const auto count = [&told](BeamRange range) { told += range.end - range.begin; };
+  std::size_t report_count = 0;
+  const auto count = [&report_count](BeamRange range) { report_count += range.end - range.begin; };
   const std::vector<CastRequest> requests = {
       {.beams = beams, .world_from_sensor = pose, .world_from_instance = poses},
       {.beams = beams,
@@ -151,7 +151,7 @@ TEST_P(PiecesSuite, PosesEnabledInstancesAndBatchesReferToTheScene) {
   CastRequest request = requests[0];
   if (GetParam() == "raster") request.on_tile_done = FunctionRef<void(BeamRange)>(count);
   device->cast(request, one);
-  EXPECT_EQ(told, GetParam() == "raster" ? beams.size() : 0U);
+  EXPECT_EQ(report_count, GetParam() == "raster" ? beams.size() : 0U);
   EXPECT_EQ(batch[0].instance, one.instance);
   EXPECT_EQ(batch[0].primitive, one.primitive);
   EXPECT_GT(std::count(one.instance.begin(), one.instance.end(), 1U), 20);

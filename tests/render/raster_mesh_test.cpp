@@ -135,11 +135,11 @@ TEST(RasterVisibleClusters, ClustersBehindOrBesideAreNotVisible) {
 TEST(RasterTileGrid, EveryPixelIsWrittenOnceAndDrawnWithItsNeighbours) {
   for (const GridWindow& window : {GridWindow{0, 480, 0, 640}, GridWindow{7, 300, 33, 34},
                                    GridWindow{100, 2000, 5, 600}, GridWindow{479, 480, 639, 640}}) {
-    TileGrid parts;
-    parts.build(window, 480, 640);
+    TileGrid tiles;
+    tiles.build(window, 480, 640);
     std::vector<int> written(480 * 640, 0);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const Tile tile = parts.tile(i);
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      const Tile tile = tiles.tile(i);
       EXPECT_LE(tile.drawn.rows, static_cast<std::uint32_t>(TileBuffer::kSide));
       EXPECT_LE(tile.drawn.cols, static_cast<std::uint32_t>(TileBuffer::kSide));
       EXPECT_EQ(tile.drawn.first_row, std::max(tile.written.first_row, 1U) - 1);
@@ -162,8 +162,8 @@ TEST(RasterTileGrid, EveryPixelIsWrittenOnceAndDrawnWithItsNeighbours) {
 }
 
 TEST(RasterTileGrid, ListsTheClustersOfEachTile) {
-  TileGrid parts;
-  parts.build({0, 480, 0, 640}, 480, 640);
+  TileGrid tiles;
+  tiles.build({0, 480, 0, 640}, 480, 640);
   std::mt19937 random(2);
   std::vector<VisibleCluster> clusters;
   for (std::uint32_t i = 0; i < 500; ++i) {
@@ -177,10 +177,10 @@ TEST(RasterTileGrid, ListsTheClustersOfEachTile) {
                         .bottom = top + static_cast<std::int32_t>(random() % 80),
                         .nearness = 0.0F});
   }
-  parts.bin_clusters(clusters);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const PixelRect drawn = parts.tile(i).drawn;
-    const std::span<const std::uint32_t> seen = parts.clusters_in(i);
+  tiles.bin_clusters(clusters);
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const PixelRect drawn = tiles.tile(i).drawn;
+    const std::span<const std::uint32_t> seen = tiles.clusters_in(i);
     for (std::uint32_t s = 0; s < clusters.size(); ++s) {
       const VisibleCluster& at = clusters[s];
       const bool meets = at.left < static_cast<int>(drawn.first_col + drawn.cols) &&

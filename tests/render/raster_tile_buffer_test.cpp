@@ -131,7 +131,7 @@ TEST(RasterTileBuffer, MarksPixelsFarFromEdgesAsCertain) {
   const auto tile = empty_canvas(8, 8);
   tile->draw(square({1, 6, 1, 6}, 0.5F, 2));
   const std::vector<std::uint32_t> triangle_ids = drawn_numbers(*tile);
-  EXPECT_EQ(triangle_ids[3 * 8 + 1], 2U);                 // on the left border
+  EXPECT_EQ(triangle_ids[3 * 8 + 1], 2U);                 // on the left edge
   EXPECT_EQ(triangle_ids[3 * 8 + 6], 2U);                 // on the right one
   EXPECT_EQ(triangle_ids[3 * 8 + 3], 2U | kCertainFlag);  // in the middle
 }

@@ -68,7 +68,7 @@ TileTransform tile_transform(const std::array<Eigen::Matrix3d, kLanes>& all, Cor
     corners.c2.set(i, (all[i].col(2) - middle).cast<float>());
   }
   return {.matrix = {1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F},
-          .column_at_depth = static_cast<float>(middle.x()),
+          .column = static_cast<float>(middle.x()),
           .row = static_cast<float>(middle.y()),
           .depth = static_cast<float>(middle.z()),
           .before_far = static_cast<float>(nearness().far_m - middle.z()),
@@ -80,46 +80,47 @@ TileTransform tile_transform(const std::array<Eigen::Matrix3d, kLanes>& all, Cor
 }
 
 /// The coverage of a pixel by a setup.
-struct Told {
+struct PixelCoverage {
   bool coverage;
   bool certain;
   double nearness;
 };
 
-Told tell(const TriangleSetup& s, int col, int row) {
+PixelCoverage coverage_at(const TriangleSetup& s, int col, int row) {
   const auto across = static_cast<float>(col - s.rect.left);
   const auto down = static_cast<float>(row - s.rect.top);
-  Told told{.coverage = col >= s.rect.left && col <= s.rect.right && row >= s.rect.top &&
-                        row <= s.rect.bottom,
-            .certain = true,
-            .nearness = static_cast<double>(s.nearness_at_corner + s.nearness_per_col * across +
-                                            s.nearness_per_row * down)};
+  PixelCoverage pixel{
+      .coverage =
+          col >= s.rect.left && col <= s.rect.right && row >= s.rect.top && row <= s.rect.bottom,
+      .certain = true,
+      .nearness = static_cast<double>(s.nearness_at_corner + s.nearness_per_col * across +
+                                      s.nearness_per_row * down)};
   for (std::size_t k = 0; k < 3; ++k) {
     const float edge = s.at_corner[k] + s.per_col[k] * across + s.per_row[k] * down;
-    told.coverage = told.coverage && edge >= 0.0F;
-    told.certain = told.certain && edge >= s.certain[k];
+    pixel.coverage = pixel.coverage && edge >= 0.0F;
+    pixel.certain = pixel.certain && edge >= s.certain[k];
   }
-  return told;
+  return pixel;
 }
 
 /// Pixels inside are covered, those clearly outside are not, and certain ones are inside.
-void expect_true(const Told& told, const Eigen::Matrix3d& corners, int col, int row) {
+void expect_correct(const PixelCoverage& pixel, const Eigen::Matrix3d& corners, int col, int row) {
   const double inside = inside_px(corners, col, row);
   // The margin is along the larger of row and column, up to sqrt(2) times as wide; twice for
   // rounding.
   constexpr double kClear_px = 3.0 * static_cast<double>(kEdgeMargin_px);
   if (inside >= 0.0) {
-    EXPECT_TRUE(told.coverage) << inside;
+    EXPECT_TRUE(pixel.coverage) << inside;
   }
   if (inside < -kClear_px) {
-    EXPECT_FALSE(told.coverage) << inside;
+    EXPECT_FALSE(pixel.coverage) << inside;
   }
-  if (!told.coverage) return;
-  if (told.certain) {
+  if (!pixel.coverage) return;
+  if (pixel.certain) {
     EXPECT_GE(inside, 0.0);
   }
-  EXPECT_TRUE(told.certain || inside < kClear_px) << inside;
-  EXPECT_NEAR(told.nearness, nearness_at(corners, col, row), 1e-6);
+  EXPECT_TRUE(pixel.certain || inside < kClear_px) << inside;
+  EXPECT_NEAR(pixel.nearness, nearness_at(corners, col, row), 1e-6);
 }
 
 TEST(RasterTriangleSetup, CoversThePixelsWhoseBeamsHitTheTriangles) {
@@ -129,26 +130,27 @@ TEST(RasterTriangleSetup, CoversThePixelsWhoseBeamsHitTheTriangles) {
       const auto all = triangles(size_px, seed);
       CornerBlock corners;
       const TileTransform transform = tile_transform(all, corners);
-      TriangleSetups footprints;
-      set_up_triangles(transform, corners, footprints);
+      TriangleSetups setups;
+      set_up_triangles(transform, corners, setups);
       Lanes<std::uint32_t> coverage;
-      const std::uint32_t pending = coverage_masks(footprints, coverage);
+      const std::uint32_t pending = coverage_masks(setups, coverage);
       for (unsigned lane = 0; lane < kLanes; ++lane) {
-        const auto size = static_cast<SizeClass>(footprints.size[lane]);
+        const auto size = static_cast<SizeClass>(setups.size[lane]);
         ASSERT_NE(size, SizeClass::large);
-        const TriangleSetup setup = footprints.setup(lane, 0);
+        const TriangleSetup setup = setups.setup(lane, 0);
         for (int row = 0; row <= kAll.bottom; ++row) {
           for (int col = 0; col <= kAll.right; ++col) {
-            Told told = size == SizeClass::none ? Told{} : tell(setup, col, row);
+            PixelCoverage pixel =
+                size == SizeClass::none ? PixelCoverage{} : coverage_at(setup, col, row);
             if (size == SizeClass::small) {
               const int bit = (row - setup.rect.top) * kSmall + col - setup.rect.left;
-              const bool is_in = told.coverage;
-              told.coverage = is_in && (coverage[lane] >> bit & 1U) != 0;
-              told.certain = is_in && (coverage[lane] >> (bit + 16) & 1U) != 0;
-              EXPECT_EQ(told.coverage, is_in);
+              const bool is_in = pixel.coverage;
+              pixel.coverage = is_in && (coverage[lane] >> bit & 1U) != 0;
+              pixel.certain = is_in && (coverage[lane] >> (bit + 16) & 1U) != 0;
+              EXPECT_EQ(pixel.coverage, is_in);
             }
-            expect_true(told, all[lane], col, row);
-            if (told.coverage) {
+            expect_correct(pixel, all[lane], col, row);
+            if (pixel.coverage) {
               ++covered_pixels;
               EXPECT_NE(pending >> lane & 1U, 0U);
             }
@@ -166,7 +168,8 @@ TEST(RasterTriangleSetup, DoublePrecisionCoversTheSamePixels) {
       const std::optional<TriangleSetup> setup = set_up_triangle(corners, nearness(), kAll, false);
       for (int row = 0; row <= kAll.bottom; ++row) {
         for (int col = 0; col <= kAll.right; ++col) {
-          expect_true(setup ? tell(*setup, col, row) : Told{}, corners, col, row);
+          expect_correct(setup ? coverage_at(*setup, col, row) : PixelCoverage{}, corners, col,
+                         row);
         }
       }
     }
@@ -191,10 +194,10 @@ TEST(RasterTriangleSetup, AcceptsCornersBehindTheSensor) {
       const double x = (col - centre.x()) / focal_px * depth;
       const double half_width = 90.0 * (40.0 - depth) / 70.0;
       const bool hits = depth > 0.0 && std::abs(x) < half_width;
-      const Told told = tell(*setup, col, row);
-      EXPECT_EQ(told.coverage, hits) << col << ' ' << row;
+      const PixelCoverage covered = coverage_at(*setup, col, row);
+      EXPECT_EQ(covered.coverage, hits) << col << ' ' << row;
       if (hits) {
-        EXPECT_NEAR(told.nearness, nearness().at(depth), 1e-5);
+        EXPECT_NEAR(covered.nearness, nearness().at(depth), 1e-5);
       }
     }
   }
@@ -225,15 +228,15 @@ TEST(RasterTriangleSetup, CullsBackFacesOnRequest) {
 TEST(RasterTriangleSetup, UsesDoublePrecisionWhereSingleIsNotSufficient) {
   auto all = triangles(5.0, 2);
   all[0].col(1) *= -1.0;                                     // behind
-  all[1].col(2) = 8.0 * Eigen::Vector3d(4000.0, 20.0, 1.0);  // far beside the canvas
+  all[1].col(2) = 8.0 * Eigen::Vector3d(4000.0, 20.0, 1.0);  // far beside the tile
   all[1].col(0) = 8.0 * Eigen::Vector3d(20.0, 20.0, 1.0);
   all[2].col(0) = 0.5 * Eigen::Vector3d(30.0, 20.0, 1.0);  // nearer than its cluster allows
   CornerBlock corners;
   const TileTransform transform = tile_transform(all, corners);
-  TriangleSetups footprints;
-  set_up_triangles(transform, corners, footprints);
+  TriangleSetups setups;
+  set_up_triangles(transform, corners, setups);
   for (unsigned lane = 0; lane < 3; ++lane) {
-    EXPECT_EQ(footprints.size[lane], static_cast<int>(SizeClass::large)) << lane;
+    EXPECT_EQ(setups.size[lane], static_cast<int>(SizeClass::large)) << lane;
   }
 }
 

@@ -109,7 +109,7 @@ TEST_P(Rasterizer, DrawsImagesLargerThanOneTile) {
 TEST_P(Rasterizer, AcceptsAnyPrincipalPointFocalLengthsAndPixelCentre) {
   Scene scene = builtin_scene("asteroid");
   PinholeIntrinsics k{.width = 203, .height = 101, .fx = 311.7, .fy = 187.3};
-  k.cx = -60.5;  // outside of the picture
+  k.cx = -60.5;  // outside of the image
   k.cy = 140.25;
   for (const double centre : {0.0, 0.5}) {
     k.pixel_centre = centre;
@@ -213,24 +213,24 @@ TEST_P(Rasterizer, BeamsExactlyAtVerticesAndAlongEdgesDoNotLeak) {
   scene.instances[0].world_from_object.translation().z() = 50.0;
   const int side = 80;
   const double focal_px = 64.0;
-  Mesh sheet;
+  Mesh surface;
   for (int row = 0; row <= side; ++row) {
     for (int col = 0; col <= side; ++col) {
       const double depth = 4.0 + ((row * 7 + col * 13) % 5) / 8.0;
       const Eigen::Vector2d at = Eigen::Vector2d(col - side / 2, row - side / 2) / (2.0 * focal_px);
-      sheet.positions_m.push_back((depth * at.homogeneous()).cast<float>());
+      surface.positions_m.push_back((depth * at.homogeneous()).cast<float>());
     }
   }
   for (int row = 0; row < side; ++row) {
     for (int col = 0; col < side; ++col) {
       const auto at = static_cast<std::uint32_t>(row * (side + 1) + col);
       const std::uint32_t below = at + side + 1;
-      sheet.triangles.push_back({at, at + 1, below});
-      sheet.triangles.push_back({below, at + 1, below + 1});
+      surface.triangles.push_back({at, at + 1, below});
+      surface.triangles.push_back({below, at + 1, below + 1});
     }
   }
-  const std::uint32_t triangles = static_cast<std::uint32_t>(sheet.triangles.size());
-  scene.meshes.push_back(std::move(sheet));
+  const std::uint32_t triangles = static_cast<std::uint32_t>(surface.triangles.size());
+  scene.meshes.push_back(std::move(surface));
   scene.sources.push_back({});
   scene.instances.push_back(
       {.name = "surface", .mesh = 1, .materials = scene.instances[0].materials});
@@ -249,9 +249,9 @@ TEST_P(Rasterizer, ReportsEveryBeamOnceAndItsProgress) {
   const Beams beams = camera_beams(70, 50, 60.0);
   const Pose away = turned(3.1, {0.0, 1.0, 0.0}, {0.0, 0.0, -5.0});
   for (const Pose& pose : {turned(0.0, {0.0, 1.0, 0.0}, {0.0, 0.0, -5.0}), away}) {
-    std::vector<std::atomic<int>> told(beams.size());
+    std::vector<std::atomic<int>> report_count(beams.size());
     const auto count = [&](BeamRange range) {
-      for (std::size_t i = range.begin; i < range.end; ++i) ++told[i];
+      for (std::size_t i = range.begin; i < range.end; ++i) ++report_count[i];
     };
     double progress = 0.0;
     cast_by(GetParam(), scene,
@@ -260,7 +260,7 @@ TEST_P(Rasterizer, ReportsEveryBeamOnceAndItsProgress) {
              .fields = {},
              .on_tile_done = FunctionRef<void(BeamRange)>(count),
              .progress = [&](double part) { progress = part; }});
-    for (const std::atomic<int>& times : told) EXPECT_EQ(times, 1);
+    for (const std::atomic<int>& times : report_count) EXPECT_EQ(times, 1);
     EXPECT_EQ(progress, 1.0);
   }
 }

@@ -116,12 +116,12 @@ TEST_P(RendererBatch, EveryCastHasItsOwnPosesFieldsAndCulling) {
 TEST_P(RendererBatch, ReportsTheBeamsAndProgressOfEveryCast) {
   const Beams beams = camera_beams(40, 30, 35.0);
   constexpr std::size_t kCasts = 7;
-  std::vector<std::vector<std::atomic<int>>> told;
+  std::vector<std::vector<std::atomic<int>>> report_count;
   std::vector<double> progress(kCasts, 0.0);
-  for (std::size_t i = 0; i < kCasts; ++i) told.emplace_back(beams.size());
+  for (std::size_t i = 0; i < kCasts; ++i) report_count.emplace_back(beams.size());
   const auto counter = [&](std::size_t i) {
-    return [&told, i](BeamRange range) {
-      for (std::size_t b = range.begin; b < range.end; ++b) ++told[i][b];
+    return [&report_count, i](BeamRange range) {
+      for (std::size_t b = range.begin; b < range.end; ++b) ++report_count[i][b];
     };
   };
   std::vector<decltype(counter(0))> counters;
@@ -136,7 +136,7 @@ TEST_P(RendererBatch, ReportsTheBeamsAndProgressOfEveryCast) {
   for (Hits& h : all) hits.push_back(&h);
   renderer(scene_)->cast_batch(requests_, hits);
   for (std::size_t i = 0; i < kCasts; ++i) {
-    for (const std::atomic<int>& times : told[i]) EXPECT_EQ(times, 1) << "cast " << i;
+    for (const std::atomic<int>& times : report_count[i]) EXPECT_EQ(times, 1) << "cast " << i;
     EXPECT_EQ(progress[i], 1.0) << "cast " << i;
   }
 }

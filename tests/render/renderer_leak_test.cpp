@@ -103,7 +103,7 @@ void expect_no_leak(Renderer& renderer, const Scene& scene) {
     const Aimed aimed = aim_at(renderer, scene, targets, planes, middle + 1.5 * size * from);
     all.beams += aimed.beams;
     all.leaked += aimed.leaked;
-    ASSERT_LT(eye, 1000) << "the eyes see nothing";
+    ASSERT_LT(eye, 1000) << "no target is visible";
   }
   EXPECT_EQ(all.leaked, 0U) << "of " << all.beams;
 }

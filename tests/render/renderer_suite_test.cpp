@@ -69,7 +69,7 @@ std::size_t expect_judged(const Scene& scene, const Beams& beams, const Pose& wo
 
 TEST_P(RendererSuite, EqualsBruteForceOnASphere) {
   const Scene scene = builtin_scene("sphere");
-  const Beams beams = camera_beams(61, 43, 60.0);  // odd sizes: tiles that hang over the border
+  const Beams beams = camera_beams(61, 43, 60.0);  // odd sizes: tiles beyond the border
   const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Hits hits = cast(scene, beams, pose);
   EXPECT_GT(expect_judged(scene, beams, pose, hits, border_px(GetParam())), beams.size() * 9 / 10);

@@ -12,15 +12,15 @@ Eigen::Matrix4f clip_from_object(const InstanceView& view, const PinholeIntrinsi
   const double centre_x = k.cx - k.pixel_centre + 0.5 - rect.first_col;
   const double centre_y = k.cy - k.pixel_centre + 0.5 - rect.first_row;
   const double to_depth = depths.near_m / (depths.far_m - depths.near_m);
-  const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(view);
+  const Eigen::Matrix<double, 3, 4> sensor_matrix = sensor_from_object(view);
   Eigen::Matrix4d clip;
-  clip.row(0) =
-      2.0 * k.fx / rect.cols * seen.row(0) + (2.0 * centre_x / rect.cols - 1.0) * seen.row(2);
-  clip.row(1) =
-      2.0 * k.fy / rect.rows * seen.row(1) + (2.0 * centre_y / rect.rows - 1.0) * seen.row(2);
-  clip.row(2) = -to_depth * seen.row(2);
+  clip.row(0) = 2.0 * k.fx / rect.cols * sensor_matrix.row(0) +
+                (2.0 * centre_x / rect.cols - 1.0) * sensor_matrix.row(2);
+  clip.row(1) = 2.0 * k.fy / rect.rows * sensor_matrix.row(1) +
+                (2.0 * centre_y / rect.rows - 1.0) * sensor_matrix.row(2);
+  clip.row(2) = -to_depth * sensor_matrix.row(2);
   clip(2, 3) += to_depth * depths.far_m;
-  clip.row(3) = seen.row(2);
+  clip.row(3) = sensor_matrix.row(2);
   // Some graphics devices draw nothing at 1e-30 m. A common factor of all four coordinates has no
   // other effect, and a power of two rounds nothing.
   return (std::ldexp(1.0, -std::ilogb(depths.far_m)) * clip).cast<float>();

@@ -30,9 +30,9 @@ void TriangleIdTarget::make_room(const TileSize& size) {
   glBindRenderbuffer(GL_RENDERBUFFER, depths_.name());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, signed_size(size.cols),
                         signed_size(size.rows));
-  frames_.resize(std::max<std::size_t>(frames_.size(), size.count));
+  framebuffers_.resize(std::max<std::size_t>(framebuffers_.size(), size.count));
   for (std::uint32_t i = 0; i < size.count; ++i) {
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frames_[i].name());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffers_[i].name());
     glFramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, triangle_ids_.name(), 0,
                               signed_size(i));
     glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
@@ -63,7 +63,7 @@ void TriangleIdTarget::begin(const TileSize& size) {
 void TriangleIdTarget::draw_into(std::uint32_t tile) {
   constexpr GLuint kEmptyPixel = kNoTriangleId;
   constexpr GLfloat kFarthest = 0.0F;
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frames_[tile].name());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffers_[tile].name());
   glViewport(0, 0, signed_size(size_.cols), signed_size(size_.rows));
   glClearBufferuiv(GL_COLOR, 0, &kEmptyPixel);
   glClearBufferfv(GL_DEPTH, 0, &kFarthest);
@@ -72,7 +72,7 @@ void TriangleIdTarget::draw_into(std::uint32_t tile) {
 void TriangleIdTarget::start_reading() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_.name());
   for (std::size_t i = 0; i < size_.count; ++i) {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, frames_[i].name());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers_[i].name());
     glReadPixels(0, 0, signed_size(size_.cols), signed_size(size_.rows), GL_RED_INTEGER,
                  GL_UNSIGNED_INT, std::bit_cast<void*>(sizeof(std::uint32_t) * size_.pixels() * i));
   }

@@ -45,7 +45,7 @@ class TriangleIdTarget {
 
   GlTexture triangle_ids_;
   Renderbuffer depths_;  ///< shared by all tiles
-  std::vector<Framebuffer> frames_;
+  std::vector<Framebuffer> framebuffers_;
   Buffer read_;
   GLsizeiptr read_bytes_ = 0;
   bool is_mapped_ = false;

@@ -24,13 +24,14 @@ void give(GLuint attribute, const DrawOrder& order, const std::vector<Vector>& v
 
 void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& drawn,
                          const ShadedMesh& shaded) {
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-  if (drawn.size() > static_cast<std::size_t>(most)) {
-    throw Error({.where = "opengl renderer",
-                 .found = "a mesh of " + std::to_string(drawn.size()) + " triangles",
-                 .allowed = "up to " + std::to_string(most) + " with this driver's paper target",
-                 .remedy = "leave --quantized-framebuffer out"});
+  GLint max_size = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &max_size);
+  if (drawn.size() > static_cast<std::size_t>(max_size)) {
+    throw Error(
+        {.where = "opengl renderer",
+         .found = "a mesh of " + std::to_string(drawn.size()) + " triangles",
+         .allowed = "up to " + std::to_string(max_size) + " with this driver's paper target",
+         .remedy = "leave --quantized-framebuffer out"});
   }
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   std::vector<Eigen::Vector4f> normals;

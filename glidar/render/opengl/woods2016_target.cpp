@@ -10,13 +10,13 @@
 namespace glidar::opengl {
 
 void Woods2016Target::begin(std::uint32_t rows, std::uint32_t cols) {
-  glBindFramebuffer(GL_FRAMEBUFFER, frame_.name());
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
-  if (rows > static_cast<std::uint32_t>(most) || cols > static_cast<std::uint32_t>(most)) {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  GLint max_size = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max_size);
+  if (rows > static_cast<std::uint32_t>(max_size) || cols > static_cast<std::uint32_t>(max_size)) {
     throw Error({.where = "paper target",
                  .found = std::to_string(cols) + " x " + std::to_string(rows) + " pixels",
-                 .allowed = "up to " + std::to_string(most) + " on a side with this driver",
+                 .allowed = "up to " + std::to_string(max_size) + " on a side with this driver",
                  .remedy = "leave --quantized-framebuffer out"});
   }
   if (rows_ != static_cast<GLsizei>(rows) || cols_ != static_cast<GLsizei>(cols)) {

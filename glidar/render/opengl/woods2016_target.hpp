@@ -19,7 +19,7 @@ class Woods2016Target {
   void read(std::vector<std::uint8_t>& rgba);
 
  private:
-  Framebuffer frame_;
+  Framebuffer framebuffer_;
   Renderbuffer colours_;
   Renderbuffer depths_;
   GLsizei rows_ = 0;

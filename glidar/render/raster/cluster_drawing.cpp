@@ -47,14 +47,14 @@ TileTransform tile_transform(const TileTarget& target, const PackedMesh& mesh,
   Eigen::Matrix<double, 3, 4> tile = pixel;
   tile.row(0) -= target.first_col * pixel.row(2);
   tile.row(1) -= target.first_row * pixel.row(2);
-  const Eigen::Vector3d seen =
+  const Eigen::Vector3d middle =
       tile.leftCols<3>() * boxes.middle.get(lane).cast<double>() + tile.col(3);
   TileTransform transform{};
   Eigen::Map<Eigen::Matrix3f>(transform.matrix.data()) = tile.leftCols<3>().cast<float>();
-  transform.column_at_depth = static_cast<float>(seen.x());
-  transform.row = static_cast<float>(seen.y());
-  transform.depth = static_cast<float>(seen.z());
-  transform.before_far = static_cast<float>(target.context.nearness.far_m - seen.z());
+  transform.column = static_cast<float>(middle.x());
+  transform.row = static_cast<float>(middle.y());
+  transform.depth = static_cast<float>(middle.z());
+  transform.before_far = static_cast<float>(target.context.nearness.far_m - middle.z());
   transform.factor = static_cast<float>(target.context.nearness.factor);
   transform.min_depth = min_depth(transform, boxes.half.get(lane));
   transform.last_col = static_cast<float>(target.buffer.cols() - 1);

@@ -63,10 +63,10 @@ void sort_spatially(std::span<TriangleCentroid> all) {
 }
 
 /// Sets the box of one lane and returns its middle.
-Eigen::Vector3f set_box(const Mesh& mesh, std::span<const TriangleCentroid> own, unsigned lane,
+Eigen::Vector3f set_box(const Mesh& mesh, std::span<const TriangleCentroid> members, unsigned lane,
                         BoxPacket& boxes) {
   Eigen::AlignedBox3f box;
-  for (const TriangleCentroid& centroid : own) {
+  for (const TriangleCentroid& centroid : members) {
     for (std::size_t k = 0; k < 3; ++k) box.extend(corner(mesh, centroid.triangle, k));
   }
   // Halved before the sum, which would overflow for large coordinates.
@@ -78,11 +78,12 @@ Eigen::Vector3f set_box(const Mesh& mesh, std::span<const TriangleCentroid> own,
   return middle;
 }
 
-TrianglePacket pack_triangles(const Mesh& mesh, std::span<const TriangleCentroid> own,
+TrianglePacket pack_triangles(const Mesh& mesh, std::span<const TriangleCentroid> members,
                               const Eigen::Vector3f& middle) {
   TrianglePacket packed;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
-    const std::uint32_t triangle = own[std::min<std::size_t>(lane, own.size() - 1)].triangle;
+    const std::uint32_t triangle =
+        members[std::min<std::size_t>(lane, members.size() - 1)].triangle;
     packed.primitive[lane] = triangle;
     packed.corners.c0.set(lane, corner(mesh, triangle, 0) - middle);
     packed.corners.c1.set(lane, corner(mesh, triangle, 1) - middle);
@@ -102,12 +103,12 @@ PackedMesh::PackedMesh(const Mesh& mesh, std::span<const std::uint32_t> chosen) 
   boxes.resize((clusters + kLanes - 1) / kLanes, BoxPacket{});
   for (std::size_t cluster = 0; cluster < clusters; ++cluster) {
     const std::size_t begin = cluster * kClusterTriangles;
-    const auto own = all.subspan(begin, std::min(kClusterTriangles, all.size() - begin));
+    const auto members = all.subspan(begin, std::min(kClusterTriangles, all.size() - begin));
     const Eigen::Vector3f middle =
-        set_box(mesh, own, static_cast<unsigned>(cluster % kLanes), boxes[cluster / kLanes]);
-    for (std::size_t i = 0; i < own.size(); i += kLanes) {
+        set_box(mesh, members, static_cast<unsigned>(cluster % kLanes), boxes[cluster / kLanes]);
+    for (std::size_t i = 0; i < members.size(); i += kLanes) {
       packets.push_back(pack_triangles(
-          mesh, own.subspan(i, std::min<std::size_t>(kLanes, own.size() - i)), middle));
+          mesh, members.subspan(i, std::min<std::size_t>(kLanes, members.size() - i)), middle));
     }
   }
 }

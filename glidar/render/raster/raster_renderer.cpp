@@ -130,29 +130,30 @@ class RasterRenderer final : public Renderer {
 
   void find_visible_clusters(const CastRequest& request, const GridWindow& window,
                              const raster::Nearness& nearness) {
-    constexpr std::uint32_t kClustersPerPiece = 1024;
+    constexpr std::uint32_t kClustersPerRange = 1024;
     views_.clear();
-    pieces_.clear();
+    ranges_.clear();
     for (std::uint32_t i = 0; i < scene().instances.size(); ++i) {
       views_.push_back(raster::pixel_view(base_->resolver.view(i), *request.beams.pinhole));
       const auto clusters =
           static_cast<std::uint32_t>(is_enabled(request, i) ? packed_of(i).clusters : 0);
-      for (std::uint32_t first = 0; first < clusters; first += kClustersPerPiece) {
-        pieces_.push_back({i, first, std::min(first + kClustersPerPiece, clusters)});
+      for (std::uint32_t first = 0; first < clusters; first += kClustersPerRange) {
+        ranges_.push_back({i, first, std::min(first + kClustersPerRange, clusters)});
       }
     }
-    found_.resize(std::max(found_.size(), pieces_.size()));
-    base_->thread_pool.parallel_for(pieces_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    range_clusters_.resize(std::max(range_clusters_.size(), ranges_.size()));
+    base_->thread_pool.parallel_for(ranges_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const raster::ClusterRange& piece = pieces_[i];
-        found_[i].clear();
-        raster::add_visible_clusters(views_[piece.instance], nearness, window,
-                                     packed_of(piece.instance), piece, found_[i]);
+        const raster::ClusterRange& range = ranges_[i];
+        range_clusters_[i].clear();
+        raster::add_visible_clusters(views_[range.instance], nearness, window,
+                                     packed_of(range.instance), range, range_clusters_[i]);
       }
     });
     visible_clusters_.clear();
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      visible_clusters_.insert(visible_clusters_.end(), found_[i].begin(), found_[i].end());
+    for (std::size_t i = 0; i < ranges_.size(); ++i) {
+      visible_clusters_.insert(visible_clusters_.end(), range_clusters_[i].begin(),
+                               range_clusters_[i].end());
     }
   }
 
@@ -217,12 +218,12 @@ class RasterRenderer final : public Renderer {
 
   /// Draws the clusters in a tile, nearest first, except for occluded ones.
   void draw_tile(const DrawContext& context, const raster::Tile& tile,
-                 std::span<const std::uint32_t> seen, TileScratch& scratch) const {
+                 std::span<const std::uint32_t> visible, TileScratch& scratch) const {
     const auto cols = static_cast<int>(tile.drawn.cols);
     const auto rows = static_cast<int>(tile.drawn.rows);
     scratch.buffer.clear(cols, rows, static_cast<float>(context.nearness.factor));
     scratch.order.clear();
-    for (const std::uint32_t index : seen)
+    for (const std::uint32_t index : visible)
       scratch.order.push_back(key(visible_clusters_[index], index));
     std::sort(scratch.order.begin(), scratch.order.end());
     // Clusters are scattered in memory, so visible ones are prefetched.
@@ -258,9 +259,9 @@ class RasterRenderer final : public Renderer {
   std::vector<std::uint8_t> has_alpha_mask_;  ///< per instance
   PlanePoints points_;
   std::vector<raster::PixelView> views_;  ///< per instance
-  std::vector<raster::ClusterRange> pieces_;
-  std::vector<std::vector<VisibleCluster>> found_;  ///< per range of clusters
-  std::vector<VisibleCluster> visible_clusters_;    ///< of all instances
+  std::vector<raster::ClusterRange> ranges_;
+  std::vector<std::vector<VisibleCluster>> range_clusters_;  ///< per range of clusters
+  std::vector<VisibleCluster> visible_clusters_;             ///< of all instances
   raster::TileGrid tiles_;
   WorkspacePool<TileScratch> scratch_pool_;
 };

@@ -62,22 +62,22 @@ struct Block {
     const float free = block.setup_nearness + steps.nearness[i];
     const float low = free < s.farthest ? s.farthest : free;
     const float clamped = low > s.nearest ? s.nearest : low;
-    const float before = nearness[i];
+    const float previous = nearness[i];
     const std::uint32_t triangle_id = triangle_ids[i];
     const int inside =
         static_cast<int>(b0 >= 0.0F) & static_cast<int>(b1 >= 0.0F) & static_cast<int>(b2 >= 0.0F);
     const float close = closeness(clamped, scale, s.margin);
-    const int nearer = static_cast<int>(clamped > before) |
-                       (static_cast<int>(clamped == before) &
+    const int nearer = static_cast<int>(clamped > previous) |
+                       (static_cast<int>(clamped == previous) &
                         static_cast<int>(s.triangle_id < (triangle_id & kTriangleIdMask)));
     const int rough = static_cast<int>(is_rough(clamped, scale, s.margin)) & nearer;
-    const int is_close =
-        static_cast<int>(clamped >= before - close) & static_cast<int>(clamped <= before + close);
+    const int is_close = static_cast<int>(clamped >= previous - close) &
+                         static_cast<int>(clamped <= previous + close);
     const int contested = inside & (is_close | rough);
     const int certain = static_cast<int>(b0 >= s.certain[0]) &
                         static_cast<int>(b1 >= s.certain[1]) & static_cast<int>(b2 >= s.certain[2]);
     const bool draws = (inside & nearer) != 0;
-    nearness[i] = draws ? clamped : before;
+    nearness[i] = draws ? clamped : previous;
     const std::uint32_t drawn = s.triangle_id | static_cast<std::uint32_t>(certain) << 31U;
     triangle_ids[i] = (draws ? drawn | (triangle_id & kContestedFlag) : triangle_id) |
                       static_cast<std::uint32_t>(contested) << 30U;
@@ -110,9 +110,9 @@ GLIDAR_SIMD void draw_blocks(const TriangleSetup& s, float scale, std::size_t bl
     for (int col = s.rect.left / kSide * kSide; col <= s.rect.right; col += kSide) {
       Block block{};
       if (!start_block(s, gains, col, row, block)) continue;
-      const std::size_t centroid = (first + static_cast<std::size_t>(col / kSide)) * kLanes;
-      block.nearness = nearness + centroid;
-      block.triangle_ids = triangle_ids + centroid;
+      const std::size_t offset = (first + static_cast<std::size_t>(col / kSide)) * kLanes;
+      block.nearness = nearness + offset;
+      block.triangle_ids = triangle_ids + offset;
       draw_block(s, scale, steps, block);
     }
   }
@@ -120,10 +120,9 @@ GLIDAR_SIMD void draw_blocks(const TriangleSetup& s, float scale, std::size_t bl
 
 /// The minimum of a block's 16 values.
 [[gnu::always_inline]] inline float min_of(const float* values) {
-  float min_of_three = values[0];
-  for (unsigned i = 1; i < kLanes; ++i)
-    min_of_three = values[i] < min_of_three ? values[i] : min_of_three;
-  return min_of_three;
+  float minimum = values[0];
+  for (unsigned i = 1; i < kLanes; ++i) minimum = values[i] < minimum ? values[i] : minimum;
+  return minimum;
 }
 
 }  // namespace
@@ -139,7 +138,7 @@ void TileBuffer::clear(int cols, int rows, float scale) {
   std::fill_n(triangle_ids_.begin(), used, kNoTriangleId);
   for (int row = 0; !is_whole && row < rows; ++row) {
     for (int col = 0; col < cols; col += kBlockWidth) {
-      std::fill_n(&nearness_[centroid(col, row)], std::min(kBlockWidth, cols - col),
+      std::fill_n(&nearness_[index_of(col, row)], std::min(kBlockWidth, cols - col),
                   kEmptyNearness);
     }
   }
@@ -148,8 +147,8 @@ void TileBuffer::clear(int cols, int rows, float scale) {
 }
 
 float TileBuffer::min_nearness_of(int cell_col, int cell_row) const {
-  const float* first = &nearness_[centroid(cell_col * kCell, cell_row * kCell)];
-  const float* below = &nearness_[centroid(cell_col * kCell, cell_row * kCell + kCell / 2)];
+  const float* first = &nearness_[index_of(cell_col * kCell, cell_row * kCell)];
+  const float* below = &nearness_[index_of(cell_col * kCell, cell_row * kCell + kCell / 2)];
   return std::min({min_of(first), min_of(first + kLanes), min_of(below), min_of(below + kLanes)});
 }
 
@@ -178,7 +177,7 @@ bool TileBuffer::is_occluded(const PixelBounds& rect, float max_nearness) {
 bool TileBuffer::are_pixels_occluded(const PixelBounds& rect, float nearness) const {
   for (int row = rect.top; row <= rect.bottom; ++row) {
     for (int col = rect.left; col <= rect.right; ++col) {
-      if (!(nearness_[centroid(col, row)] > nearness)) return false;
+      if (!(nearness_[index_of(col, row)] > nearness)) return false;
     }
   }
   return true;
@@ -202,7 +201,7 @@ void TileBuffer::copy_triangle_ids(std::vector<std::uint32_t>& triangle_ids) con
   for (int row = 0; row < rows_; ++row) {
     for (int col = 0; col < cols_; col += kBlockWidth) {
       const int count = std::min(kBlockWidth, cols_ - col);
-      to = std::copy_n(&triangle_ids_[centroid(col, row)], count, to);
+      to = std::copy_n(&triangle_ids_[index_of(col, row)], count, to);
     }
   }
 }

@@ -73,17 +73,18 @@ class TileBuffer {
   /// Draws one pixel if it passes the depth test. The id may have kCertainFlag set; `margin`: see
   /// TriangleSetup.
   void depth_test(int col, int row, float nearness, float margin, std::uint32_t triangle_id) {
-    const std::size_t at = centroid(col, row);
-    const float before = nearness_[at];
+    const std::size_t at = index_of(col, row);
+    const float previous = nearness_[at];
     const float close = closeness(nearness, scale_, margin);
-    if (nearness < before - close) return;
+    if (nearness < previous - close) return;
     const std::uint32_t old = triangle_ids_[at];
-    const bool draws = nearness > before || (nearness == before && (triangle_id & kTriangleIdMask) <
-                                                                       (old & kTriangleIdMask));
+    const bool draws =
+        nearness > previous ||
+        (nearness == previous && (triangle_id & kTriangleIdMask) < (old & kTriangleIdMask));
     const bool is_contested =
-        nearness <= before + close || (draws && is_rough(nearness, scale_, margin));
+        nearness <= previous + close || (draws && is_rough(nearness, scale_, margin));
     const std::uint32_t contested = (old & kContestedFlag) | (is_contested ? kContestedFlag : 0);
-    nearness_[at] = draws ? nearness : before;
+    nearness_[at] = draws ? nearness : previous;
     triangle_ids_[at] = (draws ? triangle_id : old) | contested;
   }
 
@@ -100,7 +101,7 @@ class TileBuffer {
   static constexpr int kCells = kSide / kCell;            ///< in a row of cells
   static constexpr std::size_t kPixels = std::size_t{kSide} * kSide;
 
-  static std::size_t centroid(int col, int row) {
+  static std::size_t index_of(int col, int row) {
     const auto c = static_cast<std::size_t>(col);
     const auto r = static_cast<std::size_t>(row);
     const std::size_t block = r / kBlock * kBlocks + c / kBlock;

@@ -61,19 +61,19 @@ Tile TileGrid::tile(std::size_t index) const {
 /// Calls body(tile) for the tiles whose drawn pixels overlap the cluster.
 template <class Body>
 void TileGrid::for_tiles_of(const VisibleCluster& cluster, const Body& body) const {
-  const auto centroid = [](std::int64_t pixel, std::uint32_t first, std::uint32_t side,
-                           std::uint32_t count) {
+  const auto tile_index = [](std::int64_t pixel, std::uint32_t first, std::uint32_t side,
+                             std::uint32_t count) {
     const std::int64_t at = std::max<std::int64_t>(pixel - first, 0) / side;
     return static_cast<std::uint32_t>(std::min<std::int64_t>(at, count - 1));
   };
   const std::uint32_t first_col =
-      centroid(std::int64_t{cluster.left} - 1, window_.first_col, width_, across_);
+      tile_index(std::int64_t{cluster.left} - 1, window_.first_col, width_, across_);
   const std::uint32_t last_col =
-      centroid(std::int64_t{cluster.right} + 1, window_.first_col, width_, across_);
+      tile_index(std::int64_t{cluster.right} + 1, window_.first_col, width_, across_);
   const std::uint32_t first_row =
-      centroid(std::int64_t{cluster.top} - 1, window_.first_row, height_, down_);
+      tile_index(std::int64_t{cluster.top} - 1, window_.first_row, height_, down_);
   const std::uint32_t last_row =
-      centroid(std::int64_t{cluster.bottom} + 1, window_.first_row, height_, down_);
+      tile_index(std::int64_t{cluster.bottom} + 1, window_.first_row, height_, down_);
   for (std::uint32_t row = first_row; row <= last_row; ++row) {
     for (std::uint32_t col = first_col; col <= last_col; ++col) {
       body(std::size_t{row} * across_ + col);
@@ -87,9 +87,9 @@ void TileGrid::bin_clusters(std::span<const VisibleCluster> clusters) {
     for_tiles_of(cluster, [&](std::size_t tile) { ++first_[tile + 2]; });
   }
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  seen_.resize(first_.back());
+  cluster_indices_.resize(first_.back());
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
-    for_tiles_of(clusters[i], [&](std::size_t tile) { seen_[first_[tile + 1]++] = i; });
+    for_tiles_of(clusters[i], [&](std::size_t tile) { cluster_indices_[first_[tile + 1]++] = i; });
   }
   first_.pop_back();
 }

@@ -35,7 +35,7 @@ class TileGrid {
 
   /// Indices of the clusters in the tile.
   [[nodiscard]] std::span<const std::uint32_t> clusters_in(std::size_t index) const {
-    return {seen_.data() + first_[index], first_[index + 1] - first_[index]};
+    return {cluster_indices_.data() + first_[index], first_[index + 1] - first_[index]};
   }
 
  private:
@@ -49,8 +49,8 @@ class TileGrid {
   std::uint32_t height_ = 1;
   std::uint32_t across_ = 0;  ///< tiles
   std::uint32_t down_ = 0;
-  std::vector<std::size_t> first_;   ///< per tile and one more, into seen_
-  std::vector<std::uint32_t> seen_;  ///< clusters, tile by tile
+  std::vector<std::size_t> first_;              ///< per tile and one more, into cluster_indices_
+  std::vector<std::uint32_t> cluster_indices_;  ///< clusters, tile by tile
 };
 
 }  // namespace glidar::raster

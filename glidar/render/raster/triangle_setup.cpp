@@ -38,7 +38,7 @@ struct CornerProjection {
     const float deeper = m[2] * x + m[5] * y + m[8] * z;
     const float depth = transform.depth + deeper;
     const float inverse = 1.0F / depth;
-    projection.col[i] = (transform.column_at_depth + (m[0] * x + m[3] * y + m[6] * z)) * inverse;
+    projection.col[i] = (transform.column + (m[0] * x + m[3] * y + m[6] * z)) * inverse;
     projection.row[i] = (transform.row + (m[1] * x + m[4] * y + m[7] * z)) * inverse;
     projection.nearness[i] = (transform.before_far - deeper) * transform.factor * inverse;
     projection.depth[i] = depth;
@@ -48,11 +48,11 @@ struct CornerProjection {
 [[gnu::always_inline]] inline float size_of(float value) {
   return value < 0.0F ? -value : value;
 }
-[[gnu::always_inline]] inline float min_of_three(float a, float b, float c) {
+[[gnu::always_inline]] inline float min3(float a, float b, float c) {
   const float ab = a < b ? a : b;
   return ab < c ? ab : c;
 }
-[[gnu::always_inline]] inline float max_of(float a, float b, float c) {
+[[gnu::always_inline]] inline float max3(float a, float b, float c) {
   const float ab = a > b ? a : b;
   return ab > c ? ab : c;
 }
@@ -70,9 +70,9 @@ struct CornerProjection {
 }
 
 [[gnu::always_inline]] inline std::int32_t largest(const Lanes<std::int32_t>& values) {
-  std::int32_t max_of = values[0];
-  for (unsigned i = 0; i < kLanes; ++i) max_of = values[i] > max_of ? values[i] : max_of;
-  return max_of;
+  std::int32_t maximum = values[0];
+  for (unsigned i = 0; i < kLanes; ++i) maximum = values[i] > maximum ? values[i] : maximum;
+  return maximum;
 }
 
 /// Finds pixel bounds and size classes.
@@ -80,15 +80,12 @@ struct CornerProjection {
                                          const std::array<CornerProjection, 3>& projections,
                                          TriangleSetups& f) {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const float left =
-        min_of_three(projections[0].col[i], projections[1].col[i], projections[2].col[i]);
-    const float right = max_of(projections[0].col[i], projections[1].col[i], projections[2].col[i]);
-    const float top =
-        min_of_three(projections[0].row[i], projections[1].row[i], projections[2].row[i]);
-    const float bottom =
-        max_of(projections[0].row[i], projections[1].row[i], projections[2].row[i]);
+    const float left = min3(projections[0].col[i], projections[1].col[i], projections[2].col[i]);
+    const float right = max3(projections[0].col[i], projections[1].col[i], projections[2].col[i]);
+    const float top = min3(projections[0].row[i], projections[1].row[i], projections[2].row[i]);
+    const float bottom = max3(projections[0].row[i], projections[1].row[i], projections[2].row[i]);
     const float depth =
-        min_of_three(projections[0].depth[i], projections[1].depth[i], projections[2].depth[i]);
+        min3(projections[0].depth[i], projections[1].depth[i], projections[2].depth[i]);
     f.left[i] = rounded_up(clamped(left - kEdgeMargin_px, 0.0F, transform.last_col + 1.0F));
     f.right[i] = rounded_down(clamped(right + kEdgeMargin_px, -1.0F, transform.last_col));
     f.top[i] = rounded_up(clamped(top - kEdgeMargin_px, 0.0F, transform.last_row + 1.0F));
@@ -145,8 +142,8 @@ struct CornerProjection {
     f.nearness_per_row[i] = (near_2 * col_1 - near_1 * col_2) * inverse;
     f.nearness_at_corner[i] = near + f.nearness_per_col[i] * (static_cast<float>(f.left[i]) - col) +
                               f.nearness_per_row[i] * (static_cast<float>(f.top[i]) - row);
-    f.farthest[i] = min_of_three(near, projections[1].nearness[i], projections[2].nearness[i]);
-    f.nearest[i] = max_of(near, projections[1].nearness[i], projections[2].nearness[i]);
+    f.farthest[i] = min3(near, projections[1].nearness[i], projections[2].nearness[i]);
+    f.nearest[i] = max3(near, projections[1].nearness[i], projections[2].nearness[i]);
     // Sizes of the terms of the area and of the gradient: cancellation amplifies their rounding.
     const float area_terms = size_of(col_1 * row_2) + size_of(col_2 * row_1);
     const float across = size_of(near_1 * row_2) + size_of(near_2 * row_1);
@@ -186,7 +183,7 @@ struct SmallRects {
     const float b2 = f.at_corner[2][i] + f.per_col[2][i] * across + f.per_row[2][i] * down;
     const int is_in_rect =
         static_cast<int>(col < rects.cols[i]) & static_cast<int>(row < rects.rows[i]);
-    const int is_inside = static_cast<int>(min_of_three(b0, b1, b2) >= 0.0F) & is_in_rect;
+    const int is_inside = static_cast<int>(min3(b0, b1, b2) >= 0.0F) & is_in_rect;
     const int is_certain = static_cast<int>(b0 >= f.certain[0][i]) &
                            static_cast<int>(b1 >= f.certain[1][i]) &
                            static_cast<int>(b2 >= f.certain[2][i]);
@@ -276,13 +273,13 @@ PixelBounds around(const Eigen::Matrix3d& corners, const PixelBounds& tile) {
   if (!(corners.row(2).minCoeff() > 0.0)) return tile;
   const Eigen::Array3d cols = corners.row(0).array() / corners.row(2).array();
   const Eigen::Array3d rows = corners.row(1).array() / corners.row(2).array();
-  const auto first = [](double low, int min_of_three, int max_of) {
+  const auto first = [](double low, int min_value, int max_value) {
     return static_cast<int>(
-        std::ceil(std::clamp(low - kRectMargin_px, double(min_of_three), double(max_of))));
+        std::ceil(std::clamp(low - kRectMargin_px, double(min_value), double(max_value))));
   };
-  const auto last = [](double high, int min_of_three, int max_of) {
+  const auto last = [](double high, int min_value, int max_value) {
     return static_cast<int>(
-        std::floor(std::clamp(high + kRectMargin_px, double(min_of_three), double(max_of))));
+        std::floor(std::clamp(high + kRectMargin_px, double(min_value), double(max_value))));
   };
   return {.left = first(cols.minCoeff(), tile.left, tile.right + 1),
           .right = last(cols.maxCoeff(), tile.left - 1, tile.right),

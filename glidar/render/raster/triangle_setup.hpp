@@ -15,12 +15,12 @@ namespace glidar::raster {
 /// Projects the corners of one cluster into one tile in single precision. Corners are relative to
 /// the cluster's middle and pixels to the tile, so no large numbers occur.
 struct TileTransform {
-  std::array<float, 9> matrix;        ///< column by column: to (column, row, 1) times depth
-  float column_at_depth, row, depth;  ///< of the middle, the first two times its depth
-  float before_far;                   ///< from the middle to the far plane, m
-  float factor;                       ///< Nearness::factor
-  float min_depth;                    ///< of corners in single precision
-  float last_col, last_row;           ///< of the tile
+  std::array<float, 9> matrix;  ///< column by column: to (column, row, 1) times depth
+  float column, row, depth;     ///< of the middle, the first two times its depth
+  float before_far;             ///< from the middle to the far plane, m
+  float factor;                 ///< Nearness::factor
+  float min_depth;              ///< of corners in single precision
+  float last_col, last_row;     ///< of the tile
   bool cull_back_faces;
 };
 

@@ -89,11 +89,13 @@ struct Span {
 }  // namespace
 
 PixelView pixel_view(const InstanceView& view, const PinholeIntrinsics& k) {
-  const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(view);
-  PixelView result{.pixel_from_object = seen};
+  const Eigen::Matrix<double, 3, 4> sensor_matrix = sensor_from_object(view);
+  PixelView result{.pixel_from_object = sensor_matrix};
   // Beams have integer pixel coordinates.
-  result.pixel_from_object.row(0) = k.fx * seen.row(0) + (k.cx - k.pixel_centre) * seen.row(2);
-  result.pixel_from_object.row(1) = k.fy * seen.row(1) + (k.cy - k.pixel_centre) * seen.row(2);
+  result.pixel_from_object.row(0) =
+      k.fx * sensor_matrix.row(0) + (k.cx - k.pixel_centre) * sensor_matrix.row(2);
+  result.pixel_from_object.row(1) =
+      k.fy * sensor_matrix.row(1) + (k.cy - k.pixel_centre) * sensor_matrix.row(2);
   return result;
 }
 
@@ -146,8 +148,8 @@ bool is_outside(const PixelView& view, const BoxPacket& boxes, unsigned lane,
   // Linear, and not negative where visible, so some point of the box must reach 0.
   const auto is_beyond = [&](const Row& inside) {
     const double size = inside.head<3>().cwiseAbs().dot(half);
-    const double max_of = inside.head<3>().dot(middle) + inside[3] + size;
-    return max_of < -kBoundMargin * (size + std::abs(inside[3]));
+    const double max_value = inside.head<3>().dot(middle) + inside[3] + size;
+    return max_value < -kBoundMargin * (size + std::abs(inside[3]));
   };
   return is_beyond(pixel.row(0) - (pixels.left - kPixelMargin_px) * pixel.row(2)) ||
          is_beyond((pixels.right + kPixelMargin_px) * pixel.row(2) - pixel.row(0)) ||

@@ -52,23 +52,23 @@ void BoxTree::find_slots(std::size_t count) {
 }
 
 void BoxTree::move(const BoxReference& box) {
-  ChildSlot place = slot_of_box_[box.index];
+  ChildSlot slot = slot_of_box_[box.index];
   const float* low = box.low;
   const float* high = box.high;
   SplitNode around{};
   for (;;) {
-    TreeNode& node = nodes_[place.node];
+    TreeNode& node = nodes_[slot.node];
     area_ -= half_area(box_around(node));
     for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][place.child] = low[axis];
-      node.high[axis][place.child] = high[axis];
+      node.low[axis][slot.child] = low[axis];
+      node.high[axis][slot.child] = high[axis];
     }
     around = box_around(node);
     area_ += half_area(around);
-    if (place.node == 0) break;
+    if (slot.node == 0) break;
     low = around.low;
     high = around.high;
-    place = slot_of_node_[place.node];
+    slot = slot_of_node_[slot.node];
   }
   sphere_ = sphere_of(around);
 }

@@ -27,15 +27,8 @@ struct Job {
   Hits& hits;
 };
 
-/// Workspace of one tile.
-struct TileWork {
-  HitBlock block;
-  BeamBlock beams;
-  ExactHits exact;
-};
-
 /// Collects the beams of a tile that is completely in a pinhole's grid.
-void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, TileWork& work) {
+void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, HitBatch& batch) {
   const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
   Lanes<double> x;
   Lanes<double> y;
@@ -45,30 +38,30 @@ void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, TileWork&
     const std::uint32_t col = lane & column_mask;
     x[lane] = points.x[tile.first_col + col];
     y[lane] = points.y[tile.first_row + row];
-    work.block.beam[lane] = first + std::size_t{row} * tile.cols + col;
+    batch.block.beam[lane] = first + std::size_t{row} * tile.cols + col;
   }
-  work.block.mask = (1U << kLanes) - 1U;
-  directions_through(x, y, work.beams.direction);
+  batch.block.mask = (1U << kLanes) - 1U;
+  directions_through(x, y, batch.beams.direction);
 }
 
 /// Collects the tile's beams; lanes beyond the grid's border repeat the first, outside of the mask.
-void gather_beams(const Beams& beams, const rays::Tile& tile, TileWork& work) {
+void gather_beams(const Beams& beams, const rays::Tile& tile, HitBatch& batch) {
   const bool whole = tile.is_whole(kLanes);
   const std::size_t first = tile.beam(0);
   const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
-  work.block.mask = 0;
+  batch.block.mask = 0;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
     const std::size_t beam =
         first + std::size_t{lane >> tile.width_shift} * tile.cols + (lane & column_mask);
     const bool inside = whole || tile.beam(lane) != rays::Tile::kOutside;
-    work.block.mask |= static_cast<std::uint32_t>(inside) << lane;
-    work.block.beam[lane] = inside ? beam : first;
-    work.beams.direction.set(lane, beams.directions[work.block.beam[lane]]);
+    batch.block.mask |= static_cast<std::uint32_t>(inside) << lane;
+    batch.block.beam[lane] = inside ? beam : first;
+    batch.beams.direction.set(lane, beams.directions[batch.block.beam[lane]]);
   }
-  work.beams.has_origins = !beams.origins_m.empty();
-  if (!work.beams.has_origins) return;
+  batch.beams.has_origins = !beams.origins_m.empty();
+  if (!batch.beams.has_origins) return;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
-    work.beams.origin_m.set(lane, beams.origins_m[work.block.beam[lane]]);
+    batch.beams.origin_m.set(lane, beams.origins_m[batch.block.beam[lane]]);
   }
 }
 
@@ -82,45 +75,40 @@ void prefetch(const Beams& beams, const rays::Tile& tile) {
   }
 }
 
-/// Writes the hits of a traced tile over the misses written before.
-void finish(const Job& job, TileWork& work) {
-  if (work.block.mask == 0) return;
-  job.resolver.intersect(work.beams, work.block, work.exact);
-  job.resolver.write(job.beams, job.fields, work.block, work.exact, job.hits);
-}
-
 /// Collects and traces the beams of tile i.
 void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_t end,
-           TileWork& work) {
+           HitBatch& batch) {
   const rays::Tile tile = tiling.tile(i);
   if (!job.window.meets(tile.window(kLanes))) {
-    work.block.mask = 0;
+    batch.block.mask = 0;
     return;
   }
   if (!job.points.x.empty() && tile.is_whole(kLanes)) {
-    gather_pinhole(job.points, tile, work);
+    gather_pinhole(job.points, tile, batch);
   } else {
-    gather_beams(job.beams, tile, work);
+    gather_beams(job.beams, tile, batch);
     if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
   }
-  job.search.find(work.beams, work.block);
-  for_lanes(work.block.mask,
-            [&](unsigned lane) { job.resolver.prefetch(work.block, lane, job.with_corners); });
+  job.search.find(batch.beams, batch.block);
+  for_lanes(batch.block.mask,
+            [&](unsigned lane) { job.resolver.prefetch(batch.block, lane, job.with_corners); });
 }
 
 /// Casts tiles [begin, end). Three are in progress at a time: data that later steps of one need
 /// (planes and corners of its triangles) are prefetched while the next is traced.
 void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, std::size_t end) {
-  std::array<TileWork, 3> ring;
+  std::array<HitBatch, 3> batches;
   tiling.for_beam_rows(begin, end, [&](BeamRange row) {
     write_misses(job.fields, row.begin, row.end - row.begin, job.hits);
   });
   for (std::size_t i = begin; i < end + 2; ++i) {
-    if (i < end) start(job, tiling, i, end, ring[i % ring.size()]);
+    if (i < end) start(job, tiling, i, end, batches[i % batches.size()]);
     if (i >= begin + 1 && i - 1 < end) {
-      job.resolver.prefetch_corners(ring[(i - 1) % ring.size()].block, job.fields);
+      job.resolver.prefetch_corners(batches[(i - 1) % batches.size()].block, job.fields);
     }
-    if (i >= begin + 2) finish(job, ring[(i - 2) % ring.size()]);
+    if (i < begin + 2) continue;
+    // Hits are written over the misses.
+    job.resolver.write_batch(job.beams, job.fields, batches[(i - 2) % batches.size()], job.hits);
   }
 }
 

@@ -109,14 +109,14 @@ BoxReference SceneTrees::reference_of(std::uint32_t instance) const {
   const double scale = scene_.instances[instance].scale;
   const Eigen::Vector3d& mesh_origin = scene_.meshes[scene_.instances[instance].mesh].origin_m;
   const Eigen::AlignedBox3d box = box_of(of_instance(instance));
-  const Eigen::Matrix3d turn = tree_from_world_ * poses_[instance].linear();
+  const Eigen::Matrix3d rotation = tree_from_world_ * poses_[instance].linear();
   const Eigen::Vector3d shift = poses_[instance].translation() - origin_m_;
   const Eigen::Vector3d in_object = scale * (mesh_origin + box.center());
-  const Eigen::Vector3d middle = tree_from_world_ * shift + turn * in_object;
+  const Eigen::Vector3d middle = tree_from_world_ * shift + rotation * in_object;
   const double size = poses_[instance].translation().norm() + origin_m_.norm() +
                       scale * (mesh_origin.norm() + mesh_reach_[scene_.instances[instance].mesh]);
   const Eigen::Vector3d half =
-      (turn.cwiseAbs() * (0.5 * scale * box.sizes())).array() + kMargin * size;
+      (rotation.cwiseAbs() * (0.5 * scale * box.sizes())).array() + kMargin * size;
   BoxReference reference{};
   for (int axis = 0; axis < 3; ++axis) {
     reference.low[axis] = next_below(middle[axis] - half[axis]);

@@ -74,9 +74,9 @@ class Candidates {
 
   [[nodiscard]] ObjectRay ray_in_tree() const {
     const Beams& beams = cast_.request.beams;
-    const Eigen::Matrix3d& turn = cast_.trees.tree_from_sensor();
-    ObjectRay ray{cast_.trees.sensor_in_tree(), turn * beams.directions[beam_]};
-    if (!beams.origins_m.empty()) ray.origin += turn * beams.origins_m[beam_];
+    const Eigen::Matrix3d& rotation = cast_.trees.tree_from_sensor();
+    ObjectRay ray{cast_.trees.sensor_in_tree(), rotation * beams.directions[beam_]};
+    if (!beams.origins_m.empty()) ray.origin += rotation * beams.origins_m[beam_];
     return ray;
   }
 

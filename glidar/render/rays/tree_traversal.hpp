@@ -39,9 +39,9 @@ struct Stack {
 
   explicit Stack(std::int32_t root) { put(size++, 0.0F, visit_of(root, kNoBox)); }
 
-  GLIDAR_INLINE void put(unsigned place, float entry, Visit what) {
-    near[place] = entry;
-    visit[place] = what;
+  GLIDAR_INLINE void put(unsigned slot, float entry, Visit what) {
+    near[slot] = entry;
+    visit[slot] = what;
   }
 
   /// Adds the children of a node whose bits are set, the nearest on top.
@@ -53,11 +53,11 @@ struct Stack {
       if (child == kNoChild) return;
       prefetch(tree, child);
       const float entry = entries[i] * kEntryMargin;
-      unsigned place = size++;
-      for (; place > bottom && near[place - 1] < entry; --place) {
-        put(place, near[place - 1], visit[place - 1]);
+      unsigned slot = size++;
+      for (; slot > bottom && near[slot - 1] < entry; --slot) {
+        put(slot, near[slot - 1], visit[slot - 1]);
       }
-      put(place, entry, visit_of(child, 8 * node + i));
+      put(slot, entry, visit_of(child, 8 * node + i));
     });
   }
 
@@ -176,10 +176,10 @@ struct RayInterval {
     constexpr float kMargin = 0x1p-21F;
     sign[axis] = low > 0.0F ? Sign::positive : high < 0.0F ? Sign::negative : Sign::mixed;
     if (sign[axis] == Sign::mixed) return;
-    const float least_size = low > 0.0F ? low : -high;
-    const float largest_size = low > 0.0F ? high : -low;
-    inverse_low[axis] = Float8::all((1.0F - kMargin) / largest_size);
-    inverse_high[axis] = Float8::all((1.0F + kMargin) / least_size);
+    const float min_size = low > 0.0F ? low : -high;
+    const float max_size = low > 0.0F ? high : -low;
+    inverse_low[axis] = Float8::all((1.0F - kMargin) / max_size);
+    inverse_high[axis] = Float8::all((1.0F + kMargin) / min_size);
   }
 
   /// Bits of the children that some ray may enter before `end`, and bounds of where.

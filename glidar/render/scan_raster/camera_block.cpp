@@ -57,10 +57,10 @@ class Bounds {
   explicit Bounds(const ProjectiveMap& map) : map_(map) {}
 
   void take(const PlacedBeam& beam) {
-    const Eigen::Vector3d seen = map_.frame.slopes_from_sensor * beam.direction;
-    const double side = seen.y() / seen.x();
-    const double up = seen.z() / seen.x();
-    forward_.extend(seen.x());
+    const Eigen::Vector3d point = map_.frame.slopes_from_sensor * beam.direction;
+    const double side = point.y() / point.x();
+    const double up = point.z() / point.x();
+    forward_.extend(point.x());
     side_.extend(side);
     up_.extend(up);
     column_offsets_.extend(side * map_.columns_per_slope + map_.middle_column - beam.column);

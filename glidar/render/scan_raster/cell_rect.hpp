@@ -101,7 +101,7 @@ GLIDAR_INLINE Float8 high_cosine(Float8 x) {
 /// Columns of equal azimuth and rows of equal elevation.
 struct AngleCells {
   /// Slopes are in the sector's own frame.
-  static constexpr bool kIsTurned = true;
+  static constexpr bool kUsesRotation = true;
 
   /// Finds cells from slopes. Returns a bit for each object that the sector may see.
   GLIDAR_INLINE static std::uint32_t find(const GridView& grid, const Slopes& s, CellRects& rects) {
@@ -143,7 +143,7 @@ struct AngleCells {
 
 /// Columns and rows of equal slopes.
 struct SlopeCells {
-  static constexpr bool kIsTurned = false;
+  static constexpr bool kUsesRotation = false;
 
   /// As AngleCells::find().
   GLIDAR_INLINE static std::uint32_t find(const GridView& grid, const Slopes& s, CellRects& rects) {

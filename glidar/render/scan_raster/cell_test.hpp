@@ -17,7 +17,7 @@ struct DrawContext {
   const SectorView& sector;
   const Placement& placement;
   const SectorBuffer& buffer;
-  FrameTransform turn;
+  FrameTransform rotation;
   FrameTransform slopes;  ///< into the frame of slopes
 
   GLIDAR_INLINE DrawContext(const GridView& g, const SectorView& s, const Placement& p,
@@ -26,14 +26,14 @@ struct DrawContext {
         sector(s),
         placement(p),
         buffer(c),
-        turn(p.sector_from_object),
+        rotation(p.sector_from_object),
         slopes(p.slopes_from_object) {}
 };
 
 /// The transform into the frame of these cells' slopes.
 template <class Cells>
 GLIDAR_INLINE const FrameTransform& slopes_frame(const DrawContext& context) {
-  return Cells::kIsTurned ? context.turn : context.slopes;
+  return Cells::kUsesRotation ? context.rotation : context.slopes;
 }
 
 /// Bounds of edge functions and of den, for vectors that were transformed into the sector's frame:

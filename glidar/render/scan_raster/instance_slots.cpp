@@ -92,13 +92,13 @@ PrimitiveRef InstanceSlots::decode(std::uint32_t number) const {
 Placement make_placement(const rays::SceneTrees& trees, const InstanceView& view,
                          std::uint32_t instance, const SectorTable& sector) {
   const rays::MeshTree& tree = trees.of_instance(instance);
-  const Eigen::Matrix3d& turn = view.object_from_sensor;
-  const Eigen::Vector3d origin = view.sensor_in_object + turn * sector.origin_m() / view.scale;
+  const Eigen::Matrix3d& rotation = view.object_from_sensor;
+  const Eigen::Vector3d origin = view.sensor_in_object + rotation * sector.origin_m() / view.scale;
   const SectorFrame& frame = sector.frame();
   const Eigen::Matrix3f sector_from_object =
-      (frame.sector_from_sensor * turn.transpose()).cast<float>();
+      (frame.sector_from_sensor * rotation.transpose()).cast<float>();
   const Eigen::Matrix3f slopes_from_object =
-      (frame.slopes_from_sensor * turn.transpose()).cast<float>();
+      (frame.slopes_from_sensor * rotation.transpose()).cast<float>();
   Placement p{};
   p.tree = tree.view();
   for (int axis = 0; axis < 3; ++axis) {

@@ -42,10 +42,10 @@ struct ProjectedBlock {
   Vector<Float8> e1;
   Vector<Float8> e2;
 
-  GLIDAR_INLINE ProjectedBlock(const FrameTransform& turn, const Vector<Float8>& a,
+  GLIDAR_INLINE ProjectedBlock(const FrameTransform& transform, const Vector<Float8>& a,
                                const Corners<Float8>& corners)
-      : e1(turn(corners.e1)), e2(turn(corners.e2)) {
-    corner[0] = turn(a);
+      : e1(transform(corners.e1)), e2(transform(corners.e2)) {
+    corner[0] = transform(a);
     corner[1] = sum(corner[0], e1);
     corner[2] = sum(corner[0], e2);
   }
@@ -65,7 +65,7 @@ struct ProjectedBlock {
 
 /// Bits of the triangles that are beside, above or below the sector. For triangles with a corner
 /// that is not in front.
-GLIDAR_INLINE std::uint32_t find_outside(const GridView& grid, const ProjectedBlock& seen,
+GLIDAR_INLINE std::uint32_t find_outside(const GridView& grid, const ProjectedBlock& projected,
                                          const LeafOrigin& origin) {
   using V = Vector<Float8>;
   const Float8 side = Float8::all(grid.max_slope);
@@ -76,29 +76,29 @@ GLIDAR_INLINE std::uint32_t find_outside(const GridView& grid, const ProjectedBl
     return Float8::all(foot + size * origin.foot[0] + (1.0F + size) * origin.behind);
   };
   const Float8 side_margin = margin_at(origin.foot[1], grid.max_slope);
-  return bits((seen.lowest([&](const V& p) { return p.y - side * p.x; }) > side_margin) |
-              (seen.highest([&](const V& p) { return p.y + side * p.x; }) < -side_margin) |
-              (seen.lowest([&](const V& p) { return p.z - high * p.x; }) >
+  return bits((projected.lowest([&](const V& p) { return p.y - side * p.x; }) > side_margin) |
+              (projected.highest([&](const V& p) { return p.y + side * p.x; }) < -side_margin) |
+              (projected.lowest([&](const V& p) { return p.z - high * p.x; }) >
                margin_at(origin.foot[2], grid.highest_slope)) |
-              (seen.highest([&](const V& p) { return p.z - low * p.x; }) <
+              (projected.highest([&](const V& p) { return p.z - low * p.x; }) <
                -margin_at(origin.foot[2], grid.lowest_slope)));
 }
 
 /// The slopes of triangles whose corners are all in front by twice the foot's depth. A corner seen
 /// from h beside the origin has another slope s, by at most (h_side + |s| h_forward) / (z - h).
-GLIDAR_INLINE Slopes slopes_of(const ProjectedBlock& seen, const LeafOrigin& origin,
+GLIDAR_INLINE Slopes slopes_of(const ProjectedBlock& projected, const LeafOrigin& origin,
                                Float8 forward) {
   const Float8 one = Float8::all(1.0F);
-  const Float8 least_forward = Float8::all(2.0F * origin.foot[0]);
+  const Float8 min_forward = Float8::all(2.0F * origin.foot[0]);
   Float8 side[3];
   Float8 up[3];
   for (unsigned k = 0; k < 3; ++k) {
-    const Float8 inverse = one / max(seen.corner[k].x, least_forward);
-    side[k] = seen.corner[k].y * inverse;
-    up[k] = seen.corner[k].z * inverse;
+    const Float8 inverse = one / max(projected.corner[k].x, min_forward);
+    side[k] = projected.corner[k].y * inverse;
+    up[k] = projected.corner[k].z * inverse;
   }
-  const Float8 inverse = one / max(forward, least_forward);
-  const Float8 nearness = inverse * multiply_add(inverse, least_forward, one);
+  const Float8 inverse = one / max(forward, min_forward);
+  const Float8 nearness = inverse * multiply_add(inverse, min_forward, one);
   const auto low = [](const Float8(&s)[3]) { return min(min(s[0], s[1]), s[2]); };
   const auto high = [](const Float8(&s)[3]) { return max(max(s[0], s[1]), s[2]); };
   Slopes slopes = {low(side), high(side), low(up), high(up)};
@@ -121,21 +121,21 @@ struct BlockCells {
   CellRects rects;
 
   template <class Cells>
-  GLIDAR_INLINE static BlockCells find(const DrawContext& context, const ProjectedBlock& seen,
+  GLIDAR_INLINE static BlockCells find(const DrawContext& context, const ProjectedBlock& projected,
                                        const LeafOrigin& origin, std::uint32_t existing) {
     BlockCells cells;
     const auto forward = [](const Vector<Float8>& p) { return p.x; };
-    const Float8 nearest = seen.lowest(forward);
-    const std::uint32_t behind = bits(seen.highest(forward) < Float8::all(-origin.behind));
+    const Float8 nearest = projected.lowest(forward);
+    const std::uint32_t behind = bits(projected.highest(forward) < Float8::all(-origin.behind));
     cells.left = existing & ~behind;
     cells.around = bits(nearest < Float8::all(2.0F * origin.foot[0])) & cells.left;
     if (cells.around != 0) {
-      const std::uint32_t beside = find_outside(context.grid, seen, origin) & cells.around;
+      const std::uint32_t beside = find_outside(context.grid, projected, origin) & cells.around;
       cells.around &= ~beside;
       cells.left &= ~beside;
     }
     if (cells.left == 0) return cells;
-    const Slopes slopes = slopes_of(seen, origin, nearest);
+    const Slopes slopes = slopes_of(projected, origin, nearest);
     cells.left &= cells.around | Cells::find(context.grid, slopes, cells.rects);
     return cells;
   }
@@ -145,27 +145,27 @@ struct BlockCells {
 /// `seen` is in the sector's frame.
 template <bool kOwnOrigins>
 GLIDAR_INLINE void fill_rows(const DrawContext& context, const BlockSetup& s,
-                             const ProjectedBlock& seen, TriangleRows& rows) {
+                             const ProjectedBlock& projected, TriangleRows& rows) {
   const auto metres = static_cast<float>(context.placement.metres);
   const Float8 scale = Float8::all(metres);
-  rows.set(TriangleRows::kQ1, flip_sign(context.turn(s.q1), s.det));
-  rows.set(TriangleRows::kQ2, flip_sign(context.turn(s.q2), s.det));
-  rows.set(TriangleRows::kN, flip_sign(context.turn(s.n), s.det));
+  rows.set(TriangleRows::kQ1, flip_sign(context.rotation(s.q1), s.det));
+  rows.set(TriangleRows::kQ2, flip_sign(context.rotation(s.q2), s.det));
+  rows.set(TriangleRows::kN, flip_sign(context.rotation(s.n), s.det));
   const Float8 det = magnitude(s.det) * scale;
   rows.set(TriangleRows::kDet, det);
-  const Float8 turned = Float8::all(kTransformMargin);
-  rows.set(TriangleRows::kEdgeBound, s.bounds.edge * turned);
+  const Float8 transformed = Float8::all(kTransformMargin);
+  rows.set(TriangleRows::kEdgeBound, s.bounds.edge * transformed);
   rows.set(TriangleRows::kDetBound,
            multiply_add(s.bounds.det, Float8::all(1.001F * metres), det * Float8::all(0x1p-22F)));
-  rows.set(TriangleRows::kDenBound, s.bounds.den * turned);
+  rows.set(TriangleRows::kDenBound, s.bounds.den * transformed);
   if constexpr (kOwnOrigins) {
     const Float8 inverse = Float8::all(1.0F / metres);
     const auto scaled = [&](const Vector<Float8>& e) {
-      const Vector<Float8> turned_e = flip_sign(e, s.det);
-      return Vector<Float8>{turned_e.x * inverse, turned_e.y * inverse, turned_e.z * inverse};
+      const Vector<Float8> flipped_e = flip_sign(e, s.det);
+      return Vector<Float8>{flipped_e.x * inverse, flipped_e.y * inverse, flipped_e.z * inverse};
     };
-    rows.set(TriangleRows::kE1, scaled(seen.e1));
-    rows.set(TriangleRows::kE2, scaled(seen.e2));
+    rows.set(TriangleRows::kE1, scaled(projected.e1));
+    rows.set(TriangleRows::kE2, scaled(projected.e2));
   }
 }
 
@@ -233,12 +233,12 @@ void draw_leaf(const DrawContext& context, std::uint32_t index) {
     const Vector<Float8> a =
         corners.a - Vector<Float8>{Float8::all(origin.at[0]), Float8::all(origin.at[1]),
                                    Float8::all(origin.at[2])};
-    const ProjectedBlock seen(slopes_frame<Cells>(context), a, corners);
-    const auto cells = BlockCells::find<Cells>(context, seen, origin, present(cluster, b));
+    const ProjectedBlock projected(slopes_frame<Cells>(context), a, corners);
+    const auto cells = BlockCells::find<Cells>(context, projected, origin, present(cluster, b));
     if (cells.left == 0) continue;
     const BlockSetup s = set_up(corners, a, origin.scaled);
     TriangleRows rows;
-    fill_rows<kOwnOrigins>(context, s, seen, rows);
+    fill_rows<kOwnOrigins>(context, s, projected, rows);
     const std::uint32_t faces = find_facing<kOwnOrigins>(context, rows);
     for_bits(cells.left, [&](unsigned i) {
       draw_triangle<Cells, kOwnOrigins>(

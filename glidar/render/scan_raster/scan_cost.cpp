@@ -32,12 +32,13 @@ class ScannerView {
     const double x = axes_.ahead.dot(point);
     const double y = axes_.left.dot(point);
     const double tangent = axes_.up.dot(point) / std::sqrt(x * x + y * y);
-    const double turn = 2.0 * std::numbers::pi / std::abs(columns_.step_rad);
+    const double columns_per_rotation = 2.0 * std::numbers::pi / std::abs(columns_.step_rad);
     const double column =
         (std::atan2(y, x) - columns_.phase_rad) / columns_.step_rad - columns_.first;
     const double height = tangents_.high - tangents_.low;
     const bool is_level = !(height > 0.0) && tangent == tangents_.low;
-    return {(column - turn * std::floor(column / turn)) / columns_.count,
+    return {(column - columns_per_rotation * std::floor(column / columns_per_rotation)) /
+                columns_.count,
             is_level ? 0.0 : (tangent - tangents_.low) / height};
   }
 
@@ -73,19 +74,19 @@ class ViewCoverage {
     }
     const auto row = std::min(static_cast<std::size_t>(position.up * kRows), kRows - 1);
     const auto col = std::min(static_cast<std::size_t>(position.across * kCols), kCols - 1);
-    seen_.set(row * kCols + col);
+    visible_.set(row * kCols + col);
     return true;
   }
 
   /// Fraction of the view.
   [[nodiscard]] double share() const {
-    return static_cast<double>(seen_.count()) / (kRows * kCols);
+    return static_cast<double>(visible_.count()) / (kRows * kCols);
   }
 
  private:
   static constexpr std::size_t kRows = 16;
   static constexpr std::size_t kCols = 64;
-  std::bitset<kRows * kCols> seen_;
+  std::bitset<kRows * kCols> visible_;
 };
 
 /// Estimates the number of the instance's triangles in view.
@@ -94,18 +95,18 @@ double count_triangles(const rays::MeshTree& tree, const InstanceView& from, std
                        const View& view, ViewCoverage& parts) {
   const std::size_t clusters = tree.clusters.size();
   const std::size_t stride = std::max<std::size_t>(1, clusters / samples);
-  std::size_t seen = 0;
-  std::size_t looked_at = 0;
+  std::size_t visible = 0;
+  std::size_t sampled = 0;
   for (std::size_t i = 0; i < clusters; i += stride) {
     const Eigen::Vector3d centre =
         Eigen::Map<const Eigen::Vector3f>(tree.clusters[i].centre).cast<double>();
     const Eigen::Vector3d point =
         from.object_from_sensor.transpose() * (centre - from.sensor_in_object);
-    seen += parts.take(view(point)) ? 1 : 0;
-    ++looked_at;
+    visible += parts.take(view(point)) ? 1 : 0;
+    ++sampled;
   }
-  return static_cast<double>(kBlockSize * tree.blocks.size()) * static_cast<double>(seen) /
-         static_cast<double>(looked_at);
+  return static_cast<double>(kBlockSize * tree.blocks.size()) * static_cast<double>(visible) /
+         static_cast<double>(sampled);
 }
 
 template <class View>

@@ -112,10 +112,10 @@ void ScannerGrid::find_columns(const Beams& beams) {
   columns_.phase_rad = angles_.phase_rad;
   columns_.step_rad = angles_.step_rad;
   const double half = kMaxHalfSector_rad / std::abs(angles_.step_rad) - margin_of(rows_);
-  const auto most = static_cast<std::uint32_t>(
+  const auto max_columns = static_cast<std::uint32_t>(
       std::clamp(2.0 * half, double{kTileColumns}, double{kMaxSectorColumns}));
   shape_ = SectorShape::around(beams.cols, static_cast<std::uint32_t>(rows_.size()));
-  shape_.columns = std::min(most / kTileColumns * kTileColumns, shape_.columns);
+  shape_.columns = std::min(max_columns / kTileColumns * kTileColumns, shape_.columns);
   low_deviation_.clear();
   high_deviation_.clear();
   for (const RowAngles& row : rows_) {

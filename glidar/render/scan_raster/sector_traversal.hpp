@@ -21,7 +21,7 @@ struct ProjectedBoxes {
   Vector<Float8> half;
   Float8 squared_distance;  ///< from the origin, object units
 
-  GLIDAR_INLINE ProjectedBoxes(const DrawContext& context, const FrameTransform& turn,
+  GLIDAR_INLINE ProjectedBoxes(const DrawContext& context, const FrameTransform& transform,
                                const TreeNode& node) {
     const Placement& p = context.placement;
     Float8 centre[3];
@@ -36,11 +36,11 @@ struct ProjectedBoxes {
       centre[axis] = (low + high) * Float8::all(0.5F);
       size[axis] = (high - low) * Float8::all(0.5F);
     }
-    middle = turn({centre[0], centre[1], centre[2]});
+    middle = transform({centre[0], centre[1], centre[2]});
     const Vector<Float8> sizes = {size[0], size[1], size[2]};
-    half = {dot(magnitude(turn.forward), sizes) + Float8::all(p.margin + p.foot[0]),
-            dot(magnitude(turn.side), sizes) + Float8::all(p.margin + p.foot[1]),
-            dot(magnitude(turn.up), sizes) + Float8::all(p.margin + p.foot[2])};
+    half = {dot(magnitude(transform.forward), sizes) + Float8::all(p.margin + p.foot[0]),
+            dot(magnitude(transform.side), sizes) + Float8::all(p.margin + p.foot[1]),
+            dot(magnitude(transform.up), sizes) + Float8::all(p.margin + p.foot[2])};
   }
 
   /// Bits of the boxes that are behind the sector, beside, above or below it.
@@ -85,15 +85,15 @@ class VisitStack {
 
   /// Inserts a visit among those from `bottom` on.
   GLIDAR_INLINE void push(unsigned bottom, const NodeVisit& visit) {
-    unsigned place = size_++;
-    for (; place > bottom && visits_[place - 1].near < visit.near; --place) {
-      visits_[place] = visits_[place - 1];
+    unsigned slot = size_++;
+    for (; slot > bottom && visits_[slot - 1].near < visit.near; --slot) {
+      visits_[slot] = visits_[slot - 1];
     }
-    visits_[place] = visit;
+    visits_[slot] = visit;
   }
 
  private:
-  GLIDAR_INLINE void put(unsigned place, const NodeVisit& visit) { visits_[place] = visit; }
+  GLIDAR_INLINE void put(unsigned slot, const NodeVisit& visit) { visits_[slot] = visit; }
 
   unsigned size_ = 0;
   NodeVisit visits_[kStackSize];

@@ -8,29 +8,29 @@
 
 namespace glidar::scan_raster {
 
-void SectorWriter::take_beams(const SectorTable& sector, const RowRun& run, Work& work) const {
+void SectorWriter::take_beams(const SectorTable& sector, const RowRun& run, HitBatch& batch) const {
   const Beams& beams = target_.request.beams;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
-    work.block.beam[lane] = run.first_beam + std::min(lane, run.count - 1);
+    batch.block.beam[lane] = run.first_beam + std::min(lane, run.count - 1);
   }
   // Whole vectors are copied, since vectors written one number at a time are slow to load.
-  Lanes3<double>& direction = work.beams.direction;
+  Lanes3<double>& direction = batch.beams.direction;
   const auto take = [&](int axis, Lanes<double>& component) {
     std::memcpy(&component, sector.exact_direction(axis) + run.first_cell, sizeof(component));
   };
   take(0, direction.x);
   take(1, direction.y);
   take(2, direction.z);
-  work.beams.has_origins = !beams.origins_m.empty();
-  if (!work.beams.has_origins) return;
+  batch.beams.has_origins = !beams.origins_m.empty();
+  if (!batch.beams.has_origins) return;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
-    work.beams.origin_m.set(lane, beams.origins_m[work.block.beam[lane]]);
+    batch.beams.origin_m.set(lane, beams.origins_m[batch.block.beam[lane]]);
   }
 }
 
 /// Sets the hits of the mask's lanes. Neighbours mostly have the same triangle.
-void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, Work& work) {
-  HitBlock& block = work.block;
+void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, HitBatch& batch) {
+  HitBlock& block = batch.block;
   bool differs = false;
   for (std::uint32_t lanes = block.mask; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
@@ -65,40 +65,40 @@ void SectorWriter::write_rows(const SectorTable& sector, const SectorBuffer& buf
 void SectorWriter::write_run(const SectorTable& sector, const SectorBuffer& buffer,
                              const InstanceSlots& slots, const RowRun& run) {
   const float* numbers = buffer.number + run.first_cell;
-  Work& work = next();
-  work.block.mask = 0;
+  HitBatch& batch = next();
+  batch.block.mask = 0;
   for (unsigned lane = 0; lane < run.count; ++lane) {
     const bool is_hit = std::bit_cast<std::uint32_t>(numbers[lane]) != kNoSlotNumber;
-    work.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
+    batch.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
   }
-  if (work.block.mask != (1U << run.count) - 1U) {
+  if (batch.block.mask != (1U << run.count) - 1U) {
     write_misses(target_.request.fields, run.first_beam, run.count, target_.hits);
   }
-  if (work.block.mask != 0) {
-    work.block.is_run = work.block.mask == (1U << kLanes) - 1U;
-    take_beams(sector, run, work);
-    find_cells(numbers, slots, work);
+  if (batch.block.mask != 0) {
+    batch.block.is_run = batch.block.mask == (1U << kLanes) - 1U;
+    take_beams(sector, run, batch);
+    find_cells(numbers, slots, batch);
   }
   advance();
 }
 
-void SectorWriter::cast_rays(std::span<const std::size_t> some) {
+void SectorWriter::cast_rays(std::span<const std::size_t> beams_to_cast) {
   const Beams& beams = target_.request.beams;
   begun_ = 0;
-  for (std::size_t done = 0; done < some.size(); done += kLanes) {
-    const std::size_t count = std::min(some.size() - done, std::size_t{kLanes});
-    Work& work = next();
-    work.block.is_one_triangle = false;
-    work.block.is_run = false;
-    work.beams.has_origins = !beams.origins_m.empty();
+  for (std::size_t done = 0; done < beams_to_cast.size(); done += kLanes) {
+    const std::size_t count = std::min(beams_to_cast.size() - done, std::size_t{kLanes});
+    HitBatch& batch = next();
+    batch.block.is_one_triangle = false;
+    batch.block.is_run = false;
+    batch.beams.has_origins = !beams.origins_m.empty();
     for (unsigned lane = 0; lane < kLanes; ++lane) {
-      const std::size_t beam = some[done + std::min<std::size_t>(lane, count - 1)];
-      work.block.beam[lane] = beam;
-      work.beams.direction.set(lane, beams.directions[beam]);
-      if (work.beams.has_origins) work.beams.origin_m.set(lane, beams.origins_m[beam]);
+      const std::size_t beam = beams_to_cast[done + std::min<std::size_t>(lane, count - 1)];
+      batch.block.beam[lane] = beam;
+      batch.beams.direction.set(lane, beams.directions[beam]);
+      if (batch.beams.has_origins) batch.beams.origin_m.set(lane, beams.origins_m[beam]);
     }
-    work.block.mask = (1U << count) - 1U;
-    target_.search.find(work.beams, work.block);
+    batch.block.mask = (1U << count) - 1U;
+    target_.search.find(batch.beams, batch.block);
     advance();
   }
   finish();
@@ -107,21 +107,19 @@ void SectorWriter::cast_rays(std::span<const std::size_t> some) {
 /// Advances the pipeline: prefetches for the batch before the last, and writes the oldest.
 void SectorWriter::advance() {
   if (begun_ >= 2) {
-    target_.resolver.prefetch_corners(ring_[(begun_ - 2) % ring_.size()].block,
+    target_.resolver.prefetch_corners(batches_[(begun_ - 2) % batches_.size()].block,
                                       target_.request.fields);
   }
-  if (begun_ >= 3) write(ring_[(begun_ - 3) % ring_.size()]);
+  if (begun_ >= 3) write(batches_[(begun_ - 3) % batches_.size()]);
 }
 
 void SectorWriter::finish() {
-  for (std::size_t i = begun_ > 2 ? begun_ - 2 : 0; i < begun_; ++i) write(ring_[i % ring_.size()]);
+  for (std::size_t i = begun_ > 2 ? begun_ - 2 : 0; i < begun_; ++i)
+    write(batches_[i % batches_.size()]);
 }
 
-void SectorWriter::write(Work& work) const {
-  if (work.block.mask == 0) return;
-  target_.resolver.intersect(work.beams, work.block, work.exact);
-  target_.resolver.write(target_.request.beams, target_.request.fields, work.block, work.exact,
-                         target_.hits);
+void SectorWriter::write(HitBatch& batch) const {
+  target_.resolver.write_batch(target_.request.beams, target_.request.fields, batch, target_.hits);
 }
 
 }  // namespace glidar::scan_raster

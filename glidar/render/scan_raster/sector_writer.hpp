@@ -35,12 +35,6 @@ class SectorWriter {
   void cast_rays(std::span<const std::size_t> beams);
 
  private:
-  struct Work {
-    HitBlock block;
-    BeamBlock beams;
-    ExactHits exact;
-  };
-
   /// Up to kLanes beams of a row.
   struct RowRun {
     std::size_t first_beam;
@@ -50,18 +44,18 @@ class SectorWriter {
 
   void write_run(const SectorTable& sector, const SectorBuffer& buffer, const InstanceSlots& slots,
                  const RowRun& run);
-  void take_beams(const SectorTable& sector, const RowRun& run, Work& work) const;
-  void find_cells(const float* numbers, const InstanceSlots& slots, Work& work);
-  Work& next() { return ring_[begun_++ % ring_.size()]; }
+  void take_beams(const SectorTable& sector, const RowRun& run, HitBatch& batch) const;
+  void find_cells(const float* numbers, const InstanceSlots& slots, HitBatch& batch);
+  HitBatch& next() { return batches_[begun_++ % batches_.size()]; }
   void advance();
   void finish();
-  void write(Work& work) const;
+  void write(HitBatch& batch) const;
 
   HitTarget target_;
   bool with_corners_;
   std::uint32_t last_number_ = kNoSlotNumber;  ///< of the previous cell
   PrimitiveRef last_found_;
-  std::array<Work, 3> ring_;
+  std::array<HitBatch, 3> batches_;
   std::size_t begun_ = 0;
 };
 

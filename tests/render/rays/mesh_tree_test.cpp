@@ -62,7 +62,7 @@ std::vector<TestRay> aimed_rays(const TestMesh& mesh, const Eigen::Vector3d& ori
 }
 
 /// An image: neighbouring rays are similar, as those of a camera.
-std::vector<TestRay> picture(const Eigen::Vector3d& origin, unsigned side) {
+std::vector<TestRay> camera_rays(const Eigen::Vector3d& origin, unsigned side) {
   std::vector<TestRay> rays;
   for (unsigned tile = 0; tile < side * side / 16; ++tile) {
     for (unsigned i = 0; i < 16; ++i) {
@@ -120,7 +120,7 @@ TEST(MeshTree, EqualsTheRuleForAllTriangles) {
 TEST(MeshTree, HitsHaveTheSameBitsForAllTreesPacketsKernelsAndThreads) {
   Numbers numbers(31);
   const TestMesh mesh = crowded_mesh(numbers);
-  std::vector<TestRay> rays = picture({0.1, 0.2, 2.5}, 128);
+  std::vector<TestRay> rays = camera_rays({0.1, 0.2, 2.5}, 128);
   for (const TestRay& ray : aimed_rays(mesh, {0.4, 0.7, 1.9}, 20000, numbers)) rays.push_back(ray);
   for (int i = 0; i < 8000; ++i)
     rays.push_back(aimed(2.0 * numbers.direction(), numbers.in_cube(0.8)));
