@@ -8,7 +8,7 @@ namespace glidar::python {
 
 namespace nb = nanobind;
 
-// One function per file: what of GLIDAR it makes known to Python.
+// One function per file, which defines its Python bindings.
 void bind_errors(nb::module_& module);
 void bind_motion(nb::module_& module);
 void bind_scene(nb::module_& module);

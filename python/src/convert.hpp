@@ -25,7 +25,7 @@ template <class T, int kColumns>
 using Table = nb::ndarray<const T, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
 
 /// Pose k of an array. A pose that is rigid within float32 precision is made exactly rigid; a pose
-/// of double is taken as it is. Throws Error naming the array and the place otherwise.
+/// of double is used unchanged. Throws Error naming the array and the place otherwise.
 Pose pose_of(const PoseArray& poses, std::size_t k, const std::string& name);
 
 inline Matrix4 matrix_of(const Pose& pose) {
@@ -38,7 +38,7 @@ nb::ndarray<nb::numpy, T> array_at(T* data, const Shape& shape, nb::handle owner
   return nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner);
 }
 
-/// Copies of the rows of an array, of which each has the numbers of a Vector; none of no array.
+/// Copies of the rows of an array as Vectors; empty without an array.
 template <class Vector, class Array>
 std::vector<Vector> vectors(const std::optional<Array>& given) {
   if (!given) return {};
@@ -48,7 +48,7 @@ std::vector<Vector> vectors(const std::optional<Array>& given) {
   return result;
 }
 
-/// A copy of rows of kColumns numbers in memory; None when there is nothing.
+/// A copy of rows of kColumns numbers; None when empty.
 template <class T, std::size_t kColumns, class Values>
 nb::object rows_of(const Values& values) {
   if (values.empty()) return nb::none();
@@ -61,7 +61,7 @@ nb::object rows_of(const Values& values) {
   return nb::cast(array_at(data, shape, owner));
 }
 
-/// An entry of a dict, where it has one that is not None.
+/// An entry of a dict, unless it is missing or None.
 template <class T>
 std::optional<T> entry(const nb::dict& dict, const char* key) {
   if (!dict.contains(key) || dict[key].is_none()) return std::nullopt;

@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t kMaxSpareBeams = std::size_t{1} << 24U;  // about 2 GiB with all ground truth
 
 /// One column of a frame as an array of rows x cols, or rows x cols x components; None when the
-/// frame did not keep it.
+/// frame does not have it.
 template <class T, int kComponents = 1, class Values>
 nb::object column(const Measured& measured, nb::handle owner, const Values& values) {
   if (values.empty() && measured.beams->size() > 0) return nb::none();
@@ -83,7 +83,7 @@ std::vector<Matrix4> object_poses(const Measured& measured) {
   return poses;
 }
 
-/// A cloud and the arrays that refer to it.
+/// A cloud whose memory its arrays share.
 struct CloudHandle {
   PointCloud cloud;
 };
@@ -125,7 +125,7 @@ std::vector<std::string> column_names_of(const CloudHandle& handle) {
   return names;
 }
 
-/// What a file is to hold, as for `glidar render`.
+/// Options of an output file, as for `glidar render`.
 struct SaveOptions {
   std::vector<std::string> columns;
   std::string frame = "sensor";
@@ -165,7 +165,7 @@ void save(const Measured& measured, const std::filesystem::path& path, SaveOptio
   });
 }
 
-/// Of .bev.png and .view.png; the name is one of colour_by_names().
+/// Options of .bev.png and .view.png; the name is one of colour_by_names().
 void set_picture(SaveOptions& self, const std::string& colour_by, std::uint32_t width,
                  std::uint32_t height) {
   const auto names = colour_by_names();
@@ -237,7 +237,7 @@ ColourScale scale_of(const nb::ndarray<const double, nb::ndim<1>, nb::c_contig>&
                            from_zero ? ColourScale::Start::zero : ColourScale::Start::lowest);
 }
 
-/// The picture's beams as rows x cols, 0xFFFFFFFF where there is none.
+/// The picture's beams as rows x cols, 0xFFFFFFFF for none.
 nb::object shown_beams(nb::handle self) {
   auto& picture = nb::cast<BeamPicture&>(self);
   if (picture.beams.empty()) {
@@ -283,7 +283,7 @@ BeamPicture beam_picture(const Measured& measured, std::uint32_t number_of_retur
 
 FramePool::FramePool() {
   constexpr std::size_t kMaxSpareFrames = 1024;
-  spare_.reserve(kMaxSpareFrames);  // so that giving one back cannot fail
+  spare_.reserve(kMaxSpareFrames);  // so that returning one cannot fail
 }
 
 Frame FramePool::take() {

@@ -11,7 +11,7 @@
 
 namespace glidar::python {
 
-/// Frames that nobody holds any more: their memory serves the next ones.
+/// A pool of unused frames, whose memory is reused.
 class FramePool {
  public:
   FramePool();
@@ -24,7 +24,7 @@ class FramePool {
   std::size_t spare_beams_ = 0;
 };
 
-/// A frame as Python holds it, with all that it was made of.
+/// A Python frame with its scene, sensor and renderer.
 struct Measured {
   Measured(std::shared_ptr<FramePool> from, Frame measured)
       : pool(std::move(from)), frame(std::move(measured)) {}
@@ -33,15 +33,15 @@ struct Measured {
   ~Measured() {
     if (pool) pool->give_back(std::move(frame));
   }
-  /// The scene that it was measured of, maybe without a renderer. Throws Error where a restored
+  /// The scene that it measured, possibly without a renderer. Throws Error when a restored
   /// frame has none yet.
   [[nodiscard]] const PreparedScene& scene() const;
   /// The same with its renderer.
   [[nodiscard]] PreparedScene& rendered() const;
 
-  std::shared_ptr<FramePool> pool;  ///< that takes the frame's memory back; may be none
+  std::shared_ptr<FramePool> pool;  ///< that the frame's memory returns to; may be null
   Frame frame;
-  // of a restored frame each is set when it is needed, and never changed, as other threads may use
+  // for a restored frame each is set once when needed, because other threads may use
   // it
   std::shared_ptr<PreparedScene> prepared;
   std::shared_ptr<const PreparedScene> unrendered;  ///< of restored frames only

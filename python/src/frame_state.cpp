@@ -20,7 +20,7 @@
 namespace glidar::python {
 namespace {
 
-/// What an entry of a column is made of: numbers of one type, and how many.
+/// The components of a column's entry: their type and number.
 template <class Entry>
 struct Parts {
   using Number = std::conditional_t<std::is_enum_v<Entry>, std::uint8_t, Entry>;
@@ -74,7 +74,7 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("ground_truth.noise_scale", truth.noise_scale);
 }
 
-/// Every column that the frame kept, (N, k), as views of its memory.
+/// All columns of the frame, (N, k), as views of its memory.
 nb::dict arrays_of(nb::handle self) {
   nb::dict arrays;
   each_column(nb::cast<const Measured&>(self).frame, [&](const char* name, const auto& values) {
@@ -91,7 +91,7 @@ nb::dict arrays_of(nb::handle self) {
   throw Error({where, std::move(found), std::move(allowed), ""});
 }
 
-/// What describes a frame beside its columns.
+/// The data of a frame other than its columns.
 nb::dict frame_state(const Measured& measured) {
   const Frame& frame = measured.frame;
   nb::dict state;
@@ -124,7 +124,7 @@ void load_column(const nb::dict& arrays, const char* name, std::size_t size,
   std::memcpy(static_cast<void*>(values.data()), array->data(), size * sizeof(Entry));
 }
 
-/// The columns that every frame has, and codes that are known.
+/// Checks that required columns exist and codes are valid.
 void check_columns(const Frame& frame, std::size_t size) {
   const Hits& truth = frame.ground_truth;
   for (const std::size_t found :

@@ -17,7 +17,7 @@ namespace glidar::python {
 namespace {
 
 constexpr double kExact = 1e-9;
-constexpr double kAsFloat = 1e-4;  // a rotation that went through float32 a few times
+constexpr double kAsFloat = 1e-4;  // tolerance for rotations that were rounded to float32
 
 Pose single(const PoseArray& pose) {
   return pose_of(pose, 0, "pose");

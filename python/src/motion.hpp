@@ -10,7 +10,7 @@
 
 namespace glidar::python {
 
-/// What Python holds of motion: one trajectory, or those of many objects or frames.
+/// Trajectories in Python: one, or those of many objects or frames.
 struct Trajectories {
   std::vector<Trajectory> all;
 };

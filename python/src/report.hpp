@@ -11,17 +11,17 @@
 
 namespace glidar::python {
 
-/// Names of files and words in them need not be UTF-8: what is not is spelled \xE9.
+/// Text from files need not be UTF-8; invalid bytes are escaped as \xE9.
 inline nb::object text_of(std::string_view bytes) {
   const auto size = static_cast<Py_ssize_t>(bytes.size());
   return nb::steal(PyUnicode_DecodeUTF8(bytes.data(), size, "backslashreplace"));
 }
 
-/// Thrown through GLIDAR when Python was interrupted; Python knows its own error.
+/// Thrown through GLIDAR when Python was interrupted; Python's error is set.
 struct Interrupted {};
 
-/// While GLIDAR works without Python's lock: looks now and then whether Ctrl-C was pressed.
-/// Progress may be reported by any thread; only the one that called runs Python's handlers.
+/// Checks periodically for Ctrl-C while GLIDAR runs without Python's lock.
+/// Progress may be reported by any thread; only the calling thread runs Python's handlers.
 class Watch {
  public:
   Watch() : caller_(std::this_thread::get_id()), next_(Clock::now() + kPause) {}
@@ -41,7 +41,7 @@ class Watch {
   Clock::time_point next_;
 };
 
-/// Calls `work` without Python's lock; Ctrl-C ends it with KeyboardInterrupt.
+/// Calls `work` without Python's lock; Ctrl-C stops it with KeyboardInterrupt.
 template <class Work>
 auto unlocked(const Work& work) {
   Watch watch;
@@ -49,7 +49,7 @@ auto unlocked(const Work& work) {
     const nb::gil_scoped_release release;
     return work(watch);
   } catch (const Interrupted&) {
-    throw nb::python_error();  // takes the error that is set
+    throw nb::python_error();  // uses the error that is set
   }
 }
 

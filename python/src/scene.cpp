@@ -116,7 +116,8 @@ Mesh make_mesh(const std::string& name, const MeshArrays& arrays) {
   const std::size_t count = arrays.vertices.shape(0);
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> points(
       arrays.vertices.data(), static_cast<Eigen::Index>(count), 3);
-  // near an origin single precision keeps every detail; at zero it is what files have
+  // single precision is sufficient near the mesh's origin; like files, meshes near zero have the
+  // origin zero
   if (count > 0 && !points.unaryExpr(&rounded_to_float).isApprox(points, 0.0)) {
     mesh.origin_m = 0.5 * (points.colwise().minCoeff() + points.colwise().maxCoeff()).transpose();
   }
@@ -172,7 +173,7 @@ std::uint32_t class_number(Scene& scene, const std::string& name) {
 
 using Scale = std::array<double, 3>;
 
-/// Sets what is given of an object; changes nothing when it throws.
+/// Sets the given attributes of an object; changes nothing when it throws.
 void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes) {
   Scene& scene = handle.change();
   const std::size_t classes = scene.class_names.size();
@@ -238,14 +239,14 @@ nb::list rig_of(const SceneHandle& handle) {
   return rig;
 }
 
-/// How the scene file moves the rig, or where it puts it.
+/// The rig's motion or pose in the scene file.
 std::optional<Trajectories> rig_motion_of(const SceneHandle& handle) {
   if (handle.rig_motion) return Trajectories{{*handle.rig_motion}};
   if (handle.world_from_rig) return Trajectories{{ConstantPose{*handle.world_from_rig}}};
   return std::nullopt;
 }
 
-/// Takes the last object away, and its stretched mesh.
+/// Removes the last object and its scaled mesh.
 void drop_last(SceneHandle& handle) {
   Scene& scene = handle.change();
   set_scale(scene, scene.instances.size() - 1, Eigen::Vector3d::Ones());
@@ -297,7 +298,7 @@ std::shared_ptr<PreparedScene> prepare(SceneHandle& handle, const RendererOption
     const nb::gil_scoped_release release;
     made->renderer = make_renderer(*made->scene, options);
   }
-  if (made->scene == handle.scene) handle.prepared[key] = made;  // nobody changed it meanwhile
+  if (made->scene == handle.scene) handle.prepared[key] = made;  // unless it was changed meanwhile
   return made;
 }
 

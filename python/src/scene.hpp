@@ -17,11 +17,11 @@
 
 namespace glidar::python {
 
-/// A scene with its renderer, built once. Measurements share it and take turns.
+/// A scene with its renderer, created once. Measurements share it and run one at a time.
 struct PreparedScene {
   std::string kind;  ///< of the renderer
   std::shared_ptr<const Scene> scene;
-  std::vector<std::string> files;      ///< all that was read for it
+  std::vector<std::string> files;      ///< all files that it was read from
   std::unique_ptr<Renderer> renderer;  ///< none: see unrendered()
   std::mutex turn;
 };
@@ -33,12 +33,12 @@ struct MountedSensor {
   Pose rig_from_sensor = Pose::Identity();
 };
 
-/// A scene as Python holds it. What was prepared or measured of it keeps the scene that it saw:
-/// changes are made to a copy while anybody else has it.
+/// A Python scene. Simulators and frames keep the state that they measure:
+/// changes are made to a copy while one of them uses it.
 struct SceneHandle {
   std::shared_ptr<Scene> scene = std::make_shared<Scene>();
   std::vector<Trajectory> motion;      ///< one per instance; empty: all are stationary
-  std::vector<MountedSensor> sensors;  ///< of the scene file; none: it names none
+  std::vector<MountedSensor> sensors;  ///< of the scene file; empty: none
   std::optional<Pose> world_from_rig;
   bool looks_at = false;  ///< see SceneFile
   std::optional<Trajectory> rig_motion;
@@ -52,11 +52,11 @@ struct SceneHandle {
 /// All files that a scene was read from: its own, those of models, textures and sensors.
 std::vector<std::string> files_read(const SceneHandle& handle);
 
-/// The scene without a renderer, which is built only where something is measured.
+/// The scene without a renderer, which is created only for measurements.
 std::shared_ptr<PreparedScene> unrendered(const SceneHandle& handle, const std::string& kind);
 
-/// Builds the renderer, or gives the one that was built. Called with Python's lock, which it gives
-/// up while it builds.
+/// Creates the renderer, or returns the existing one. Called with Python's lock, which it releases
+/// while it creates one.
 std::shared_ptr<PreparedScene> prepare(SceneHandle& handle, const RendererOptions& options);
 
 }  // namespace glidar::python

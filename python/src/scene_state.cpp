@@ -20,8 +20,8 @@
 namespace glidar::python {
 namespace {
 
-/// Adds values to a hash, each list with its length before it, so that no two contents give the
-/// same bytes.
+/// Adds values to a hash, each list preceded by its length, so that different contents give
+/// different bytes.
 class Digest {
  public:
   template <class Number>
@@ -38,7 +38,7 @@ class Digest {
       add(values.size());
       for (const std::string& text : values) add(text);
     } else {
-      add_bytes(values.data(), values.size(), sizeof(Value));  // numbers side by side, no padding
+      add_bytes(values.data(), values.size(), sizeof(Value));  // contiguous numbers without padding
     }
   }
   [[nodiscard]] std::string text() const { return hex(hash_.value()); }
@@ -99,8 +99,8 @@ void add(const Texture& texture, Digest& digest) {
   digest.add(texture.texels);
 }
 
-/// Adds what instances refer to by its content, so that neither indices nor what no instance
-/// reaches counts. Each mesh and texture is hashed once.
+/// Adds the contents that instances refer to, so that neither indices nor unused data
+/// affect the hash. Each mesh and texture is hashed once.
 class Contents {
  public:
   explicit Contents(const Scene& scene) : scene_(scene) {}
@@ -171,7 +171,7 @@ class Contents {
   Hashes textures_;
 };
 
-/// The meshes that were loaded or made, without stretched copies of them: none of them is ever
+/// The meshes that were loaded or created, without scaled copies; they are never
 /// removed.
 std::vector<std::size_t> loaded_meshes(const Scene& scene) {
   std::vector<std::size_t> found;
@@ -218,7 +218,7 @@ Mesh mesh_from(const nb::dict& state) {
   mesh.name = nb::cast<std::string>(state["name"]);
   mesh.origin_m = origin_in(state);
   const auto positions = entry<Table<float, 3>>(state, "positions_m").value();
-  mesh.positions_m.reserve(positions.shape(0) + 1);  // renderers need no copy
+  mesh.positions_m.reserve(positions.shape(0) + 1);  // so that renderers need no copy
   mesh.positions_m.resize(positions.shape(0));
   std::copy_n(positions.data(), positions.size(),
               reinterpret_cast<float*>(mesh.positions_m.data()));
@@ -237,7 +237,7 @@ void add_classes(SceneHandle& handle, const std::vector<std::string>& names) {
   }
 }
 
-/// How the scene file moves objects and the rig, and where it puts the rig.
+/// The motion of objects and rig, and the rig's pose, in the scene file.
 nb::dict placing_state(const SceneHandle& handle) {
   nb::dict state;
   state["motion"] = states_of(handle.motion);

@@ -57,8 +57,8 @@ Shared load(const std::string& name_or_path) {
   return make(load_sensor_file(find_sensor_file(name_or_path)));
 }
 
-/// A table of beams as Python has it: `shape` (rows, cols), `period_ns`, and arrays of one row per
-/// beam, of which only `directions` must be there.
+/// A table of beams from Python: `shape` (rows, cols), `period_ns`, and arrays of one row per
+/// beam, of which only `directions` is required.
 RayTable table_of(const nb::dict& arrays) {
   RayTable table;
   std::tie(table.rows, table.cols) =
@@ -71,7 +71,8 @@ RayTable table_of(const nb::dict& arrays) {
   return table;
 }
 
-/// A sensor from the keys of a sensor file; `files` is what it was read from in the first place.
+/// A sensor from the keys of a sensor file; `files` lists the files that it was originally read
+/// from.
 Shared parse(const std::string& text, const std::optional<nb::dict>& table,
              const std::vector<std::string>& files) {
   Sensor sensor = table ? parse_sensor(text, table_of(*table)) : parse_sensor(text);
@@ -79,7 +80,7 @@ Shared parse(const std::string& text, const std::optional<nb::dict>& table,
   return make(std::move(sensor));
 }
 
-/// Changes by option, as the command line's.
+/// Options that change a sensor, as on the command line.
 Shared changed(const SensorHandle& handle, const SensorOptions& options) {
   const SensorOptionNames names;
   Sensor sensor = handle.sensor();
@@ -100,8 +101,8 @@ nb::object per_beam(const Values& values, const Shape& shape, nb::handle owner) 
   return nb::cast(array_at(data, shape, owner));
 }
 
-/// The table of a sensor that is one, as restore_sensor() takes it; None for other optics. Its
-/// arrays are views of the sensor's memory.
+/// The table of a sensor with such optics, as restore_sensor() accepts it; None for other optics.
+/// Its arrays are views of the sensor's memory.
 nb::object beam_table(const nb::handle& self) {
   const auto* table = std::get_if<RayTable>(&nb::cast<const SensorHandle&>(self).sensor().optics);
   if (table == nullptr) return nb::none();

@@ -82,7 +82,7 @@ FisherInformation restore_information(const nb::dict& state) {
   return information;
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file atomically.
 void write_file(const std::filesystem::path& path, const nb::bytes& data) {
   AtomicFile file(path);
   file.write(std::string_view(data.c_str(), data.size()));

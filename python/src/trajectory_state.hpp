@@ -12,12 +12,12 @@ namespace glidar::python {
 /// All numbers of trajectories as dicts of plain values and arrays, for pickle.
 nb::list states_of(const std::vector<Trajectory>& trajectories);
 
-/// The trajectories of such dicts, to the last bit. Throws Error or a Python error when one is
+/// The bit-identical trajectories from such dicts. Throws Error or a Python error when one is
 /// malformed.
 std::vector<Trajectory> trajectories_from(const nb::list& states);
 
-/// A pose as it is, unlike pose_of(), which makes matrices exactly rigid. Throws Error naming it
-/// when it is no rigid transform.
+/// An unchanged pose, unlike pose_of(), which makes matrices exactly rigid. Throws Error naming it
+/// when it is not a rigid transform.
 Pose restored_pose(const Matrix4& matrix, const std::string& name);
 
 }  // namespace glidar::python
