@@ -31,8 +31,8 @@ struct NumberListRule {
   NumberRule number = {};
   std::size_t min_size = 1;
   std::size_t max_size = 1;
-  bool takes_one = false;    ///< one number without a list stands for min_size equal ones
-  bool takes_range = false;  ///< {from: , to: , count: } stands for equal steps
+  bool takes_one = false;    ///< one number without a list means min_size equal numbers
+  bool takes_range = false;  ///< {from: , to: , count: } means equal steps
   std::string allowed = {};  ///< for errors; empty: "a list of ... numbers"
 };
 
@@ -92,7 +92,7 @@ class FieldVisitor {
   [[nodiscard]] bool is_document() const { return mode() == Mode::document; }
   [[nodiscard]] bool is_writing() const { return is_report() || is_document(); }
 
-  // What a visitor does with each kind of value. Unless it says otherwise, that is key(field).
+  // The action for each kind of value; by default key(field).
 
   virtual void number(const FieldInfo& field, const NumberRule& /*rule*/, double& /*value*/) {
     key(field);
@@ -157,7 +157,7 @@ class FieldVisitor {
   /// Whether the file has the key; only readers know.
   [[nodiscard]] virtual bool has(const char* /*key*/) const { return false; }
   /// Throws Error at a key of the file, or at its map where the key is missing. "{}" in `found`
-  /// stands for what the key has. Only readers know the place.
+  /// is replaced by the value. Only readers know the place.
   [[noreturn]] void reject(const char* key, const std::string& found, const std::string& allowed,
                            const std::string& remedy = "") const;
 

@@ -6,8 +6,8 @@
 
 namespace glidar {
 
-void record_beam_poses(const Motion& motion, const Beams& beams, bool wanted, ThreadPool& thread_pool,
-                 Frame& frame) {
+void record_beam_poses(const Motion& motion, const Beams& beams, bool wanted,
+                       ThreadPool& thread_pool, Frame& frame) {
   constexpr std::size_t kBeamsPerTask = 1024;
   Frame::BeamPoses& poses = frame.beam_poses;
   poses.world_from_sensor.resize(wanted ? beams.size() : 0);

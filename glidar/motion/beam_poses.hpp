@@ -9,7 +9,7 @@ namespace glidar {
 
 /// If `wanted`, fills frame.beam_poses with the poses of the sensor and of the instance hit
 /// (frame.ground_truth.instance) at each beam's firing time; else clears it.
-void record_beam_poses(const Motion& motion, const Beams& beams, bool wanted, ThreadPool& thread_pool,
-                 Frame& frame);
+void record_beam_poses(const Motion& motion, const Beams& beams, bool wanted,
+                       ThreadPool& thread_pool, Frame& frame);
 
 }  // namespace glidar

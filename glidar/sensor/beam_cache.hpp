@@ -11,7 +11,8 @@
 
 namespace glidar {
 
-/// A sensor that does not change, with the beams of its first and its latest frame and those in use.
+/// A sensor that does not change, with the beams of its first and its latest frame and those in
+/// use.
 class BeamCache {
  public:
   explicit BeamCache(Sensor sensor);

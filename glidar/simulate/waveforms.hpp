@@ -8,9 +8,9 @@ namespace glidar {
 
 /// Range, intensity, status, source and ground truth of all returns of a tile of pulses, whose
 /// sub-rays' hits are in the workspace. What returns along the sub-rays, from mirrors and from the
-/// air adds up to a waveform; its peaks are echoes, of which the receiver reports some. The ground
-/// truth of a return is that of the strongest of its paths, or where no surface made it, of the
-/// strongest path of the beam. Samples with Purpose::detection and weather.
+/// air adds up to a waveform; its peaks are echoes, of which the receiver reports some.
+/// Each return has the ground truth of the strongest of its paths or, where no surface made it, of
+/// the strongest path of the beam. Samples with Purpose::detection and weather.
 void measure_waveforms(const Simulation& s, BeamRange tile);
 
 /// Repeats the measurement of a pulse, and of the few around it, of a frame that was simulated. The

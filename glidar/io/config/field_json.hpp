@@ -12,7 +12,7 @@ namespace glidar {
 
 /// The keys that `describe` names, with their values, in that order. Mode::report: as sidecar files
 /// have them, with null for what is absent. Mode::document: so that a reader gets the same bits;
-/// leaves out what no file can spell (infinity, 0 where it stands for "unset", an empty list),
+/// leaves out what no file can spell (infinity, 0 that means "unset", an empty list),
 /// because only a default is. Throws Error where no number in the file's unit gives those bits.
 nlohmann::ordered_json write_fields(FieldVisitor::Mode mode, FieldVisitor::Describe describe);
 

@@ -18,7 +18,7 @@ struct RayTableKeys {
   std::string file;
   RayTable table;            ///< once read
   bool has_times = false;    ///< for reports, which have no table
-  bool has_origins = false;  ///< likewise
+  bool has_origins = false;  ///< the same for origins
 };
 
 /// A spinning sensor from the metadata that Ouster sensors provide.
@@ -28,7 +28,7 @@ struct OusterKeys {
   Spinning spinning;
 };
 
-/// What stands for an alternative of Optics in files.
+/// The form of an alternative of Optics in files.
 template <class Struct>
 struct FileForm {
   using type = Struct;

@@ -39,7 +39,7 @@ Json pose_json(const Pose& pose) {
           {"orientation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
 }
 
-/// What a sidecar tells of a sensor beside its keys, after one of them.
+/// Values of a sensor that a sidecar lists after one of its keys.
 Json beside_key(const std::string& key, const Sensor& sensor, const Beams& beams) {
   if (key == "name") {
     return {{"frame_id", beams.frame_id},

@@ -128,7 +128,7 @@ void reject_beside_fov(const FieldVisitor& visitor, const std::string& fov) {
   for (const char* key : {"fy", "cx", "cy"}) {
     if (!visitor.has(key)) continue;
     visitor.reject(key, "given beside '" + fov + "'", "fy, cx and cy only together with fx",
-                   "remove it, or give fx and fy in the place of " + fov);
+                   "remove it, or give fx and fy instead of " + fov);
   }
 }
 

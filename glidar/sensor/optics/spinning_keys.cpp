@@ -114,7 +114,7 @@ struct SectorDegrees {
   double to = 0.0;
 };
 
-/// The numbers in degrees that a reader turns into this sector, to the bit.
+/// The numbers in degrees that a reader converts into exactly this sector.
 std::optional<SectorDegrees> exact_degrees(const Spinning& s) {
   const auto from_deg = find_exact_in(s.sector_start_rad, kDegree);
   const auto width_deg = find_exact_in(s.sector_width_rad, kDegree);

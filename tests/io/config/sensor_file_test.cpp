@@ -190,7 +190,7 @@ const BadFile kBadFiles[] = {
          "; remove one of them"},
     {"CxBesideFov", optics("width: 4, height: 2, fov_deg: 20, cx: 2"),
      "s.yaml:1:48: optics.cx: given beside 'fov_deg'; allowed: fy, cx and cy only together with "
-     "fx; remove it, or give fx and fy in the place of fov_deg"},
+     "fx; remove it, or give fx and fy instead of fov_deg"},
     {"TextForNumber", optics("width: four, height: 2, fov_deg: 20"),
      "s.yaml:1:17: optics.width: 'four'; allowed: " + kSide},
     {"NumberWithUnit", optics("width: 4, height: 2, fov_deg: 20deg"),
