@@ -51,16 +51,16 @@ using Distortion = std::variant<NoDistortion, RadialTangential, Fisheye>;
 /// A camera: one ray per pixel, in the optical frame (x right, y down, z forward).
 struct Pinhole {
   static constexpr TypeInfo kType = {"pinhole", "a camera, with or without lens distortion"};
-
-  /// Keys of `optics` in sensor files.
-  void describe(Pinhole& pinhole, FieldVisitor& visitor);
-  void describe(Distortion& distortion, FieldVisitor& visitor);
-  void describe(NoDistortion& none, FieldVisitor& visitor);
-  void describe(RadialTangential& k, FieldVisitor& visitor);
-  void describe(Fisheye& k, FieldVisitor& visitor);
   PinholeIntrinsics intrinsics;
   Distortion distortion;
 };
+
+/// Keys of `optics` in sensor files.
+void describe(Pinhole& pinhole, FieldVisitor& visitor);
+void describe(Distortion& distortion, FieldVisitor& visitor);
+void describe(NoDistortion& none, FieldVisitor& visitor);
+void describe(RadialTangential& k, FieldVisitor& visitor);
+void describe(Fisheye& k, FieldVisitor& visitor);
 
 /// Maximum width and height of an image, in pixels.
 inline constexpr std::uint32_t kMaxImageSide = 65536;
