@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 LIBRARIES = os.environ.get("GLIDAR_LIBRARIES", "")
 READER = ["io/config/field_json", "io/config/yaml_budget", "io/config/yaml_field_reader", "io/config/yaml_reader",
-          "io/files/input_file", "io/files/text_file"]
+          "io/files/input_file", "io/files/nearest_file", "io/files/text_file"]
 KEYS_TEST = """
 TEST(Example, KeysAreReadAndWritten) {
   glidar::NoiseStep step;
@@ -43,7 +43,7 @@ def patch_text():
 def unit_text(folder):
     """All sources of the noise steps, the reader, the writer and the tests as one translation unit."""
     sources = sorted((folder / "glidar/sensor/noise").glob("*.cpp")) + [folder / f"glidar/{name}.cpp" for name in READER]
-    sources += [folder / "tests/sensor/noise/range_outliers_test.cpp"]
+    sources += [folder / "tests/sensor/noise/noise_trace_test.cpp"]
     return "".join(f'#include "{source}"\n' for source in sources) + KEYS_TEST
 
 

@@ -28,7 +28,7 @@ nlohmann::ordered_json report(const std::vector<NoiseStep>& noise) {
   return list;
 }
 
-/// One step of each type with every key it has, at numbers that differ from the defaults.
+/// Steps with every key they have, at numbers that differ from the defaults.
 const std::string kEvery = R"(
   - {type: range_gaussian, sigma_m: 0.02, sigma_per_m: 0.001}
   - {type: range_snr, floor_m: 0.01, k_m: 0.3, snr_at_full_scale: 250}
@@ -55,10 +55,15 @@ const std::string kEvery = R"(
   - {type: encoder_error, step_deg: 0.01, eccentricity_deg: 0.02, phase_deg: 45, turn_sigma_deg: 0.03}
 )";
 
-TEST(NoiseYaml, ReadsEveryTypeInOrder) {
+TEST(NoiseYaml, ReadsStepsInTheOrderOfTheFile) {
+  const TestFolder folder;
+  const YamlField file = read_yaml(folder.write("s.yaml", "noise:\n" + kEvery));
+  const std::vector<YamlField> steps = items(need(file, "noise"));
   const std::vector<NoiseStep> noise = read(kEvery);
-  ASSERT_EQ(noise.size(), std::variant_size_v<NoiseStep>);
-  for (std::size_t i = 0; i < noise.size(); ++i) EXPECT_EQ(noise[i].index(), i);
+  ASSERT_EQ(noise.size(), steps.size());
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    EXPECT_EQ(type_info(noise[i]).name, text(need(steps[i], "type")));
+  }
 }
 
 TEST(NoiseYaml, ConvertsUnits) {
@@ -74,7 +79,6 @@ TEST(NoiseYaml, ConvertsUnits) {
 
 TEST(NoiseYaml, TellsInTheSidecarWhatTheFileSays) {
   const nlohmann::ordered_json told = report(read(kEvery));
-  ASSERT_EQ(told.size(), std::variant_size_v<NoiseStep>);
   const auto near = [](const nlohmann::ordered_json& value, double expected) {
     EXPECT_NEAR(value.get<double>(), expected, 1e-12 * std::abs(expected));
   };

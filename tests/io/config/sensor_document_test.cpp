@@ -16,7 +16,6 @@
 #include <cstring>
 #include <numbers>
 #include <random>
-#include <set>
 
 namespace glidar {
 namespace {
@@ -72,9 +71,9 @@ TEST(SensorDocument, EveryPresetReadsBackTheSameToTheLastBit) {
   }
 }
 
-/// A step of every kind, first with what it needs alone and then with numbers whose digits do not
-/// end in binary.
-TEST(SensorDocument, EveryStepOfNoiseReadsBackTheSame) {
+/// Steps with what they need alone, and with numbers whose digits do not end in binary. RoundTrip
+/// has every kind.
+TEST(SensorDocument, NoiseReadsBackTheSame) {
   const std::vector<std::string> steps = {
       "range_gaussian",
       "range_gaussian, sigma_m: 0.1, sigma_per_m: 0.003",
@@ -110,15 +109,12 @@ TEST(SensorDocument, EveryStepOfNoiseReadsBackTheSame) {
       "pointing_jitter, sigma_azimuth_deg: 0.013, sigma_elevation_deg: 0.007",
       "encoder_error, step_deg: 0.011, eccentricity_deg: 0.003, phase_deg: 77.7, turn_sigma_deg: "
       "0.017"};
-  std::set<std::size_t> seen;
   for (const std::string& step : steps) {
     SCOPED_TRACE(step);
     const Sensor sensor =
         parse_sensor("{optics: {width: 4, height: 3, fov_deg: 20}, noise: [{type: " + step + "}]}");
-    seen.insert(sensor.noise.at(0).index());
     expect_round_trip(sensor);
   }
-  EXPECT_EQ(seen.size(), std::variant_size_v<NoiseStep>) << "every kind must be in the list";
 }
 
 TEST(SensorDocument, EveryKindOfOpticsReadsBackTheSame) {
