@@ -175,7 +175,7 @@ class Recording(FaultTest):
 
     def test_durable_without_a_recording_is_refused(self):
         error = self.refused(*STREAM, "-o", "x.pcd", "--durable")
-        self.assertIn("--durable: given without --record", error)
+        self.assertIn("--durable: there is no --record", error)
 
     def test_a_kill_at_any_call_leaves_the_old_recording_or_the_complete_new_one(self):
         self.succeed(*RECORD)

@@ -114,7 +114,7 @@ class Lockstep(LimitsTest):
             with Peer(self.lockstep_port, socket_type, MAX_WAIT_S) as peer:
                 self.is_cut_off(peer, part(b"", more=True) * 1000)
         self.assertTrue(self.is_answered(self.client()))
-        self.assertIn("no whole message", self.stop(program))
+        self.assertIn("without a complete message", self.stop(program))
         self.assertGreaterEqual(self.stats()["faults"]["peer cut off"], 1)
 
     def test_garbage_does_not_affect_replies_to_others(self):

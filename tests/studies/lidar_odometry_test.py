@@ -62,7 +62,7 @@ class Odometry(unittest.TestCase):
             np.testing.assert_allclose(tum[:, 0], runs[0].times_s, atol=1e-9)
             again = glidar.Trajectory.load(Path(folder, "truth_of_no_deskewing.tum"))
             np.testing.assert_allclose(again.pose_at(runs[0].times_s[5]), runs[0].truth[5], atol=1e-7)
-            kitti = np.loadtxt(Path(folder, "deskewed_by_the_truth.kitti")).reshape(-1, 3, 4)
+            kitti = np.loadtxt(Path(folder, "deskewed_by_the_ground_truth.kitti")).reshape(-1, 3, 4)
             errors = np.linalg.norm(kitti[:, :, 3] - runs[2].truth[:, :3, 3], axis=1)
             np.testing.assert_allclose(errors, runs[2].errors_m, atol=1e-5)
             points = np.fromfile(Path(folder, "000001.bin"), "<f4").reshape(-1, 4)

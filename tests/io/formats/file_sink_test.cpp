@@ -76,7 +76,7 @@ TEST(FileSink, ATrailingSeparatorOfAFileIsAnError) {
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   EXPECT_THAT(error_text([&] { write_cloud(made, (folder / "a.pcd").string() + "/"); }),
-              AllOf(HasSubstr("a.pcd/: is the name of a folder"), HasSubstr("leave out")));
+              AllOf(HasSubstr("a.pcd/: is the name of a folder"), HasSubstr("remove the trailing")));
   EXPECT_THAT(error_text([] { format_for("/"); }), HasSubstr("the name has no suffix"));
 }
 
