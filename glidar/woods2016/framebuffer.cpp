@@ -27,6 +27,18 @@ void check_representable(const CastContext& cast) {
   refuse_if(&cast.fired != &cast.beams, "pointing noise");
 }
 
+/// Status of the decoded ranges of a tile; ranges outside the limits are removed.
+void classify_decoded(const CastContext& cast, BeamRange tile, Frame& frame) {
+  for (std::size_t i = tile.begin; i < tile.end; ++i) {
+    const bool is_visible = !std::isnan(frame.range_m[i]);
+    frame.status[i] = is_visible ? check_limits(cast.sensor.limits, cast.beams, i, frame.range_m[i])
+                                 : Status::miss;
+    if (frame.status[i] == Status::hit) continue;
+    frame.range_m[i] = kNaN;
+    frame.intensity[i] = 0.0F;
+  }
+}
+
 }  // namespace
 
 void decode_framebuffer(const Woods2016Framebuffer& picture, const Beams& beams, BeamRange range,
@@ -60,15 +72,7 @@ ReturnReplacement woods2016_measurement(Woods2016Camera& camera,
                 cast.sensor.light, planes, frame.picture);
     const auto decode = [&](std::size_t begin, std::size_t end) {
       decode_framebuffer(frame.picture, cast.beams, {begin, end}, frame.range_m, frame.intensity);
-      for (std::size_t i = begin; i < end; ++i) {
-        const bool is_visible = !std::isnan(frame.range_m[i]);
-        frame.status[i] = is_visible
-                              ? check_limits(cast.sensor.limits, cast.beams, i, frame.range_m[i])
-                              : Status::miss;
-        if (frame.status[i] == Status::hit) continue;
-        frame.range_m[i] = kNaN;
-        frame.intensity[i] = 0.0F;
-      }
+      classify_decoded(cast, {begin, end}, frame);
     };
     cast.thread_pool.parallel_for(cast.beams.size(), kPixelsPerTask, decode);
   };
