@@ -75,8 +75,9 @@ TEST(FileSink, TrailingSeparatorsOfAFolderAreIgnored) {
 TEST(FileSink, ATrailingSeparatorOfAFileIsAnError) {
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
-  EXPECT_THAT(error_text([&] { write_cloud(made, (folder / "a.pcd").string() + "/"); }),
-              AllOf(HasSubstr("a.pcd/: is the name of a folder"), HasSubstr("remove the trailing")));
+  EXPECT_THAT(
+      error_text([&] { write_cloud(made, (folder / "a.pcd").string() + "/"); }),
+      AllOf(HasSubstr("a.pcd/: is the name of a folder"), HasSubstr("remove the trailing")));
   EXPECT_THAT(error_text([] { format_for("/"); }), HasSubstr("the name has no suffix"));
 }
 
