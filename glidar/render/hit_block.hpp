@@ -12,7 +12,7 @@ namespace glidar {
 
 /// Up to kLanes hits: beam, instance and triangle. Only lanes of the mask count.
 struct HitBlock {
-  std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
+  std::uint32_t mask = 0;  ///< bit i: lane i is in use: a beam to cast, then a hit
   std::array<std::size_t, kLanes> beam;
   std::array<std::uint32_t, kLanes> instance;
   std::array<std::uint32_t, kLanes> primitive;

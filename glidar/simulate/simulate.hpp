@@ -8,9 +8,9 @@
 
 namespace glidar {
 
-/// The method: pointing errors; cast; limits and received signal of every tile; occlusion; noise.
-/// Each frame states its stamp_ns, seed, sensor_id and number. Frames that take_one_cast() may be
-/// simulated together, others one at a time.
+/// The method: pointing noise; cast; limits and received signal of every tile; occlusion; noise.
+/// Each frame states its stamp_ns, seed, sensor_id and number. Frames for which takes_one_cast() is
+/// true may be simulated together, others one at a time.
 void simulate(std::span<Simulation> frames);
 
 /// Range, intensity and status of a tile of beams (or pulses) from their hits: checks limits and
