@@ -112,11 +112,11 @@ def told_as(which):
     return lambda stage, place: float(two_planes(stage, place, 2.0, f"returns: [{which}]")[0])
 
 
-def told_apart(separation_m):
+def separate_ranges(separation_m):
     """How far from each other the first and last returns are; 0: there is one."""
     def measure(stage, apart_m):
         told = two_planes(stage, -0.02, apart_m,
-                          f"separation_m: {separation_m}, returns: [first, last]")
+                          f"min_return_separation_m: {separation_m}, returns: [first, last]")
         return float(told[1] - told[0]) if np.isfinite(told[1]) else 0.0
     return measure
 
@@ -219,8 +219,8 @@ CASES = [
     Case("mixed: planes 0.3 m apart", "reported behind the front one, mm", "edge / w", PLACES,
          [Series("217 sub-rays", mixed, mixed_law)]),
     Case("two halves, pulse of 5 ns", "separation of reported echoes, m", "apart, m", APART,
-         [Series("as the pulse can", told_apart(0), lambda x: x * (x > APART_M)),
-          Series("separation_m: 1", told_apart(1), lambda x: x * (x > 1))]),
+         [Series("as the pulse can", separate_ranges(0), lambda x: x * (x > APART_M)),
+          Series("min_return_separation_m: 1", separate_ranges(1), lambda x: x * (x > 1))]),
     Case("returns, planes 2 m apart", "reported behind the front one, m", "edge / w", PLACES,
          [Series("last", told_as("last"), lambda x: 2.0),
           Series("strongest", told_as("strongest"),

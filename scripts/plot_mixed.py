@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws docs/images/mixed.png: returns of one line of beams at surfaces with and without gaps
-between them, seen from above; those with cause `mixed` in red.
+between them, seen from above; those with return_source `mixed_pixel` in red.
 
 usage: plot_mixed.py GLIDAR_PROGRAM PICTURE.png
 """
@@ -53,22 +53,22 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     with tempfile.TemporaryDirectory() as name:
-        ranges, azimuths, causes = measure(str(Path(sys.argv[1]).resolve()), Path(name))
+        ranges, azimuths, sources = measure(str(Path(sys.argv[1]).resolve()), Path(name))
     picture = Image.new("RGB", SIZE, "white")
     draw = ImageDraw.Draw(picture)
-    for x_m, z_m, cause in zip(-ranges * np.sin(azimuths), ranges * np.cos(azimuths), causes):
+    for x_m, z_m, source in zip(-ranges * np.sin(azimuths), ranges * np.cos(azimuths), sources):
         x = SIZE[0] * (x_m - X_M[0]) / (X_M[1] - X_M[0])
         y = SIZE[1] * (z_m - Z_M[0]) / (Z_M[1] - Z_M[0])
-        r = 4 if cause == 2 else 2
-        colour = (210, 40, 30) if cause == 2 else (30, 70, 160)
+        r = 4 if source == 2 else 2
+        colour = (210, 40, 30) if source == 2 else (30, 70, 160)
         draw.ellipse([x - r, y - r, x + r, y + r], outline=colour, fill=colour if r == 4 else None)
     for row, labels in enumerate((LABELS, LABELS2)):
         for x_m, text in labels:
             draw.text((SIZE[0] * (x_m - X_M[0]) / (X_M[1] - X_M[0]), SIZE[1] - 45 + 14 * row), text,
                       fill="black")
-    draw.text((8, 6), "blue: cause surface; red: cause mixed. One line of beams of 6 mrad, from below.",
+    draw.text((8, 6), "blue: surface; red: mixed pixel. One line of beams of 6 mrad, from below.",
               fill="black")
-    print(f"{np.sum(causes == 2)} of {len(causes)} returns are mixed")
+    print(f"{np.sum(sources == 2)} of {len(sources)} returns are mixed")
     picture.convert("P", palette=Image.ADAPTIVE, colors=16).save(sys.argv[2], optimize=True)
 
 

@@ -109,7 +109,7 @@ def rays(x, right, ahead, k):
 
 
 def add_craters(craters, points, height, tone, fresh=()):
-    """Digs craters in rotation_direction: a later one wipes out what was in its bowl."""
+    """Digs craters one after another: a later one wipes out what was in its bowl."""
     for k, radius in enumerate(craters.radii_m):
         reach = 5.5 if k in fresh else 3.2
         near, x, right, ahead = local_frame(craters, k, points, reach)

@@ -45,7 +45,8 @@ class Odometry(unittest.TestCase):
         self.assertLess(truth, none)
 
     def test_scans_are_distorted_by_what_the_sensor_moves_in_a_turn(self):
-        # A point that is seen at the turn's end is off by the way of the rotation_direction: 0.9 m, and more where the road bends.
+        # A point seen at the end of the turn is off by the distance driven in that turn: 0.9 m, and more where the road
+        # bends.
         scan = self.scans[10]
         late = scan.phase > 0.9
         way = study.SPEED_M_S / self.sensor.rate_hz

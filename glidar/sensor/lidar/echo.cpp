@@ -262,7 +262,7 @@ void validate(const Receiver& receiver) {
   require_number(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3,
                  "receiver, pulse_fwhm_s", receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
   require_number(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m),
-                 "receiver, separation_m", receiver.separation_m, "metres from 0");
+                 "receiver, min_return_separation_m", receiver.separation_m, "metres from 0");
   require_number(!receiver.returns.empty() && receiver.returns.size() <= kMaxReturns,
                  "receiver, returns", static_cast<double>(receiver.returns.size()),
                  "1 to 16 of them");
