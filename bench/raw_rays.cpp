@@ -90,6 +90,7 @@ void RawRays::cast() {
 }
 
 #ifdef GLIDAR_EMBREE_4
+#define GLIDAR_EMBREE_FLAG(name) RTC_RAY_QUERY_FLAG_##name
 #define GLIDAR_EMBREE_CONTEXT(flag)    \
   RTCIntersectArguments context;       \
   rtcInitIntersectArguments(&context); \
@@ -97,6 +98,7 @@ void RawRays::cast() {
   context.feature_mask = RTC_FEATURE_FLAG_TRIANGLE
 #define GLIDAR_EMBREE_CALL(function, valid, packet) (function)(valid, scene_, &(packet), &context)
 #else
+#define GLIDAR_EMBREE_FLAG(name) RTC_INTERSECT_CONTEXT_FLAG_##name
 #define GLIDAR_EMBREE_CONTEXT(flag)  \
   RTCIntersectContext context;       \
   rtcInitIntersectContext(&context); \
@@ -111,8 +113,8 @@ void RawRays::cast16(std::size_t first) {
     valid[i] = -1;
     set_lane(packet, i, list_.rays[first + i]);
   }
-  GLIDAR_EMBREE_CONTEXT(list_.is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                          : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  GLIDAR_EMBREE_CONTEXT(list_.is_coherent ? GLIDAR_EMBREE_FLAG(COHERENT)
+                                          : GLIDAR_EMBREE_FLAG(INCOHERENT));
   GLIDAR_EMBREE_CALL(rtcIntersect16, valid, packet);
   for (unsigned i = 0; i < 16; ++i) store_lane(packet, i, first + i, hits_);
 }
@@ -124,8 +126,8 @@ void RawRays::cast8(std::size_t first) {
     valid[i] = -1;
     set_lane(packet, i, list_.rays[first + i]);
   }
-  GLIDAR_EMBREE_CONTEXT(list_.is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                          : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  GLIDAR_EMBREE_CONTEXT(list_.is_coherent ? GLIDAR_EMBREE_FLAG(COHERENT)
+                                          : GLIDAR_EMBREE_FLAG(INCOHERENT));
   GLIDAR_EMBREE_CALL(rtcIntersect8, valid, packet);
   for (unsigned i = 0; i < 8; ++i) store_lane(packet, i, first + i, hits_);
 }
@@ -138,7 +140,7 @@ void RawRays::cast1(std::size_t index) {
   hit.ray = {o.x(), o.y(), o.z(), 0.0F, d.x(), d.y(), d.z(), 0.0F, kFar, ~0U, 0, 0};
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  GLIDAR_EMBREE_CONTEXT(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  GLIDAR_EMBREE_CONTEXT(GLIDAR_EMBREE_FLAG(INCOHERENT));
 #ifdef GLIDAR_EMBREE_4
   rtcIntersect1(scene_, &hit, &context);
 #else
