@@ -51,7 +51,7 @@ class Stage:
             f"optics: {optics}\nlidar_equation: {light}\n{more}\n", encoding="utf-8")
         subprocess.run(
             [self.program, "render", "scene.yaml", "--quiet", "--no-sidecar", "--seed", str(seed),
-             "--fields", "range,true_range,intensity,azimuth,status", "-o", "cloud.npz"],
+             "--columns", "range,true_range,intensity,azimuth,status", "-o", "cloud.npz"],
             cwd=self.folder, check=True)
         return {name: column.ravel() for name, column in np.load(self.folder / "cloud.npz").items()}
 

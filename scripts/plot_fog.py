@@ -32,7 +32,7 @@ def echoes(program, looks, folder):
         encoding="utf-8")
     subprocess.run(
         [program, "render", "builtin:plane", "--sensor", "sensor.yaml", "--eye", "0,0,30",
-         "--target", "0,0,0", "--up-vector", "0,1,0", "--fields", "range,intensity,return_source",
+         "--target", "0,0,0", "--up-vector", "0,1,0", "--columns", "range,intensity,return_source",
          "--quiet", "-o", "cloud.npz"], cwd=folder, check=True)
     cloud = np.load(folder / "cloud.npz")
     fog = cloud["return_source"].ravel() == 5

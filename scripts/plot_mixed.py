@@ -42,7 +42,7 @@ def measure(program, folder):
         f"models:\n{models}sensor: sensor.yaml\nsensor_pose: {{position: [0, 0, 0]}}\n",
         encoding="utf-8")
     (folder / "sensor.yaml").write_text(SENSOR, encoding="utf-8")
-    subprocess.run([program, "render", "scene.yaml", "--quiet", "--no-sidecar", "--fields",
+    subprocess.run([program, "render", "scene.yaml", "--quiet", "--no-sidecar", "--columns",
                     "range,azimuth,return_source", "-o", "cloud.npz"], cwd=folder, check=True)
     cloud = {name: column.ravel() for name, column in np.load(folder / "cloud.npz").items()}
     seen = np.isfinite(cloud["range"])

@@ -49,7 +49,7 @@ class Stage:
             f"optics: {optics}\nlight: {LIGHT}\n{more}noise: [{step}]\n", encoding="utf-8")
         subprocess.run(
             [self.program, "render", "scene.yaml", "--sensor", "sensor.yaml", "--quiet",
-             "--no-sidecar", "--fields", columns, *options, "-o", "cloud.npz"],
+             "--no-sidecar", "--columns", columns, *options, "-o", "cloud.npz"],
             cwd=self.folder, check=True)
         return [dict(np.load(file)) for file in sorted(self.folder.glob("cloud*.npz"))]
 

@@ -64,7 +64,7 @@ def intensities(program, weather, nanometres, folder):
         f"weather: {{fog_backscatter_per_sr: 0{weather}}}\n", encoding="utf-8")
     subprocess.run(
         [program, "render", "builtin:plane", "--sensor", "sensor.yaml", "--eye",
-         f"0,0,{DISTANCE_M}", "--target", "0,0,0", "--up-vector", "0,1,0", "--fields",
+         f"0,0,{DISTANCE_M}", "--target", "0,0,0", "--up-vector", "0,1,0", "--columns",
          "range,intensity", "--quiet", "-o", "cloud.npz"], cwd=folder, check=True)
     cloud = np.load(folder / "cloud.npz")
     return cloud["range"].astype(float), cloud["intensity"].astype(float)

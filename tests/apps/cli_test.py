@@ -87,7 +87,7 @@ class Render(CliTest):
     def test_auto_framed_model_fills_the_view_and_is_not_cut_off(self):
         for size in (("64", "64"), ("200", "20"), ("20", "200")):
             self.succeed("render", "builtin:box", "-w", size[0], "--height", size[1],
-                         "-o", "a.csv", "--fields", "xyz,row,col,status")
+                         "-o", "a.csv", "--columns", "xyz,row,col,status")
             with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
                 lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
             names = lines[0].split(",")
@@ -113,7 +113,7 @@ class Render(CliTest):
                                 ("from the cache", ("--threads", "2"))):
             outputs = [word for output in names for word in ("-o", output)]
             self.succeed("render", "box.obj", "-w", "301", "--height", "203", *arguments,
-                         "--fields", "all", *outputs)
+                         "--columns", "all", *outputs)
             contents[name] = [self.bytes_of(output) for output in names]
             self.assertEqual(contents[name], contents["1 thread"], name)
         self.assertIn("(from the cache)", self.succeed("info", "box.obj").stdout)
@@ -143,7 +143,7 @@ class Render(CliTest):
         self.write("box.obj", "mtllib paint.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paint\n" + faces)
         contents = []
         for arguments in (("--no-cache",), ("--no-cache",), (), (), ("--cache-folder", "other")):
-            self.succeed("render", "box.obj", *arguments, "--fields", "all", "-o", "a.npz")
+            self.succeed("render", "box.obj", *arguments, "--columns", "all", "-o", "a.npz")
             with open(os.path.join(self.folder, "a.npz"), "rb") as file:
                 contents.append(file.read())
         self.assertIn('"from_cache": true', self.succeed("info", "box.obj", "--json").stdout)
@@ -191,7 +191,7 @@ class Render(CliTest):
 
     def test_world_cloud_is_on_the_model(self):
         self.succeed("render", "builtin:box", "--frame", "world", "--drop-invalid", "-o", "a.csv",
-                     "--fields", "xyz")
+                     "--columns", "xyz")
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
             lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
         for line in lines[1:]:
@@ -258,7 +258,7 @@ sensor_pose:
 
     def ids(self, *arguments):
         self.write("scene.yaml", self.SCENE)
-        done = self.succeed("render", "scene.yaml", *arguments, "--drop-invalid", "--fields", "xyz,instance",
+        done = self.succeed("render", "scene.yaml", *arguments, "--drop-invalid", "--columns", "xyz,instance",
                             "-o", "a.csv")
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
             lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
@@ -381,7 +381,7 @@ class Interrupt(CliTest):
     def test_ctrl_c_leaves_no_files(self):
         with subprocess.Popen(
                 ["glidar", "render", "builtin:asteroid", "-w", "1200", "--height", "1200",
-                 "--fields", "all", "-o", "a.csv", "-o", "b.csv"],
+                 "--columns", "all", "-o", "a.csv", "-o", "b.csv"],
                 cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE, text=True) as program:
             wait_until(self.files, "it was writing", program, pause_s=0.002)

@@ -47,7 +47,7 @@ class Explain(CliTest):
 
     def test_the_trace_of_every_point_ends_at_its_reported_values(self):
         self.write("s.yaml", SENSOR)
-        columns = ("--fields", "xyz,range,intensity,status,row,col,return")
+        columns = ("--columns", "xyz,range,intensity,status,row,col,return")
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "-o", "all.csv")
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "--drop-invalid",
                      "-o", "dense.csv")
@@ -80,7 +80,7 @@ optics: {type: pinhole, width: 24, height: 20, fov_deg: 30}
 noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range_m: [[0, 0.5], [1000, 0.5]]}]
 """)
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.csv",
-                     "--fields", "xyz,range,intensity,status")
+                     "--columns", "xyz,range,intensity,status")
         trace = self.trace_of("a.csv", "--row", "10", "--col", "12")
         kinect, chance = trace["noise 1"], trace["noise 2"]
         self.assertRegex(kinect[2], r"normal \S+: error of the disparity: the mean of 5 x 5 pixels' numbers")
@@ -103,7 +103,7 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
         self.write("box.obj", box_of(2))
         os.mkdir(os.path.join(self.folder, "out"))
         self.succeed("render", "box.obj", "--sensor-rate", "0,1,0", "--camera-z", "9", "--duration", "0.1",
-                     "--threads", "1", "--quiet", "-o", "out/b.csv", "--fields", "xyz,range,intensity,status")
+                     "--threads", "1", "--quiet", "-o", "out/b.csv", "--columns", "xyz,range,intensity,status")
         with open(os.path.join(self.folder, "out", "b_000002.csv.json"), encoding="utf-8") as file:
             told = json.load(file)
         self.assertEqual(told["frame"], 2)

@@ -15,7 +15,7 @@ STREET = pathlib.Path(__file__).parents[2] / "examples" / "street.yaml"
 class InstructionSets(CliTest):
     def render(self, name, *arguments):
         self.environment["GLIDAR_ISA"] = name
-        return self.run_program("render", *arguments, "--fields", "all", "-o", "a.npz")
+        return self.run_program("render", *arguments, "--columns", "all", "-o", "a.npz")
 
     def usable(self):
         names = []

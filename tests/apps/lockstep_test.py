@@ -95,7 +95,7 @@ class Lockstep(CliTest):
             columns = ["xyz", "intensity", "normal", "status", "instance"]
             _, cloud = ask(socket, columns, [(0, 5, 0, [SENSOR, ROCK])])[0]
         self.succeed("render", "builtin:asteroid", *self.SIZE, "--seed", "5", "--sensor-pose",
-                     "6,0,0,0.5,-0.5,-0.5,0.5", "--fields", ",".join(columns), "-o", "x.npz")
+                     "6,0,0,0.5,-0.5,-0.5,0.5", "--columns", ",".join(columns), "-o", "x.npz")
         with np.load(os.path.join(self.folder, "x.npz")) as written:
             for name in columns:
                 expected = written[name]
@@ -252,7 +252,7 @@ class Lockstep(CliTest):
                                ("tcp://192.0.2.1:5600", "192.0.2.1")):
             self.assertRegex(self.refused("stream", "builtin:box", "--lockstep", endpoint), word)
         for more in (["--port", "5555"], ["-o", "x.pcd"], ["--object-rate", "0,0,1"], ["--duration", "1"],
-                     ["--drop-invalid"], ["--fields", "xyz"], ["--depth-scale", "5000"]):
+                     ["--drop-invalid"], ["--columns", "xyz"], ["--depth-scale", "5000"]):
             self.assertIn("--lockstep", self.refused("stream", "builtin:box", "--lockstep",
                                                      "tcp://127.0.0.1:*", *more))
         self.assertIn("--curve-keys", self.refused("stream", "builtin:box", "--port", "5555",

@@ -51,9 +51,9 @@ class OpenglRenderer(CliTest):
     @unittest.skipIf(np is None, "NumPy is not installed")
     def test_the_paper_png_is_the_framebuffer_of_the_cloud(self):
         paper = ("--renderer", "opengl", "--quantized-framebuffer")
-        self.succeed("render", *VIEW, *paper, "--fields", "xyz,depth,intensity,status", "-o", "a.npz",
+        self.succeed("render", *VIEW, *paper, "--columns", "xyz,depth,intensity,status", "-o", "a.npz",
                      "-o", "a.paper.png")
-        self.succeed("render", *VIEW, "--fields", "xyz,depth", "-o", "exact.npz")
+        self.succeed("render", *VIEW, "--columns", "xyz,depth", "-o", "exact.npz")
         pixels, texts = formats.read_png(Path(self.folder) / "a.paper.png")
         self.assertEqual((pixels.shape, pixels.dtype), ((60, 80, 4), np.uint8))
         near, far = (float(x) for x in re.search(r"n = (\S+) m, f = (\S+) m", texts["Description"]).groups())

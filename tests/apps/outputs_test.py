@@ -85,7 +85,7 @@ class Failures(CliTest):
     def test_a_full_disk_leaves_no_file_of_the_frame(self):
         limit = 3_000_000  # bytes of one file: a.csv is larger, a.depth.png smaller
         done = subprocess.run(
-            ["glidar", "render", "builtin:box", "-o", "a.depth.png", "-o", "a.csv", "--fields", "all"],
+            ["glidar", "render", "builtin:box", "-o", "a.depth.png", "-o", "a.csv", "--columns", "all"],
             cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=MAX_WAIT_S, check=False,
             preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))  # fmt: skip

@@ -46,7 +46,7 @@ class Refusals(CliTest):
         os.rename(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "in.ply"))
         self.assertIn("is an input", self.refused("render", "in.ply", "-o", "in.ply"))
         self.assertIn("did you mean 'intensity'?",
-                      self.refused("render", "builtin:box", "-o", "x.pcd", "--fields", "xyz,intensty"))
+                      self.refused("render", "builtin:box", "-o", "x.pcd", "--columns", "xyz,intensty"))
 
     def test_files_of_the_scene_are_never_overwritten(self):
         self.write("paint.npy", "P6 1 1 255\nabc")
@@ -110,7 +110,7 @@ class Refusals(CliTest):
                 (("--snow", "nan"), "--snow: nan; allowed: a number from 0 to 1000"),
                 (("--target", "1,1,1"), "--target: there is no --eye; give --eye too"),
                 (("--visibility", "0.5"), "weather, visibility_m: 0.5; allowed: metres from 1"),
-                (("--fields", "xyz,foo"), "--fields"),
+                (("--columns", "xyz,foo"), "--columns"),
                 (("--sensor-pose", "0,0,0,0,0,0,0"), "--sensor-pose"),
                 (("--sensor-pose", "nan,0,0,1,0,0,0"), "--sensor-pose"),
                 (("--eye", "0,0,5", "--up-vector", "0,0,1"), "--up-vector 1,0,0"),
@@ -125,7 +125,7 @@ class Refusals(CliTest):
         self.assertIn("--layout: 'velodine'; allowed: minimal, velodyne, ouster, livox, autoware", error)
         self.assertIn("did you mean velodyne?", error)
         for columns in ("xyz", "default"):
-            error = self.refused(*render, "--layout", "velodyne", "--fields", columns)
+            error = self.refused(*render, "--layout", "velodyne", "--columns", columns)
             self.assertIn("both are given; give one of them", error)
         error = self.refused("render", "nofile.ply", "-o", "x.png", "-o", "x.bin", "--layout", "ouster")
         self.assertIn("no output takes a layout", error)

@@ -57,7 +57,7 @@ class Files(RigTest):
             self.assertEqual(self.bytes_of("one.pcd"), self.bytes_of(f"all_{name}.pcd"))
 
     def test_sensors_of_the_same_kind_and_pose_have_different_noise(self):
-        self.succeed("render", "rig.yaml", "-o", "all.npz", "--fields", "range,true_range")
+        self.succeed("render", "rig.yaml", "-o", "all.npz", "--columns", "range,true_range")
         camera, twin = (np.load(os.path.join(self.folder, f"all_{name}.npz")) for name in ("camera", "twin"))
         np.testing.assert_array_equal(camera["true_range"], twin["true_range"])
         hit = np.isfinite(camera["range"])
@@ -105,7 +105,7 @@ class Alone(RigTest):
     def test_the_second_sensor_rate_rotates_a_lidar_about_up(self):
         """--sensor-rate is about left, up, forward, for any axes of the sensor."""
         self.succeed("render", "box.obj", "--sensor", "VLP-16", "--ground-truth", "--sensor-pose", "0,0,0,1,0,0,0",
-                     "--sensor-rate", "0,2,0", "--fields", "sensor_pose", "-o", "x.npz")
+                     "--sensor-rate", "0,2,0", "--columns", "sensor_pose", "-o", "x.npz")
         with np.load(os.path.join(self.folder, "x.npz")) as written:
             turns = written["sensor_pose"].reshape(-1, 7)[:, 3:]
         self.assertGreater(turns[:, 3].max(), 0.05)  # about z
@@ -139,7 +139,7 @@ class Topics(RigTest):
         self.assertEqual([stamp for stamp, _ in pictures], list(range(1, 9)))
         self.assertEqual(self.stats()["frames"]["measured"], 4 + 8 + 8)
         self.succeed("render", "rig.yaml", "--sensor-name", "camera", "--duration", "0.4", "--frame", "legacy",
-                     "--fields", "xyz,intensity", "--drop-invalid", "-o", "c.npz")
+                     "--columns", "xyz,intensity", "--drop-invalid", "-o", "c.npz")
         for k, (_, points) in enumerate(pictures):
             with np.load(os.path.join(self.folder, f"c_{k:06}.npz")) as written:
                 np.testing.assert_array_equal(points[:, :3], written["xyz"].reshape(-1, 3).astype("<f4"))

@@ -47,7 +47,7 @@ class Sensors(CliTest):
         self.assertIn("--surfaces alone", self.refused("sensors", "VLP-16", "--surfaces"))
 
         box = ("render", "builtin:box", "--eye", "0,0,0", "-o", "a.csv", "--surface")
-        lidar = ("--sensor", "VLP-16", "--fields", "xyz,intensity")
+        lidar = ("--sensor", "VLP-16", "--columns", "xyz,intensity")
         self.succeed(*box, "black_paint", *lidar)
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
             next(file)
@@ -76,7 +76,7 @@ class Sensors(CliTest):
 
     def test_renders_with_a_preset(self):
         done = self.succeed("render", "builtin:box", "--sensor", "vlp-16", "--eye", "0,0,0",
-                            "--fields", "xyz,range,ring,time", "-o", "room.npz")
+                            "--columns", "xyz,range,ring,time", "-o", "room.npz")
         self.assertIn("1809 x 16 beams, 28944 hits (100.0 %)", done.stdout)
         with open(os.path.join(self.folder, "room.npz.json"), encoding="utf-8") as file:
             sensor = json.load(file)["sensor"]

@@ -13,7 +13,7 @@ class Sequences(CliTest):
         self.write("scene.yaml", "models: [{model: builtin:box, scale: 8}]\nsensor: VLP-16\n"
                                  "sensor_pose: {position: [0, 0, 0]}\n"
                                  "sensor_motion: {twist: {velocity_m_s: [2, 0, 0]}}\n")
-        columns = ("--fields", "xyz,time,ring", "--frame", "world", "--drop-invalid")
+        columns = ("--columns", "xyz,time,ring", "--frame", "world", "--drop-invalid")
         self.succeed("render", "scene.yaml", "--duration", "0.3", "--deskew", "--ground-truth", *columns, "-o", "a.csv")
         self.assertEqual([name for name in self.files() if name.endswith(".csv")],
                          ["a_000000.csv", "a_000001.csv", "a_000002.csv"])

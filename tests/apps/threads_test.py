@@ -13,7 +13,7 @@ THREADS = (1, 2, 3, 5, 64)
 class Threads(CliTest):
     def rendered(self, threads, *arguments):
         done = self.succeed("render", "builtin:asteroid", *arguments, "--threads",
-                            str(threads), "--fields", "all", "-o", "a.npz")
+                            str(threads), "--columns", "all", "-o", "a.npz")
         self.assertEqual(done.stderr, "", f"{threads} threads")
         return self.bytes_of("a.npz")
 

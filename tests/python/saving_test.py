@@ -24,14 +24,14 @@ def scene_file(tmp_path_factory):
 
 CASES = {
     "a.pcd": ({}, []),
-    "ascii.pcd": ({"pcd": "ascii", "columns": "all"}, ["--pcd-encoding", "ascii", "--fields", "all"]),
+    "ascii.pcd": ({"pcd": "ascii", "columns": "all"}, ["--pcd-encoding", "ascii", "--columns", "all"]),
     "small.pcd": ({"pcd": "binary_compressed"}, ["--pcd-encoding", "binary_compressed"]),
     "dense.pcd": ({"hits_only": True, "frame": "world"}, ["--drop-invalid", "--frame", "world"]),
     "layout.pcd": ({"layout": "velodyne", "hits_only": True}, ["--layout", "velodyne", "--drop-invalid"]),
     "b.ply": ({"frame": "ros"}, ["--frame", "ros"]),
     "ascii.ply": ({"ply_ascii": True, "deskew": True}, ["--ply-ascii", "--deskew"]),
-    "c.npz": ({"columns": "all"}, ["--fields", "all"]),
-    "d.csv": ({"columns": ["xyz", "status"]}, ["--fields", "xyz,status"]),
+    "c.npz": ({"columns": "all"}, ["--columns", "all"]),
+    "d.csv": ({"columns": ["xyz", "status"]}, ["--columns", "xyz,status"]),
     "e.bin": ({}, []),
     "f.npy": ({}, []),
     "g.depth.png": ({"depth_units_per_m": 5000.0}, ["--depth-scale", "5000"]),

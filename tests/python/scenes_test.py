@@ -189,7 +189,7 @@ def test_a_dict_is_the_same_as_the_file_with_its_keys(tmp_path):
 
 def test_a_rig_is_measured_like_on_the_command_line(tmp_path, program):
     path = ROOT / "examples/rig.yaml"
-    program("render", path, "--seed", 5, "--fields", "all", "-o", tmp_path / "a.npz")
+    program("render", path, "--seed", 5, "--columns", "all", "-o", tmp_path / "a.npz")
     scene = glidar.Scene(path)
     assert scene.sensor is None
     assert [mount.number for mount in scene.rig.values()] == [0, 1]

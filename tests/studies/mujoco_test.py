@@ -95,7 +95,7 @@ class TorqueFreeRotation(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "scene.yaml").write_text(scene, encoding="utf-8")
             subprocess.run(["glidar", "render", "scene.yaml", "--eye", "9,0,0", "--target", "0,0,0", "--width", "8", "--height",
-                            "8", "--rate", "1", "--duration", "60", "--fields", "object_pose", "--quiet", "-o", "o.npz"],
+                            "8", "--rate", "1", "--duration", "60", "--columns", "object_pose", "--quiet", "-o", "o.npz"],
                            cwd=folder, check=True, env=dict(os.environ, XDG_CACHE_HOME=folder))
             for second in range(60):
                 poses = np.load(Path(folder, f"o_{second:06}.npz"))["object_pose"].reshape(-1, 7)

@@ -24,8 +24,8 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
   glidar render builtin:box --eye 4,-6,3 --target 0,0,0 --width 640 --height 480 --fov 40 -o box.ply
   glidar render builtin:torus --fx 500 --cx 300 --cy 250 -w 640 --height 480 -o torus.depth.png
-  glidar render builtin:sphere --fields all -o sphere.npz
-  glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --fields all -o room.pcd -o room.png
+  glidar render builtin:sphere --columns all -o sphere.npz
+  glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --columns all -o room.pcd -o room.png
   glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd

@@ -20,16 +20,16 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The fields of a list; each name is known.
-std::vector<std::string> parse_fields(const std::string& text) {
-  if (text == "default") return default_fields();
+/// The columns of a list; each name is known.
+std::vector<std::string> parse_columns(const std::string& text) {
+  if (text == "default") return default_columns();
   if (text == "all") return {cloud_column_names().begin(), cloud_column_names().end()};
-  std::vector<std::string> fields;
+  std::vector<std::string> columns;
   for (const std::string& name : parse_list(text)) {
-    if (!contains(fields, name)) fields.push_back(name);
+    if (!contains(columns, name)) columns.push_back(name);
   }
-  fields_needed_by(fields);  // throws Error for an unknown name
-  return fields;
+  fields_needed_by(columns);  // throws Error for an unknown name
+  return columns;
 }
 
 std::vector<std::string> layout_names() {
@@ -48,8 +48,8 @@ std::vector<std::string> stream_formats() {
 }
 
 void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
-  group.add("--fields", "LIST", "Fields of clouds: a,b,c or all or default", flags.fields,
-            parse_fields);
+  group.add("--columns", "LIST", "Columns of clouds: a,b,c or all or default", flags.columns,
+            parse_columns);
   group.add("--layout", "NAME", "Point layout of another sensor's clouds, see below",
             flags.sink.layout, one_of(layout_names()));
   group.add("--frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]",
@@ -87,13 +87,13 @@ void add_picture_options(const OptionGroup& group, CloudPictureOptions& picture)
 
 }  // namespace
 
-const std::vector<std::string>& default_fields() {
-  static const std::vector<std::string> kFields = {"xyz",    "intensity", "range",
-                                                   "normal", "instance",  "class"};
-  return kFields;
+const std::vector<std::string>& default_columns() {
+  static const std::vector<std::string> kColumns = {"xyz",    "intensity", "range",
+                                                    "normal", "instance",  "class"};
+  return kColumns;
 }
 
-std::string suffixes_with_fields() {
+std::string suffixes_with_columns() {
   std::string text;
   for (const FileFormat& format : file_formats()) {
     if (format.takes_more) text += (text.empty() ? "" : " ") + format.suffix;
@@ -110,7 +110,7 @@ void add_output_options(CLI::App& command, OutputFlags& flags) {
   add_cloud_options(group, flags);
   add_picture_options(group, flags.sink.picture);
   group.add_flag("--no-sidecar", "Write no FILE.json beside clouds", flags.sink.sidecar, false);
-  forbid_together(command, {"--layout"}, {"--fields"});
+  forbid_together(command, {"--layout"}, {"--columns"});
 }
 
 void add_legacy_output_option(CLI::App& command, OutputFlags& flags) {
@@ -128,13 +128,13 @@ std::string output_names_text() {
   for (const FileFormat& format : file_formats()) {
     text += fmt::format("  {:<13} {}\n", format.suffix, format.description);
   }
-  text += "\nFields of clouds (* by default):\n";
+  text += "\nColumns of clouds (* by default):\n";
   std::string names;
   for (const std::string& name : cloud_column_names()) {
-    names += (names.empty() ? "" : " ") + name + (contains(default_fields(), name) ? "*" : "");
+    names += (names.empty() ? "" : " ") + name + (contains(default_columns(), name) ? "*" : "");
   }
   text += indented(names);
-  text += "\nLayouts of clouds (" + suffixes_with_fields() + "):\n";
+  text += "\nLayouts of clouds (" + suffixes_with_columns() + "):\n";
   for (const PointFieldLayout& layout : cloud_layouts()) {
     text += fmt::format("  {:<12} {}\n", layout.name, layout.description);
   }

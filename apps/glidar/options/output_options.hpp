@@ -12,11 +12,11 @@ namespace glidar::app {
 
 /// The files to write.
 struct OutputFlags {
-  std::vector<std::string> paths;   ///< "-": standard output
-  std::string format;               ///< of standard output, without the dot; empty: not given
-  std::string legacy_name;          ///< --legacy-output NAME; empty: not given
-  std::vector<std::string> fields;  ///< of clouds; empty: default_fields()
-  std::string frame = "sensor";     ///< axes of clouds
+  std::vector<std::string> paths;    ///< "-": standard output
+  std::string format;                ///< of standard output, without the dot; empty: not given
+  std::string legacy_name;           ///< --legacy-output NAME; empty: not given
+  std::vector<std::string> columns;  ///< of clouds; empty: default_columns()
+  std::string frame = "sensor";      ///< axes of clouds
   bool deskew = false;
   FileSinkOptions sink;
 };
@@ -31,13 +31,13 @@ void add_legacy_output_option(CLI::App& command, OutputFlags& flags);
 /// Removes standard output from the help of a command that writes sequences.
 void hide_standard_output(CLI::App& command);
 
-/// The fields of a cloud unless --fields or --layout gives others.
-const std::vector<std::string>& default_fields();
+/// The columns of a cloud unless --columns or --layout gives others.
+const std::vector<std::string>& default_columns();
 
-/// The formats that take fields: ".pcd .ply .npz .csv".
-std::string suffixes_with_fields();
+/// The formats that take columns: ".pcd .ply .npz .csv".
+std::string suffixes_with_columns();
 
-/// The meanings of suffixes, fields, layouts and axes, for the end of --help.
+/// The meanings of suffixes, columns, layouts and axes, for the end of --help.
 std::string output_names_text();
 
 /// The path that means standard output.

@@ -131,7 +131,7 @@ std::string reason_for_no_hits(const View& view, const ViewGeometry& geometry,
     return fmt::format(
         "{} beams meet surfaces, but the received signal is too weak, too strong or dropped: see "
         "the "
-        "field 'status', and `glidar explain`",
+        "column 'status', and `glidar explain`",
         lost);
   }
   if (geometry.deepest_m < 0.0 && geometry.view_rad < 0.5 * std::numbers::pi) {

@@ -24,7 +24,7 @@ void add_missing(const std::string& name, std::vector<std::string>& names) {
 
 std::vector<std::string> requested_columns(const OutputFlags& flags) {
   if (!flags.sink.layout.empty()) return find_layout(flags.sink.layout).columns;
-  return flags.fields.empty() ? default_fields() : flags.fields;
+  return flags.columns.empty() ? default_columns() : flags.columns;
 }
 
 void check_layout(const OutputFlags& flags) {
@@ -35,7 +35,7 @@ void check_layout(const OutputFlags& flags) {
   if (std::any_of(flags.paths.begin(), flags.paths.end(), has_fields)) return;
   throw Error({.where = "--layout",
                .found = "no output takes a layout",
-               .allowed = "an output with the suffix " + suffixes_with_fields(),
+               .allowed = "an output with the suffix " + suffixes_with_columns(),
                .remedy = "add one, such as -o scan.pcd, or leave --layout out"});
 }
 

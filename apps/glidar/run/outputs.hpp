@@ -32,7 +32,7 @@ struct Output {
   std::unique_ptr<FileSink> sink;
 };
 
-/// All files, checked as far as possible before any work: suffix, folder, fields, no name twice,
+/// All files, checked as far as possible before any work: suffix, folder, columns, no name twice,
 /// not the input itself. Writing uses the context, calls `progress` and sends warnings to `report`.
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
                                  const SidecarContext& context, const Report& report,

@@ -20,9 +20,9 @@ struct CloudFile {
   const Frame& frame;
   const FileSinkOptions& options;
   const SidecarContext& context;
-  std::span<const Field> fields;  ///< stored numbers of each point, as the sidecar lists them
-  std::string layout = {};        ///< name of the cloud's point layout; empty: none
-  std::string pixels = {};        ///< meaning of an image's pixels; empty: not an image
+  std::span<const PointField> fields;  ///< stored numbers of each point, as the sidecar lists them
+  std::string layout = {};             ///< name of the cloud's point layout; empty: none
+  std::string pixels = {};             ///< meaning of an image's pixels; empty: not an image
 };
 
 }  // namespace glidar

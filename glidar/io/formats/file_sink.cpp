@@ -166,16 +166,16 @@ class FormatSink : public FileSink {
 
   void deliver(const PointCloud& cloud, const Frame& frame) {
     if (options_.layout.empty() || !format_.info.takes_more) {
-      const std::vector<Field> fields = format_.fields(cloud);
+      const std::vector<PointField> fields = format_.fields(cloud);
       store({cloud, frame, options_, context_, fields, {}, format_.pixels});
       tell(
           rounding_warning(fields, "write .npz, .csv or .ply, which store distant points exactly"));
       return;
     }
     const PointCloud laid = apply_layout(cloud, options_.layout, context_.sensor, context_.beams);
-    const std::vector<Field> fields = native_fields(laid);
+    const std::vector<PointField> fields = native_fields(laid);
     store({laid, frame, options_, context_, fields, options_.layout, {}});
-    const std::array points = {Field{"x", find_column(cloud, "xyz"), 0, Stored::f32}};
+    const std::array points = {PointField{"x", find_column(cloud, "xyz"), 0, Stored::f32}};
     tell(rounding_warning(points,
                           "without a layout .npz, .csv and .ply store distant points exactly"));
   }

@@ -30,7 +30,7 @@ namespace glidar {
 namespace {
 
 /// For formats that do not store points.
-std::vector<Field> no_fields(const PointCloud& /*cloud*/) {
+std::vector<PointField> no_fields(const PointCloud& /*cloud*/) {
   return {};
 }
 

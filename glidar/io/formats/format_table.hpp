@@ -24,8 +24,8 @@ enum class Content : std::uint8_t {
 struct Format {
   FileFormat info;
   Content content;
-  std::vector<Field> (*fields)(const PointCloud&);  ///< stored numbers of each point
-  void (*write)(const CloudFile&, AtomicFile&);     ///< nullptr: `stage_extra_files` writes all
+  std::vector<PointField> (*fields)(const PointCloud&);  ///< stored numbers of each point
+  void (*write)(const CloudFile&, AtomicFile&);  ///< nullptr: `stage_extra_files` writes all
   /// Adds further files; nullptr: none.
   void (*stage_extra_files)(const CloudFile&, const std::filesystem::path&, StagedFiles&) = nullptr;
   const char* pixels = "";  ///< meaning of an image's pixels, for its sidecar

@@ -38,11 +38,11 @@ const std::vector<std::uint32_t>& ids_of(const CloudFile& job, const char* name,
 
 }  // namespace
 
-std::vector<Field> kitti_fields(const PointCloud& cloud) {
-  std::vector<Field> fields;
+std::vector<PointField> kitti_fields(const PointCloud& cloud) {
+  std::vector<PointField> fields;
   append_fields(*find_column(cloud, "xyz"), fields);
   append_fields(*find_column(cloud, "intensity"), fields);
-  for (Field& field : fields) field.stored = Stored::f32;
+  for (PointField& field : fields) field.stored = Stored::f32;
   return fields;
 }
 

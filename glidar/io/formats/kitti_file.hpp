@@ -20,7 +20,7 @@ namespace glidar {
 PointCloud kitti_cloud(const PointCloud& cloud, const Sensor& sensor, const Beams& beams);
 
 /// Fields of a KITTI file: x y z intensity as float; see kitti_cloud().
-std::vector<Field> kitti_fields(const PointCloud& cloud);
+std::vector<PointField> kitti_fields(const PointCloud& cloud);
 
 /// Writes a KITTI Velodyne file: float32 x y z intensity per point, no header, no misses; of a
 /// kitti_cloud().

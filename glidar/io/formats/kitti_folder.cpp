@@ -198,7 +198,7 @@ void stage_kitti_folder(const CloudFile& job, const std::filesystem::path& folde
   }
   const std::string number = fmt::format("{:06}", job.frame.number);
   const PointCloud cloud = in_sensor_frame(job);
-  const std::vector<Field> fields = kitti_fields(cloud);
+  const std::vector<PointField> fields = kitti_fields(cloud);
   const CloudFile velodyne{cloud, job.frame, job.options, context, fields};
   AtomicFile& points = files.add(folder / "velodyne" / (number + ".bin"));
   write_kitti(velodyne, points);

@@ -28,7 +28,7 @@ std::string npy_header(std::string_view type, std::span<const std::size_t> shape
   return head + dictionary;
 }
 
-std::vector<Field> depth_fields(const PointCloud& cloud) {
+std::vector<PointField> depth_fields(const PointCloud& cloud) {
   return {{"depth", find_column(cloud, "depth"), 0, Stored::f32}};
 }
 

@@ -17,7 +17,7 @@ namespace glidar {
 std::string npy_header(std::string_view type, std::span<const std::size_t> shape);
 
 /// The field of a depth image: depth as float.
-std::vector<Field> depth_fields(const PointCloud& cloud);
+std::vector<PointField> depth_fields(const PointCloud& cloud);
 
 /// Writes a NumPy array rows x cols of float32 depth in metres, NaN for no return.
 void write_depth_npy(const CloudFile& job, AtomicFile& file);

@@ -35,13 +35,13 @@ std::string viewpoint(const CloudFile& job) {
   return fmt::format("{} {} {} {} {} {} {}", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
 }
 
-std::string header(const CloudFile& job, std::span<const Field> fields) {
+std::string header(const CloudFile& job, std::span<const PointField> fields) {
   constexpr std::array kData = {"ascii", "binary", "binary_compressed"};
   const PcdEncoding encoding = job.options.pcd;
   std::string sizes;
   std::string types;
   std::string counts;
-  for (const Field& field : fields) {
+  for (const PointField& field : fields) {
     fmt::format_to(std::back_inserter(sizes), " {}", size_of(field.stored));
     fmt::format_to(std::back_inserter(types), " {}", pcd_type(field.stored, encoding));
     counts += " 1";
@@ -62,10 +62,10 @@ std::string header(const CloudFile& job, std::span<const Field> fields) {
 }
 
 /// Field after field, as PCL compresses it.
-std::vector<std::byte> by_field(std::span<const Field> fields, std::size_t count) {
+std::vector<std::byte> by_field(std::span<const PointField> fields, std::size_t count) {
   std::vector<std::byte> bytes(row_bytes(fields) * count);
   std::size_t offset = 0;
-  for (const Field& field : fields) {
+  for (const PointField& field : fields) {
     const std::size_t size = size_of(field.stored) * count;
     pack_rows(std::span(&field, 1), 0, count, std::span(bytes).subspan(offset, size));
     offset += size;
@@ -76,7 +76,7 @@ std::vector<std::byte> by_field(std::span<const Field> fields, std::size_t count
 /// In the worst case lzf adds one byte to 32 and a few at the end. Its hash table starts
 /// uninitialised, but the result does not depend on that: an entry is used only if three earlier
 /// bytes match, and every earlier triple has been entered (or is a copy of one that was).
-void write_compressed(std::span<const Field> fields, std::size_t count, AtomicFile& file) {
+void write_compressed(std::span<const PointField> fields, std::size_t count, AtomicFile& file) {
   const std::size_t raw_size = row_bytes(fields) * count;
   if (raw_size > kMaxBlock) too_large(file);
   const std::vector<std::byte> raw = by_field(fields, count);
@@ -93,8 +93,8 @@ void write_compressed(std::span<const Field> fields, std::size_t count, AtomicFi
 
 }  // namespace
 
-std::vector<Field> pcd_fields(const PointCloud& cloud) {
-  std::vector<Field> fields;
+std::vector<PointField> pcd_fields(const PointCloud& cloud) {
+  std::vector<PointField> fields;
   for (const Column& column : cloud.columns) {
     if (is_colour(column)) {
       fields.push_back({"rgb", &column, 0, Stored::packed_rgb});
@@ -110,7 +110,7 @@ std::vector<Field> pcd_fields(const PointCloud& cloud) {
 }
 
 void write_pcd(const CloudFile& job, AtomicFile& file) {
-  const std::span<const Field> fields = job.fields;
+  const std::span<const PointField> fields = job.fields;
   file.write(header(job, fields));
   switch (job.options.pcd) {
     case PcdEncoding::ascii:

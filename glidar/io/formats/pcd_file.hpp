@@ -10,7 +10,7 @@ namespace glidar {
 
 /// Fields of a PCD file: real numbers as float, as PCL's point types require; colour is PCL's
 /// packed `rgb`.
-std::vector<Field> pcd_fields(const PointCloud& cloud);
+std::vector<PointField> pcd_fields(const PointCloud& cloud);
 
 /// Writes a Point Cloud Library file, format 0.7: https://pcl.readthedocs.io (The PCD file format).
 /// The viewpoint is the sensor's pose in the cloud's frame.

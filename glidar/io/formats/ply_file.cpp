@@ -17,7 +17,7 @@ namespace {
 
 /// Readers expect these names of normals and colours.
 void append_renamed(const Column& column, const std::array<const char*, 3>& names, Stored stored,
-                    std::vector<Field>& fields) {
+                    std::vector<PointField>& fields) {
   for (std::size_t c = 0; c < names.size(); ++c) fields.push_back({names[c], &column, c, stored});
 }
 
@@ -40,7 +40,7 @@ std::string_view ply_type(Stored stored) {
   return "uint";
 }
 
-std::string ply_header(const CloudFile& job, std::span<const Field> fields) {
+std::string ply_header(const CloudFile& job, std::span<const PointField> fields) {
   std::string text = fmt::format("ply\nformat {} 1.0\ncomment glidar {}, metres in the frame {}\n",
                                  job.options.ply_ascii ? "ascii" : "binary_little_endian",
                                  version(), one_line(job.cloud.frame_id));
@@ -49,7 +49,7 @@ std::string ply_header(const CloudFile& job, std::span<const Field> fields) {
                    job.cloud.cols, job.cloud.rows);
   }
   fmt::format_to(std::back_inserter(text), "element vertex {}\n", job.cloud.size());
-  for (const Field& field : fields) {
+  for (const PointField& field : fields) {
     fmt::format_to(std::back_inserter(text), "property {} {}\n", ply_type(field.stored),
                    field.name);
   }
@@ -58,8 +58,8 @@ std::string ply_header(const CloudFile& job, std::span<const Field> fields) {
 
 }  // namespace
 
-std::vector<Field> ply_fields(const PointCloud& cloud) {
-  std::vector<Field> fields;
+std::vector<PointField> ply_fields(const PointCloud& cloud) {
+  std::vector<PointField> fields;
   for (const Column& column : cloud.columns) {
     if (column.name == "xyz") {
       const Stored stored = float_is_enough(column) ? Stored::f32 : Stored::f64;
@@ -79,7 +79,7 @@ std::vector<Field> ply_fields(const PointCloud& cloud) {
 }
 
 void write_ply(const CloudFile& job, AtomicFile& file) {
-  const std::span<const Field> fields = job.fields;
+  const std::span<const PointField> fields = job.fields;
   file.write(ply_header(job, fields));
   if (job.options.ply_ascii) {
     write_text_rows(fields, job.cloud.size(), ' ', file, job.options.progress);

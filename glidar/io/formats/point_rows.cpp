@@ -76,7 +76,7 @@ std::uint32_t packed_rgb(const float* rgb) {
 }
 
 template <class From>
-void store_fields(const From* from, std::size_t step, std::span<const Field> same,
+void store_fields(const From* from, std::size_t step, std::span<const PointField> same,
                   const Places& to) {
   const std::size_t run = same.size();
   switch (same.front().stored) {
@@ -104,8 +104,8 @@ void store_fields(const From* from, std::size_t step, std::span<const Field> sam
   }
 }
 
-void pack_fields(std::span<const Field> same, std::size_t first_row, const Places& to) {
-  const Field& field = same.front();
+void pack_fields(std::span<const PointField> same, std::size_t first_row, const Places& to) {
+  const PointField& field = same.front();
   const std::size_t step = field.column->components.size();
   std::visit(
       [&](const auto& values) {
@@ -116,7 +116,7 @@ void pack_fields(std::span<const Field> same, std::size_t first_row, const Place
 
 /// Number of leading fields that are adjacent in one column and have the same stored type, so that
 /// one pass can copy them together.
-std::size_t run_length(std::span<const Field> fields) {
+std::size_t run_length(std::span<const PointField> fields) {
   std::size_t run = 1;
   while (run < fields.size() && fields[run].column == fields[0].column &&
          fields[run].stored == fields[0].stored &&
@@ -160,7 +160,7 @@ void append_stored(fmt::memory_buffer& text, Stored stored, const std::byte* byt
   }
 }
 
-void append_row(fmt::memory_buffer& text, std::span<const Field> fields, const std::byte* row,
+void append_row(fmt::memory_buffer& text, std::span<const PointField> fields, const std::byte* row,
                 char separator) {
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (f > 0) text.push_back(separator);
@@ -206,13 +206,13 @@ bool is_colour(const Column& column) {
          native_type(column) == Stored::f32;
 }
 
-void append_fields(const Column& column, std::vector<Field>& fields) {
+void append_fields(const Column& column, std::vector<PointField>& fields) {
   for (std::size_t c = 0; c < column.components.size(); ++c)
     fields.push_back({column.components[c], &column, c, native_type(column)});
 }
 
-std::vector<Field> native_fields(const PointCloud& cloud) {
-  std::vector<Field> fields;
+std::vector<PointField> native_fields(const PointCloud& cloud) {
+  std::vector<PointField> fields;
   for (const Column& column : cloud.columns) append_fields(column, fields);
   return fields;
 }
@@ -229,20 +229,20 @@ GLIDAR_SIMD bool float_is_enough(const Column& column) {
   return coarse == 0;
 }
 
-std::size_t row_bytes(std::span<const Field> fields) {
+std::size_t row_bytes(std::span<const PointField> fields) {
   std::size_t bytes = 0;
-  for (const Field& field : fields) bytes += size_of(field.stored);
+  for (const PointField& field : fields) bytes += size_of(field.stored);
   return bytes;
 }
 
-void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t count,
+void pack_rows(std::span<const PointField> fields, std::size_t first, std::size_t count,
                std::span<std::byte> rows) {
   const std::size_t stride = row_bytes(fields);
   for (std::size_t done = 0; done < count; done += kBlockRows) {
     Places to = {rows.data() + done * stride, stride, std::min(kBlockRows, count - done)};
-    std::span<const Field> left = fields;
+    std::span<const PointField> left = fields;
     while (!left.empty()) {
-      const std::span<const Field> same = left.first(run_length(left));
+      const std::span<const PointField> same = left.first(run_length(left));
       pack_fields(same, first + done, to);
       to.first += row_bytes(same);
       left = left.subspan(same.size());
@@ -250,7 +250,7 @@ void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t cou
   }
 }
 
-void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file,
+void write_binary_rows(std::span<const PointField> fields, std::size_t count, AtomicFile& file,
                        const ProgressCallback& progress) {
   const std::size_t stride = row_bytes(fields);
   if (stride == 0) return;
@@ -264,7 +264,7 @@ void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicF
   }
 }
 
-void write_text_rows(std::span<const Field> fields, std::size_t count, char separator,
+void write_text_rows(std::span<const PointField> fields, std::size_t count, char separator,
                      AtomicFile& file, const ProgressCallback& progress) {
   const std::size_t stride = row_bytes(fields);
   if (stride == 0) return;
@@ -281,9 +281,9 @@ void write_text_rows(std::span<const Field> fields, std::size_t count, char sepa
   }
 }
 
-std::string joined_names(std::span<const Field> fields, char separator) {
+std::string joined_names(std::span<const PointField> fields, char separator) {
   std::string names;
-  for (const Field& field : fields) {
+  for (const PointField& field : fields) {
     if (!names.empty()) names += separator;
     names += field.name;
   }

@@ -28,7 +28,7 @@ enum class Stored : std::uint8_t {
 };
 
 /// One number per point: a component of a column.
-struct Field {
+struct PointField {
   std::string name;
   const Column* column = nullptr;
   std::size_t component = 0;
@@ -45,10 +45,10 @@ Stored native_type(const Column& column);
 bool is_colour(const Column& column);
 
 /// Appends a field per component, with the column's own names and type.
-void append_fields(const Column& column, std::vector<Field>& fields);
+void append_fields(const Column& column, std::vector<PointField>& fields);
 
 /// A field per component of every column, with their own names and types.
-std::vector<Field> native_fields(const PointCloud& cloud);
+std::vector<PointField> native_fields(const PointCloud& cloud);
 
 /// Maximum displacement of a point by rounding that causes no warning.
 inline constexpr double kFinePosition_m = 1e-4;
@@ -58,23 +58,23 @@ inline constexpr double kFinePosition_m = 1e-4;
 bool float_is_enough(const Column& column);
 
 /// Size of one point with these fields, in bytes.
-std::size_t row_bytes(std::span<const Field> fields);
+std::size_t row_bytes(std::span<const PointField> fields);
 
 /// Points first .. first + count - 1, each as row_bytes(fields) bytes, into `rows`.
-void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t count,
+void pack_rows(std::span<const PointField> fields, std::size_t first, std::size_t count,
                std::span<std::byte> rows);
 
 /// `count` points, point by point, to the file; reports to `progress`.
-void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file,
+void write_binary_rows(std::span<const PointField> fields, std::size_t count, AtomicFile& file,
                        const ProgressCallback& progress = {});
 
 /// `count` points as text, a line each: the shortest digits that represent each number exactly;
 /// "nan".
-void write_text_rows(std::span<const Field> fields, std::size_t count, char separator,
+void write_text_rows(std::span<const PointField> fields, std::size_t count, char separator,
                      AtomicFile& file, const ProgressCallback& progress = {});
 
 /// The fields' names, joined by `separator`.
-std::string joined_names(std::span<const Field> fields, char separator);
+std::string joined_names(std::span<const PointField> fields, char separator);
 
 /// Text that cannot break a header line: control characters become spaces.
 std::string one_line(std::string_view text);

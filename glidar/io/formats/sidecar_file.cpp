@@ -73,7 +73,7 @@ Json sensor_json(const CloudFile& job) {
 }
 
 /// As stored in the file, which may be shorter, renamed or fewer than the cloud's.
-Json columns_json(std::span<const Field> fields) {
+Json columns_json(std::span<const PointField> fields) {
   Json columns = Json::array();
   for (const StoredColumn& stored : stored_columns(fields)) {
     columns.push_back({{"name", stored.column->name},

@@ -23,9 +23,9 @@ double rounding(const Column& column) {
 
 }  // namespace
 
-std::vector<StoredColumn> stored_columns(std::span<const Field> fields) {
+std::vector<StoredColumn> stored_columns(std::span<const PointField> fields) {
   std::vector<StoredColumn> columns;
-  for (const Field& field : fields) {
+  for (const PointField& field : fields) {
     const bool same = !columns.empty() && columns.back().column == field.column &&
                       columns.back().stored == field.stored;
     if (!same) columns.push_back({field.column, field.stored, {}});
@@ -55,7 +55,7 @@ std::string_view type_name(Stored stored) {
   return "packed_rgb";
 }
 
-std::string rounding_warning(std::span<const Field> fields, std::string_view remedy) {
+std::string rounding_warning(std::span<const PointField> fields, std::string_view remedy) {
   std::string moves;
   for (const StoredColumn& stored : stored_columns(fields)) {
     const Column& column = *stored.column;

@@ -66,7 +66,7 @@ TEST(RenderOptions, ThatExcludeEachOtherAreRefused) {
       {"--trajectory=t.tum", "--sensor-rate=1,2,3"},
       {"--trajectory=t.tum", "--camera-z=5"},
       {"--sensor=VLP-16", "--width=5"},
-      {"--layout=velodyne", "--fields=xyz"}};
+      {"--layout=velodyne", "--columns=xyz"}};
   for (const auto& pair : pairs) {
     EXPECT_THROW((void)parsed(pair), CLI::ExcludesError) << pair.front() << " " << pair.back();
   }
