@@ -15,7 +15,7 @@ void make_cloud_points(const Snapshot& snapshot, const Eigen::Vector3d& anchor_m
       .cloud_from_sensor = anchor_from_world * snapshot.frame.world_from_sensor};
   const std::vector<std::string> columns = {"xyz"};
   PointCloud cloud;
-  make_point_cloud(snapshot.frame, *snapshot.beams, snapshot.session->scene, cloud_frame, columns,
+  make_point_cloud(snapshot.frame, *snapshot.beams, snapshot.prepared->scene, cloud_frame, columns,
                    cloud);
   const auto& xyz = std::get<std::vector<double>>(cloud.columns[0].values);
   points.resize(cloud.size());

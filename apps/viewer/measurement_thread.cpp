@@ -18,10 +18,10 @@
 namespace glidar::app {
 
 /// The scene and sensor of the flags, and what is computed from them.
-struct MeasurementThread::OpenSession {
+struct MeasurementThread::OpenScene {
   std::shared_ptr<const RenderFlags> flags;
-  std::shared_ptr<Session> session;
-  std::size_t mount = 0;  ///< the sensor of the following members
+  std::shared_ptr<PreparedScene> prepared;
+  std::size_t sensor_index = 0;  ///< the sensor of the following members
   std::shared_ptr<Simulator> simulator;
   std::shared_ptr<Simulator> noise_free_simulator;
 };
@@ -59,7 +59,7 @@ std::string written_text(const std::vector<Output>& outputs) {
 
 bool operator==(const MeasureRequest& a, const MeasureRequest& b) {
   const auto is_same = [](const Pose& p, const Pose& q) { return p.matrix() == q.matrix(); };
-  return a.flags == b.flags && a.mount == b.mount &&
+  return a.flags == b.flags && a.sensor_index == b.sensor_index &&
          std::equal(a.objects_moved.begin(), a.objects_moved.end(), b.objects_moved.begin(),
                     b.objects_moved.end(), is_same) &&
          a.sensor_moved.matrix() == b.sensor_moved.matrix() && a.number == b.number &&
@@ -182,25 +182,25 @@ void MeasurementThread::do_one(std::unique_lock<std::mutex>& lock) {
 
 void MeasurementThread::open_for(const MeasureRequest& request) {
   show_busy("opening " + request.flags->input, -1.0);
-  auto opened = std::make_unique<OpenSession>();
-  opened->session = std::make_shared<Session>();
+  auto loaded = std::make_unique<OpenScene>();
+  loaded->prepared = std::make_shared<PreparedScene>();
   refused_ = request.flags;
-  open(*request.flags, {}, console_, *opened->session);
+  prepare_scene(*request.flags, {}, console_, *loaded->prepared);
   refused_.reset();
-  opened->flags = request.flags;
-  opened_ = std::move(opened);
-  use_mount(request.mount);
+  loaded->flags = request.flags;
+  open_scene_ = std::move(loaded);
+  select_sensor(request.sensor_index);
   snapshots_.clear();
 }
 
-/// Selects a sensor of the session.
-void MeasurementThread::use_mount(std::size_t index) {
-  const Mount& mount = opened_->session->mounts.at(index);
-  opened_->mount = index;
-  opened_->simulator = mount.simulator;
-  opened_->noise_free_simulator =
-      make_simulator(*opened_->session,
-                     std::make_shared<const BeamCache>(without_noise(mount.sensor), mount.beams));
+/// Selects a sensor of the scene.
+void MeasurementThread::select_sensor(std::size_t index) {
+  const ActiveSensor& active = open_scene_->prepared->sensors.at(index);
+  open_scene_->sensor_index = index;
+  open_scene_->simulator = active.simulator;
+  open_scene_->noise_free_simulator =
+      make_simulator(*open_scene_->prepared,
+                     std::make_shared<const BeamCache>(without_noise(active.sensor), active.beams));
 }
 
 std::shared_ptr<Snapshot> MeasurementThread::unused_snapshot() {
@@ -214,17 +214,18 @@ std::shared_ptr<Snapshot> MeasurementThread::unused_snapshot() {
 
 /// Fills all of the snapshot except the frame's measurement.
 void MeasurementThread::prepare(const MeasureRequest& request, Snapshot& snapshot) {
-  if (!opened_ || opened_->flags != request.flags) open_for(request);
-  if (opened_->mount != request.mount) use_mount(request.mount);
-  const Mount& mount = opened_->session->mounts[request.mount];
+  if (!open_scene_ || open_scene_->flags != request.flags) open_for(request);
+  if (open_scene_->sensor_index != request.sensor_index) select_sensor(request.sensor_index);
+  const ActiveSensor& active = open_scene_->prepared->sensors[request.sensor_index];
   snapshot.request = request;
-  snapshot.session = opened_->session;
-  snapshot.simulator = request.has_noise ? opened_->simulator : opened_->noise_free_simulator;
+  snapshot.prepared = open_scene_->prepared;
+  snapshot.simulator =
+      request.has_noise ? open_scene_->simulator : open_scene_->noise_free_simulator;
   snapshot.sensor = {snapshot.simulator, &snapshot.simulator->sensor()};
   snapshot.beams = snapshot.simulator->beams(request.number);
-  snapshot.motion = with_moves(mount.motion, request);
+  snapshot.motion = with_moves(active.motion, request);
   snapshot.frame.number = request.number;
-  snapshot.frame.sensor_id = mount.id;
+  snapshot.frame.sensor_id = active.id;
   snapshot.frame.stamp_ns = frame_interval(*snapshot.sensor, request.number).start_ns;
   snapshot.frame.seed = request.seed;
 }
@@ -242,7 +243,8 @@ void MeasurementThread::measure_now(const MeasureRequest& request) {
 }
 
 void MeasurementThread::explain_now(const MeasureRequest& request, std::size_t entry) {
-  if (!opened_ || opened_->flags != request.flags) return;  // the user has opened another file
+  if (!open_scene_ || open_scene_->flags != request.flags)
+    return;  // the user has opened another file
   Snapshot snapshot;
   prepare(request, snapshot);
   const PointTrace trace =
@@ -255,16 +257,16 @@ void MeasurementThread::explain_now(const MeasureRequest& request, std::size_t e
 void MeasurementThread::save_now(const MeasureRequest& request, const OutputFlags& flags) {
   Snapshot snapshot;
   prepare(request, snapshot);
-  const SidecarContext context{.scene = snapshot.session->scene,
+  const SidecarContext context{.scene = snapshot.prepared->scene,
                                .sensor = *snapshot.sensor,
                                .beams = *snapshot.beams,
                                .renderer = renderer_name(*request.flags),
-                               .inputs = snapshot.session->files};
+                               .inputs = snapshot.prepared->files};
   const std::vector<Output> outputs =
       plan_outputs(flags, request.flags->input, context, console_.report());
-  refuse_overwrite_of_inputs(snapshot.session->files, outputs);
+  refuse_overwrite_of_inputs(snapshot.prepared->files, outputs);
   snapshot.simulator->simulate(snapshot.motion, fields_for_outputs(outputs), snapshot.frame);
-  write_outputs(outputs, snapshot.frame, *snapshot.beams, snapshot.session->scene,
+  write_outputs(outputs, snapshot.frame, *snapshot.beams, snapshot.prepared->scene,
                 console_.report());
   add_message(written_text(outputs));
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/session.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 
 #include <condition_variable>
 #include <cstddef>
@@ -22,8 +22,8 @@ namespace glidar::app {
 
 /// A measurement to be done.
 struct MeasureRequest {
-  std::shared_ptr<const RenderFlags> flags;  ///< other flags open another session
-  std::size_t mount = 0;                     ///< index of the sensor among the session's mounts
+  std::shared_ptr<const RenderFlags> flags;  ///< other flags open another scene
+  std::size_t sensor_index = 0;              ///< index of the sensor among those of the scene
   std::vector<Pose> objects_moved = {};      ///< moved_from_world per instance; empty: none moved
   Pose sensor_moved = Pose::Identity();      ///< moved_from_world of the sensor and its rig
   std::uint32_t number = 0;                  ///< of the frame
@@ -36,7 +36,7 @@ bool operator==(const MeasureRequest& a, const MeasureRequest& b);
 /// A measurement and its inputs.
 struct Snapshot {
   MeasureRequest request;
-  std::shared_ptr<const Session> session;
+  std::shared_ptr<const PreparedScene> prepared;
   std::shared_ptr<Simulator> simulator;  ///< without noise if requested
   std::shared_ptr<const Sensor> sensor;  ///< the simulator's
   std::shared_ptr<const Beams> beams;
@@ -74,13 +74,13 @@ class MeasurementThread {
   void take(Results& results);
 
  private:
-  struct OpenSession;
+  struct OpenScene;
 
   void run();
   void do_one(std::unique_lock<std::mutex>& lock);
   std::function<void()> next_task();
   void open_for(const MeasureRequest& request);
-  void use_mount(std::size_t index);
+  void select_sensor(std::size_t index);
   void prepare(const MeasureRequest& request, Snapshot& snapshot);
   void measure_now(const MeasureRequest& request);
   void explain_now(const MeasureRequest& request, std::size_t entry);
@@ -99,7 +99,7 @@ class MeasurementThread {
   std::function<void()> trace_task_;
   Results results_;
   // used by the thread only
-  std::unique_ptr<OpenSession> opened_;
+  std::unique_ptr<OpenScene> open_scene_;
   std::shared_ptr<const RenderFlags> refused_;  ///< flags that could not be opened; not tried again
   std::vector<std::shared_ptr<Snapshot>> snapshots_;  ///< their memory is reused
   std::thread thread_;

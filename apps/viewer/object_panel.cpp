@@ -31,7 +31,7 @@ void show_row(Viewer& viewer, const std::string& name, std::optional<std::size_t
 }
 
 void show_rows(Viewer& viewer) {
-  const Scene& scene = viewer.snapshot()->session->scene;
+  const Scene& scene = viewer.snapshot()->prepared->scene;
   int& scrolled_to = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("scrolled to"), 0);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
@@ -48,7 +48,7 @@ void show_rows(Viewer& viewer) {
 
 void show_list(Viewer& viewer) {
   constexpr std::size_t kMaxRows = 7;  // more rows scroll
-  const std::size_t count = viewer.snapshot()->session->scene.instances.size();
+  const std::size_t count = viewer.snapshot()->prepared->scene.instances.size();
   const std::size_t rows = std::min(kMaxRows, count > 1 ? count + 2 : count + 1);
   constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
                                      ImGuiTableFlags_BordersOuter | ImGuiTableFlags_Resizable;
@@ -75,7 +75,7 @@ void show_objects(Viewer& viewer) {
   if (ImGui::Checkbox("keep in view", &keeps_in_view)) viewer.set_keeps_in_view(keeps_in_view);
   const std::optional<std::size_t> object = viewer.selection().object();
   if (!object) return;
-  const Instance& instance = snapshot->session->scene.instances[*object];
+  const Instance& instance = snapshot->prepared->scene.instances[*object];
   Pose pose = snapshot->frame.world_from_instance[*object];
   const std::string name = instance.name + " in the world";
   ImGui::PushID(static_cast<int>(*object));

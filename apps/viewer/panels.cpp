@@ -87,15 +87,16 @@ void show_sensor_numbers(const Snapshot& snapshot) {
 }
 
 /// The sensors of the scene; a click selects one.
-void show_mounts(Viewer& viewer) {
-  const std::vector<Mount>& mounts = viewer.snapshot()->session->mounts;
-  for (std::size_t i = 0; i < mounts.size(); ++i) {
-    const Mount& mount = mounts[i];
-    const std::string line = mount.name.empty()
-                                 ? mount.sensor.name
-                                 : fmt::format("{}: {}", mount.name, mount.sensor.name);
+void show_rig_sensors(Viewer& viewer) {
+  const std::vector<ActiveSensor>& sensors = viewer.snapshot()->prepared->sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const ActiveSensor& active = sensors[i];
+    const std::string line = active.name.empty()
+                                 ? active.sensor.name
+                                 : fmt::format("{}: {}", active.name, active.sensor.name);
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::Selectable(line.c_str(), i == viewer.request().mount)) viewer.use_mount(i);
+    if (ImGui::Selectable(line.c_str(), i == viewer.request().sensor_index))
+      viewer.select_sensor(i);
     ImGui::PopID();
   }
 }
@@ -104,9 +105,9 @@ void show_sensor(Viewer& viewer) {
   const SensorFlags& flags = viewer.request().flags->sensor;
   std::size_t chosen = 0;
   const std::string shown = flags.file.empty() ? "as given" : flags.file;
-  if (viewer.snapshot() != nullptr) show_mounts(viewer);
+  if (viewer.snapshot() != nullptr) show_rig_sensors(viewer);
   const bool has_rig =
-      viewer.snapshot() != nullptr && viewer.snapshot()->session->mounts.size() > 1;
+      viewer.snapshot() != nullptr && viewer.snapshot()->prepared->sensors.size() > 1;
   if (!has_rig && choose("preset", shown, preset_names(), chosen)) {
     viewer.use_sensor(preset_names()[chosen]);
   }

@@ -187,7 +187,7 @@ void ViewerWindow::print_state(bool is_hidden) {
       "object={} sensor={}\n",
       drawn_, viewer_.snapshot()->request.number, size.width, size.height, is_hidden ? 1 : 0,
       mouse.x, mouse.y, mouse.buttons, mouse.wheel_steps, keys_, object,
-      viewer_.snapshot()->request.mount);
+      viewer_.snapshot()->request.sensor_index);
   std::fflush(stdout);
 }
 
@@ -272,7 +272,7 @@ int run(ViewFlags& flags) {
   if (screenshot) {
     Picture picture;
     for (int i = 0; i < kSettleFrames; ++i) window.draw(&picture);
-    refuse_overwrite_of_inputs(viewer.snapshot()->session->files, flags.screenshot);
+    refuse_overwrite_of_inputs(viewer.snapshot()->prepared->files, flags.screenshot);
     write_screenshot(picture, *screenshot);
   }
   if (!flags.render.quiet) fmt::print("drew {} frames of the window\n", window.drawn());

@@ -75,7 +75,7 @@ bool Viewer::take_results() {
   if (results_.trace) trace = *results_.trace;
   if (results_.is_refused && snapshot()) {
     request_.flags = snapshot()->request.flags;
-    request_.mount = snapshot()->request.mount;
+    request_.sensor_index = snapshot()->request.sensor_index;
     request_.objects_moved = snapshot()->request.objects_moved;
     request_.sensor_moved = snapshot()->request.sensor_moved;
   }
@@ -86,12 +86,12 @@ bool Viewer::take_results() {
 }
 
 /// Resets the view so that the whole scene is visible.
-void Viewer::begin_session() {
+void Viewer::begin_scene() {
   const Snapshot& now = *snapshot();
-  selection_.begin(now.session->scene,
+  selection_.begin(now.prepared->scene,
                    shown_flags_ && shown_flags_->input == now.request.flags->input);
   shown_flags_ = now.request.flags;
-  const Eigen::AlignedBox3d box = bounds(now.session->scene);
+  const Eigen::AlignedBox3d box = bounds(now.prepared->scene);
   anchor_m_ = box.isEmpty() ? Eigen::Vector3d(now.frame.world_from_sensor.translation())
                             : Eigen::Vector3d(box.center());
   const Eigen::Vector3d sensor_m = now.frame.world_from_sensor.translation() - anchor_m_;
@@ -99,22 +99,22 @@ void Viewer::begin_session() {
   if (!box.isEmpty()) anchored.translate(-anchor_m_);
   style.orbit = view_of_all(anchored, sensor_m, style.aspect);
   const std::vector<std::string> advice =
-      view_advice({now.session->scene, *now.sensor, *now.beams, now.frame});
+      view_advice({now.prepared->scene, *now.sensor, *now.beams, now.frame});
   if (!advice.empty()) message = advice.front();
 }
 
 void Viewer::begin_sensor() {
   const Beams& beams = *snapshot()->beams;
-  shown_mount_ = snapshot()->request.mount;
+  shown_sensor_ = snapshot()->request.sensor_index;
   field_ = field_of_view(beams);
   const bool is_camera = looks_along_z(beams);
   if (style.quantity == Quantity::depth && !is_camera) style.quantity = Quantity::range;
   if (style.quantity == Quantity::range && is_camera) style.quantity = Quantity::depth;
 }
 
-void Viewer::show_snapshot(bool is_new_session) {
-  if (is_new_session) begin_session();
-  if (is_new_session || snapshot()->request.mount != shown_mount_) begin_sensor();
+void Viewer::show_snapshot(bool is_new_scene) {
+  if (is_new_scene) begin_scene();
+  if (is_new_scene || snapshot()->request.sensor_index != shown_sensor_) begin_sensor();
   update_visibility();
   aim_if_hidden();
   summary_ = summarise(snapshot()->frame);
@@ -132,7 +132,7 @@ void Viewer::request_trace() {
 void Viewer::update_view() {
   if (!snapshot()) return;
   const Snapshot& now = *snapshot();
-  make_sensor_picture(now.frame, *now.beams, now.session->scene, style.quantity, style.map,
+  make_sensor_picture(now.frame, *now.beams, now.prepared->scene, style.quantity, style.map,
                       picture_);
   make_cloud_points(now, anchor_m_, points_);
   guides_.clear();
@@ -140,7 +140,7 @@ void Viewer::update_view() {
   const double distance_m = anchor_from_sensor.translation().norm();
   const double extent_m = std::max(style.orbit.distance_m, 1e-6);
   style.grid_m = grid_spacing_m(2.0 * extent_m);
-  const Eigen::AlignedBox3d box = bounds(now.session->scene);
+  const Eigen::AlignedBox3d box = bounds(now.prepared->scene);
   const double floor_m = box.isEmpty() ? 0.0 : box.min().z() - anchor_m_.z();
   add_grid({0.0, 0.0, floor_m}, extent_m, style.grid_m, guides_);
   add_axes(translation_by({0.0, 0.0, floor_m}), style.grid_m, guides_);
@@ -174,7 +174,7 @@ void Viewer::type(unsigned letter) {
 void Viewer::open(const std::string& path) {
   request_.objects_moved.clear();
   request_.sensor_moved = Pose::Identity();
-  request_.mount = 0;
+  request_.sensor_index = 0;
   request_.number = 0;
   time_s_ = 0.0;
   pick({});
@@ -198,9 +198,10 @@ void Viewer::use_renderer(const std::string& kind) {
   request_measurement(flags);
 }
 
-void Viewer::use_mount(std::size_t index) {
-  if (!is_open() || index == request_.mount || index >= snapshot()->session->mounts.size()) return;
-  request_.mount = index;
+void Viewer::select_sensor(std::size_t index) {
+  if (!is_open() || index >= snapshot()->prepared->sensors.size()) return;
+  if (index == request_.sensor_index) return;
+  request_.sensor_index = index;
   request_.number = static_cast<std::uint32_t>(time_s_ * rate_hz());
   pick({});
   update();
@@ -241,14 +242,14 @@ void Viewer::toggle_play() {
   is_playing_ = !is_playing_;
 }
 
-/// Whether the displayed session is the requested one.
+/// Whether the displayed scene is the requested one.
 bool Viewer::is_open() const {
   return snapshot() != nullptr && snapshot()->request.flags == request_.flags;
 }
 
 double Viewer::rate_hz() const {
-  const std::vector<Mount>& mounts = snapshot()->session->mounts;
-  return mounts[std::min(request_.mount, mounts.size() - 1)].sensor.rate_hz;
+  const std::vector<ActiveSensor>& sensors = snapshot()->prepared->sensors;
+  return sensors[std::min(request_.sensor_index, sensors.size() - 1)].sensor.rate_hz;
 }
 
 Eigen::Vector3d Viewer::middle_m() const {
@@ -259,7 +260,7 @@ Eigen::Vector3d Viewer::middle_m() const {
 std::string Viewer::selected_name() const {
   const std::optional<std::size_t> object = selection_.object();
   if (!object || snapshot() == nullptr) return "all objects";
-  return snapshot()->session->scene.instances[*object].name;
+  return snapshot()->prepared->scene.instances[*object].name;
 }
 
 void Viewer::update_visibility() {
@@ -270,7 +271,7 @@ void Viewer::update_visibility() {
 }
 
 void Viewer::add_selection_box() {
-  if (!selection_.object() || snapshot()->session->scene.instances.size() < 2) return;
+  if (!selection_.object() || snapshot()->prepared->scene.instances.size() < 2) return;
   std::vector<Eigen::Vector3d> corners_m = selection_.corners_m(snapshot()->frame);
   for (Eigen::Vector3d& corner : corners_m) corner -= anchor_m_;
   add_boxes(corners_m, guides_);
@@ -312,15 +313,14 @@ void Viewer::frame_selected() {
   message = "framed " + selected_name();
   update_view();
   if (!field_) return;
-  const std::optional<Pose> pose =
-      pose_to_show(*field_, snapshot()->frame.world_from_sensor, corners_m);
+  const auto pose = pose_to_show(*field_, snapshot()->frame.world_from_sensor, corners_m);
   if (!pose) return;
   message += "; aimed the sensor at it (r resets)";
   set_sensor_pose(*pose);
 }
 
 Pose& Viewer::moved_object(std::size_t object) {
-  request_.objects_moved.resize(snapshot()->session->scene.instances.size(), Pose::Identity());
+  request_.objects_moved.resize(snapshot()->prepared->scene.instances.size(), Pose::Identity());
   return request_.objects_moved.at(object);
 }
 
@@ -335,7 +335,7 @@ void Viewer::turn_objects(const Eigen::Vector2d& drag) {
   const double angle_rad = turn_rad.norm();
   if (angle_rad == 0.0) return;
   const Pose turn = rotation_about(middle_m(), Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad));
-  for (std::size_t i = 0; i < snapshot()->session->scene.instances.size(); ++i) {
+  for (std::size_t i = 0; i < snapshot()->prepared->scene.instances.size(); ++i) {
     if (selection_.includes(i)) moved_object(i) = orthonormalized(turn * moved_object(i));
   }
   update();

@@ -77,7 +77,7 @@ class Viewer {
   void use_sensor(const std::string& preset);
   void use_renderer(const std::string& kind);
   /// Shows another sensor of the rig, at the same time.
-  void use_mount(std::size_t index);
+  void select_sensor(std::size_t index);
   void set_noise(bool is_on);
   void set_seed(std::uint64_t seed);
   void save();
@@ -110,8 +110,8 @@ class Viewer {
  private:
   void request_measurement(const RenderFlags& flags);
   void update();
-  void show_snapshot(bool is_new_session);
-  void begin_session();
+  void show_snapshot(bool is_new_scene);
+  void begin_scene();
   void begin_sensor();
   void update_visibility();
   void add_selection_box();
@@ -130,7 +130,7 @@ class Viewer {
   Lines guides_;
   Eigen::Vector3d anchor_m_ = Eigen::Vector3d::Zero();
   std::shared_ptr<const RenderFlags> shown_flags_;
-  std::size_t shown_mount_ = 0;
+  std::size_t shown_sensor_ = 0;
   Selection selection_;
   std::optional<FieldOfView> field_;  ///< of the displayed sensor
   Visibility visibility_ = Visibility::inside;

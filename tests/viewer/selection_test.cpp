@@ -189,27 +189,27 @@ TEST_F(SelectionTest, AllSensorsOfARigAreShownOneAtATime) {
   Viewer viewer(flags_, measurements_);
   EXPECT_EQ(snapshot_of(viewer).beams->rows, 16U) << "the first of the file";
   EXPECT_EQ(viewer.style.quantity, Quantity::range);
-  viewer.use_mount(1);
+  viewer.select_sensor(1);
   const Snapshot& camera = snapshot_of(viewer);
   EXPECT_EQ(camera.beams->cols, 32U);
   EXPECT_EQ(camera.frame.sensor_id, 1U);
   EXPECT_NEAR(camera.frame.world_from_sensor.translation().x(), -9.9, kRounding);
   EXPECT_EQ(viewer.style.quantity, Quantity::depth);
   EXPECT_EQ(viewer.points().size(), camera.beams->size());
-  viewer.use_mount(2);
-  EXPECT_EQ(viewer.request().mount, 1U) << "there is none";
+  viewer.select_sensor(2);
+  EXPECT_EQ(viewer.request().sensor_index, 1U) << "there is none";
 }
 
 TEST_F(SelectionTest, TheSensorsOfARigMoveTogether) {
   write_scene(kRig);
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
-  viewer.use_mount(1);
+  viewer.select_sensor(1);
   Pose pose = snapshot_of(viewer).frame.world_from_sensor;
   pose.translation() += Eigen::Vector3d(1.0, 2.0, 3.0);
   viewer.set_sensor_pose(pose);
   snapshot_of(viewer);
-  viewer.use_mount(0);
+  viewer.select_sensor(0);
   const Eigen::Vector3d lidar = snapshot_of(viewer).frame.world_from_sensor.translation();
   EXPECT_TRUE(lidar.isApprox(Eigen::Vector3d(-9.0, 2.0, 3.0), kRounding));
 }
@@ -218,13 +218,13 @@ TEST_F(SelectionTest, AMeasurementOfARigSensorIsThatOfTheSensorAlone) {
   write_scene(kRig);
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
-  viewer.use_mount(1);
+  viewer.select_sensor(1);
   const std::vector<float> in_rig = snapshot_of(viewer).frame.intensity;
   RenderFlags alone = flags_;
   alone.sensor_name = "camera";
   Viewer other(alone, measurements_);
   EXPECT_EQ(snapshot_of(other).frame.intensity, in_rig);
-  EXPECT_EQ(snapshot_of(other).session->mounts.size(), 1U);
+  EXPECT_EQ(snapshot_of(other).prepared->sensors.size(), 1U);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST_F(ViewerTest, ShowsWhatTheSensorMeasures) {
 
 TEST_F(ViewerTest, PlusAndMinusMoveTheSensorByATwentiethOfTheDistance) {
   Viewer viewer(flags_, measurements_);
-  const Eigen::Vector3d middle = bounds(snapshot_of(viewer).session->scene).center();
+  const Eigen::Vector3d middle = bounds(snapshot_of(viewer).prepared->scene).center();
   const auto away_m = [&] {
     return (snapshot_of(viewer).frame.world_from_sensor.translation() - middle).norm();
   };
@@ -47,7 +47,7 @@ TEST_F(ViewerTest, PlusAndMinusMoveTheSensorByATwentiethOfTheDistance) {
 TEST_F(ViewerTest, ADragRotatesTheObjectAboutItsCentreAndResetUndoesIt) {
   Viewer viewer(flags_, measurements_);
   const Pose before = snapshot_of(viewer).frame.world_from_instance[0];
-  const Eigen::Vector3d middle = bounds(viewer.snapshot()->session->scene).center();
+  const Eigen::Vector3d middle = bounds(viewer.snapshot()->prepared->scene).center();
   viewer.turn_objects({0.25, 0.0});
   const Pose turned = snapshot_of(viewer).frame.world_from_instance[0];
   EXPECT_TRUE((turned * (before.inverse() * middle)).isApprox(middle, 1e-9));
@@ -125,7 +125,7 @@ TEST_F(ViewerTest, ChangesSensorAndRenderer) {
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
   viewer.use_renderer("opengl");
-  EXPECT_EQ(snapshot_of(viewer).session->renderer->name(), "opengl");
+  EXPECT_EQ(snapshot_of(viewer).prepared->renderer->name(), "opengl");
   viewer.use_renderer("rays");
   viewer.use_sensor("VLP-16");
   EXPECT_EQ(snapshot_of(viewer).beams->rows, 16U);
@@ -153,7 +153,7 @@ TEST_F(ViewerTest, OpensADroppedFileWithInitialPoses) {
   EXPECT_NEAR(distance_m(snapshot_of(viewer)), 100.0, 1e-9);
   viewer.open("builtin:torus");
   EXPECT_LT(distance_m(snapshot_of(viewer)), 50.0);
-  EXPECT_EQ(viewer.snapshot()->session->scene.instances[0].name, "torus");
+  EXPECT_EQ(viewer.snapshot()->prepared->scene.instances[0].name, "torus");
   EXPECT_EQ(viewer.snapshot()->beams->cols, 32U) << "the sensor stays";
 }
 

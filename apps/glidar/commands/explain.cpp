@@ -5,8 +5,8 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
-#include <apps/glidar/run/session.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/explain/trace_text.hpp>
 #include <glidar/io/formats/sidecar.hpp>
@@ -128,24 +128,24 @@ int run_explain(const ExplainFlags& flags) {
   const RenderFlags render = flags_of(sidecar);
   compare_version(sidecar.version, sidecar.path.string(), console);
   enter_folder(sidecar.command, sidecar.path.string());
-  Session session;
-  open(
-      render, [] {}, console, session);
-  check_models(sidecar, session.scene);
+  PreparedScene prepared;
+  prepare_scene(
+      render, [] {}, console, prepared);
+  check_models(sidecar, prepared.scene);
   Frame frame;
-  const Mount& mount = only_mount(session);
-  start_frame(render, sidecar.frame, mount, frame);
+  const ActiveSensor& active = only_sensor(prepared);
+  start_frame(render, sidecar.frame, active, frame);
   const auto pick = [&](const Frame& repeated) {
     check_frame(sidecar, repeated);
-    return entry_of(flags, sidecar, repeated, *mount.simulator->beams(repeated.number));
+    return entry_of(flags, sidecar, repeated, *active.simulator->beams(repeated.number));
   };
   PointTrace story;
   {
     const ProgressScope progress(console, "repeating the measurement");
-    story = explain(*mount.simulator, mount.motion, pick, frame,
+    story = explain(*active.simulator, active.motion, pick, frame,
                     [&console](double fraction) { console.set_progress(fraction); });
   }
-  fmt::print("{}", format_trace(story, *mount.simulator, frame));
+  fmt::print("{}", format_trace(story, *active.simulator, frame));
   return kDone;
 }
 

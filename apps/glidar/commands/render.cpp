@@ -5,9 +5,9 @@
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/fisher_output.hpp>
 #include <apps/glidar/run/outputs.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/rig_outputs.hpp>
-#include <apps/glidar/run/session.hpp>
 #include <glidar/core/error.hpp>
 
 #include <fmt/format.h>
@@ -43,10 +43,11 @@ Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted,
 141 standard output was closed.)";
 
 /// Measures the scene and shows the progress.
-void measure(const Mount& mount, const HitFieldMask& fields, Console& console, Frame& frame) {
-  const ProgressScope progress(console, fmt::format("casting {} beams", mount.beams.size()));
-  mount.simulator->simulate(mount.motion, fields, frame,
-                            [&console](double fraction) { console.set_progress(fraction); });
+void measure(const ActiveSensor& active, const HitFieldMask& fields, Console& console,
+             Frame& frame) {
+  const ProgressScope progress(console, fmt::format("casting {} beams", active.beams.size()));
+  active.simulator->simulate(active.motion, fields, frame,
+                             [&console](double fraction) { console.set_progress(fraction); });
 }
 
 void print_summary(const View& view, const std::vector<Output>& outputs, std::FILE* to) {
@@ -89,7 +90,7 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
 struct Job {
   const RenderFlags& flags;
   const CommandRecord& command;
-  const Session& session;
+  const PreparedScene& prepared;
   std::vector<std::filesystem::path> written = {};  ///< so far
 };
 
@@ -104,37 +105,37 @@ Error after_writing(const Error& error, const std::vector<std::filesystem::path>
 }
 
 /// The files of one sensor's frame: named after both on a rig.
-OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs, const Mount& mount,
-                     std::uint32_t frame) {
-  const std::string label = label_of(flags, mount);
+OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs,
+                     const ActiveSensor& active, std::uint32_t frame) {
+  const std::string label = label_of(flags, active);
   const OutputFlags files = label.empty() ? outputs : labelled(outputs, label);
   return flags.duration_s ? numbered(files, frame) : files;
 }
 
 /// All frames of one sensor, each written to files of its own.
-void measure_all(Job& job, const OutputFlags& files, const Mount& mount, Console& console) {
+void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active, Console& console) {
   const RenderFlags& flags = job.flags;
-  const Session& session = job.session;
+  const PreparedScene& prepared = job.prepared;
   CommandRecord command = job.command;
-  if (!label_of(flags, mount).empty()) {
-    command.arguments.insert(command.arguments.end(), {"--sensor-name", mount.name});
+  if (!label_of(flags, active).empty()) {
+    command.arguments.insert(command.arguments.end(), {"--sensor-name", active.name});
   }
   Frame frame;
-  for (std::uint32_t k = 0; k < mount.frames; ++k) {
-    const std::shared_ptr<const Beams> beams = mount.simulator->beams(k);
-    const SidecarContext context{.scene = session.scene,
-                                 .sensor = mount.sensor,
+  for (std::uint32_t k = 0; k < active.frames; ++k) {
+    const std::shared_ptr<const Beams> beams = active.simulator->beams(k);
+    const SidecarContext context{.scene = prepared.scene,
+                                 .sensor = active.sensor,
                                  .beams = *beams,
                                  .renderer = renderer_name(flags),
                                  .command = command,
-                                 .inputs = session.files};
-    const View view{session.scene, mount.sensor, *beams, frame};
+                                 .inputs = prepared.files};
+    const View view{prepared.scene, active.sensor, *beams, frame};
     const std::vector<Output> outputs =
-        plan_outputs(files_of(flags, files, mount, k), flags.input, context, console.report(),
+        plan_outputs(files_of(flags, files, active, k), flags.input, context, console.report(),
                      [&console](double fraction) { console.set_progress(fraction); });
-    refuse_overwrite_of_inputs(session.files, outputs);
-    start_frame(flags, k, mount, frame);
-    measure(mount, needed_fields(flags, outputs), console, frame);
+    refuse_overwrite_of_inputs(prepared.files, outputs);
+    start_frame(flags, k, active, frame);
+    measure(active, needed_fields(flags, outputs), console, frame);
     if (k == 0) print_advice(view_advice(view), console);
     write(flags, view, outputs, console);
     for (const Output& output : outputs) job.written.push_back(output.path);
@@ -147,22 +148,22 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
   if (flags.duration_s) numbered(flags.output, 0);  // for its errors only
   const CommandRecord command = {.arguments = reproducible_arguments(arguments),
                                  .folder = std::filesystem::current_path()};
-  Session session;
-  const Mount unknown;
+  PreparedScene prepared;
+  const ActiveSensor unknown;
   const std::vector<Output> outputs =  // to report errors before the work begins
       plan_outputs(flags.output, flags.input,
-                   {.scene = session.scene,
+                   {.scene = prepared.scene,
                     .sensor = unknown.sensor,
                     .beams = unknown.beams,
                     .renderer = renderer_name(flags)},
                    console.report());
-  open(
-      flags, [&] { refuse_overwrite_of_inputs(session.files, outputs); }, console, session);
-  const std::vector<OutputFlags> files = outputs_by_sensor(flags, session, console);
-  Job job{flags, command, session};
+  prepare_scene(
+      flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
+  const std::vector<OutputFlags> files = outputs_by_sensor(flags, prepared, console);
+  Job job{flags, command, prepared};
   try {
-    for (std::size_t i = 0; i < session.mounts.size(); ++i) {
-      if (has_outputs(files[i])) measure_all(job, files[i], session.mounts[i], console);
+    for (std::size_t i = 0; i < prepared.sensors.size(); ++i) {
+      if (has_outputs(files[i])) measure_all(job, files[i], prepared.sensors[i], console);
     }
   } catch (const Error& error) {
     if (job.written.empty()) throw;

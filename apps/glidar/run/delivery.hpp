@@ -24,7 +24,7 @@ struct MeasuredFrame {
   Frame frame;
   std::shared_ptr<const Beams> beams;
   std::uint64_t index = 0;                         ///< among its sensor's frames
-  std::size_t mount = 0;                           ///< index of its sensor in the session
+  std::size_t sensor_index = 0;                    ///< of its sensor among those of the scene
   std::shared_ptr<const lockstep::Moment> placed;  ///< poses by a client; nullptr: by the command
   std::string frame_hash;                          ///< expected frame_hash(); empty: unknown
   std::chrono::steady_clock::time_point due;       ///< when its pose was known

@@ -47,10 +47,10 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
   if (!flags_.record.empty()) {
     recorder_ = std::make_unique<Recorder>(flags_.record, flags_.is_durable);
   }
-  open(flags_.render, {}, console_, session_);
-  (void)reserved_files(flags_, session_.files);
-  if (recorder_) recorder_->begin(session_, flags_.command);
-  frame_s_.resize(session_.mounts.size());
+  prepare_scene(flags_.render, {}, console_, prepared_);
+  (void)reserved_files(flags_, prepared_.files);
+  if (recorder_) recorder_->begin(prepared_, flags_.command);
+  frame_s_.resize(prepared_.sensors.size());
 }
 
 int LockstepRun::run() {
@@ -160,32 +160,32 @@ std::size_t LockstepRun::frames_at_once(const Job& job) const {
   constexpr double kMax_s = 0.1;
   const double frame_s = frame_s_[job.measure.sensor];
   if (frame_s == 0.0) return 1;
-  const auto beams = static_cast<double>(session_.mounts[job.measure.sensor].beams.size());
+  const auto beams = static_cast<double>(prepared_.sensors[job.measure.sensor].beams.size());
   const double frames = std::min({kMaxFrames, kMaxBeams / beams, kMax_s / frame_s});
   return static_cast<std::size_t>(std::max(1.0, frames));
 }
 
 nlohmann::ordered_json LockstepRun::description() const {
   nlohmann::ordered_json objects = nlohmann::ordered_json::array();
-  for (const Instance& instance : session_.scene.instances) {
+  for (const Instance& instance : prepared_.scene.instances) {
     objects.push_back({{"name", instance.name},
                        {"id", instance.id},
-                       {"class", session_.scene.class_names.at(instance.class_id)},
+                       {"class", prepared_.scene.class_names.at(instance.class_id)},
                        {"world_from_object", json_of(instance.world_from_object)}});
   }
   nlohmann::ordered_json sensors = nlohmann::ordered_json::array();
-  for (const Mount& mount : session_.mounts) {
-    sensors.push_back({{"name", mount.name.empty() ? mount.sensor.name : mount.name},
-                       {"rows", mount.beams.rows},
-                       {"cols", mount.beams.cols},
-                       {"returns", mount.beams.returns},
-                       {"rate_hz", mount.sensor.rate_hz},
-                       {"frame_id", mount.beams.frame_id},
-                       {"world_from_sensor", json_of(pose_at(mount.motion.world_from_sensor, 0))},
-                       {"rig_from_sensor", json_of(mount.rig_from_sensor)}});
+  for (const ActiveSensor& active : prepared_.sensors) {
+    sensors.push_back({{"name", active.name.empty() ? active.sensor.name : active.name},
+                       {"rows", active.beams.rows},
+                       {"cols", active.beams.cols},
+                       {"returns", active.beams.returns},
+                       {"rate_hz", active.sensor.rate_hz},
+                       {"frame_id", active.beams.frame_id},
+                       {"world_from_sensor", json_of(pose_at(active.motion.world_from_sensor, 0))},
+                       {"rig_from_sensor", json_of(active.rig_from_sensor)}});
   }
   return {{"sensors", sensors},
-          {"world_from_rig", json_of(pose_at(session_.motion.world_from_rig, 0))},
+          {"world_from_rig", json_of(pose_at(prepared_.motion.world_from_rig, 0))},
           {"objects", objects},
           {"columns",
            std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};
@@ -193,14 +193,14 @@ nlohmann::ordered_json LockstepRun::description() const {
 
 /// Returns the size of the reply.
 std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
-  const std::size_t sensors = session_.mounts.size();
+  const std::size_t sensors = prepared_.sensors.size();
   if (measure.sensor >= sensors) {
     refuse_request("sensor", std::to_string(measure.sensor),
                    sensors == 1 ? "0: there is one"
                                 : fmt::format("0 to {}, a sensor on the rig", sensors - 1));
   }
   const std::size_t objects = measure.moments.front().objects.size();
-  const std::size_t instances = session_.scene.instances.size();
+  const std::size_t instances = prepared_.scene.instances.size();
   if (objects != 0 && objects != instances) {
     refuse_request("number of objects", std::to_string(objects),
                    fmt::format("{}, one for each object of the scene, or 0", instances));
@@ -209,7 +209,7 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
   if (measure.hits_only && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
     refuse_request("flags", "hits only, without the column xyz", "xyz among the columns");
   }
-  const std::size_t points = session_.mounts[measure.sensor].beams.size();
+  const std::size_t points = prepared_.sensors[measure.sensor].beams.size();
   const std::int64_t bytes = reply_bytes(columns, points, measure.moments.size());
   const link::Limits& limits = flags_.limits;
   if (bytes > link::bytes_of_mib(std::min(limits.reply_mib, limits.memory_mib))) {
@@ -227,8 +227,8 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
 
 void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> moments) {
   const lockstep::Measure& measure = job.measure;
-  const Mount& mount = session_.mounts[measure.sensor];
-  Simulator& simulator = *mount.simulator;
+  const ActiveSensor& active = prepared_.sensors[measure.sensor];
+  Simulator& simulator = *active.simulator;
   std::vector<std::shared_ptr<const Beams>> beams;
   std::vector<Motion> motions;
   if (frames_.size() < moments.size()) frames_.resize(moments.size());
@@ -236,11 +236,11 @@ void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> momen
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const lockstep::Moment& moment = moments[i];
     beams.push_back(simulator.beams(moment.number));
-    motions.push_back(motion_of(motion_at(moment, session_), mount));
+    motions.push_back(motion_of(motion_at(moment, prepared_), active));
     frames[i].stamp_ns = moment.t_ns;
     frames[i].seed = moment.seed;
     frames[i].number = moment.number;
-    frames[i].sensor_id = mount.id;
+    frames[i].sensor_id = active.id;
   }
   simulator.simulate_batch(motions, glidar::fields_needed_by(measure.columns), frames);
   for (std::size_t i = 0; i < moments.size(); ++i) {
@@ -254,9 +254,9 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
   const OutputFlags& output = flags_.render.output;
   OutputFrame axes = output_frame(output.frame, beams, frame.world_from_sensor);
   axes.deskew = output.deskew;
-  axes.thread_pool = &session_.renderer->thread_pool();
+  axes.thread_pool = &prepared_.renderer->thread_pool();
   std::shared_ptr<PointCloud> cloud = clouds_.take();
-  make_point_cloud(frame, beams, session_.scene, axes, measure.columns, *cloud);
+  make_point_cloud(frame, beams, prepared_.scene, axes, measure.columns, *cloud);
   if (measure.hits_only) {
     const std::shared_ptr<PointCloud> hits = clouds_.take();
     remove_invalid_points(*cloud, *hits);

@@ -5,8 +5,8 @@
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/interrupt.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorder.hpp>
-#include <apps/glidar/run/session.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/link/cloud_pool.hpp>
 #include <glidar/link/error_log.hpp>
@@ -64,7 +64,7 @@ class LockstepRun {
   link::Context context_;
   lockstep::Server server_;
   std::unique_ptr<Recorder> recorder_;
-  Session session_;
+  PreparedScene prepared_;
   link::CloudPool clouds_;
   std::vector<Frame> frames_;
   std::vector<double> frame_s_;  ///< duration of each sensor's last frame; 0: unknown

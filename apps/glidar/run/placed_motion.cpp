@@ -25,13 +25,13 @@ lockstep::Body body_of(const Trajectory& still) {
 
 }  // namespace
 
-RigMotion motion_at(const lockstep::Moment& moment, const Session& session) {
+RigMotion motion_at(const lockstep::Moment& moment, const PreparedScene& prepared) {
   RigMotion motion = {.world_from_rig = trajectory_of(moment.sensor, moment.t_ns),
                       .world_from_instance = {}};
   for (const lockstep::Body& object : moment.objects) {
     motion.world_from_instance.push_back(trajectory_of(object, moment.t_ns));
   }
-  if (moment.objects.empty()) motion.world_from_instance = session.motion.world_from_instance;
+  if (moment.objects.empty()) motion.world_from_instance = prepared.motion.world_from_instance;
   return motion;
 }
 

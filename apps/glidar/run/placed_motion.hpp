@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/run/session.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/link/lockstep/messages.hpp>
 
 namespace glidar::app {
 
 /// The motion of the rig and all instances from the state of a moment on. Without objects in it,
-/// they move as in the session.
-RigMotion motion_at(const lockstep::Moment& moment, const Session& session);
+/// they move as prepared.
+RigMotion motion_at(const lockstep::Moment& moment, const PreparedScene& prepared);
 
 /// The bodies of a motion of constant poses.
 lockstep::Moment static_moment(const RigMotion& motion);

@@ -34,20 +34,21 @@ MotionSource::MotionSource(const FrameSchedule& schedule, std::vector<double> pe
       stop_(stop),
       numbers_(periods_s_.size()) {}
 
-double MotionSource::start_s(std::size_t mount) const {
-  return static_cast<double>(numbers_[mount]) * periods_s_[mount];
+double MotionSource::start_s(std::size_t sensor_index) const {
+  return static_cast<double>(numbers_[sensor_index]) * periods_s_[sensor_index];
 }
 
-bool MotionSource::is_done(std::size_t mount) const {
+bool MotionSource::is_done(std::size_t sensor_index) const {
   constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
-  return numbers_[mount] >= schedule_.frames || start_s(mount) >= schedule_.duration_s - kRounding;
+  return numbers_[sensor_index] >= schedule_.frames ||
+         start_s(sensor_index) >= schedule_.duration_s - kRounding;
 }
 
 std::optional<FrameRequest> MotionSource::next() {
   std::optional<std::size_t> first;
-  for (std::size_t mount = 0; mount < numbers_.size(); ++mount) {
-    if (is_done(mount)) continue;
-    if (!first || start_s(mount) < start_s(*first)) first = mount;
+  for (std::size_t sensor_index = 0; sensor_index < numbers_.size(); ++sensor_index) {
+    if (is_done(sensor_index)) continue;
+    if (!first || start_s(sensor_index) < start_s(*first)) first = sensor_index;
   }
   if (!first) {
     ending_ = "all frames are done";
@@ -56,20 +57,22 @@ std::optional<FrameRequest> MotionSource::next() {
   wait_until_due(*first);
   if (stop_.is_requested()) return std::nullopt;
   const std::uint64_t number = numbers_[*first]++;
-  return FrameRequest{
-      .mount = *first, .number = static_cast<std::uint32_t>(number), .index = number, .due = *due_};
+  return FrameRequest{.sensor_index = *first,
+                      .number = static_cast<std::uint32_t>(number),
+                      .index = number,
+                      .due = *due_};
 }
 
-void MotionSource::wait_until_due(std::size_t mount) {
+void MotionSource::wait_until_due(std::size_t sensor_index) {
   const Clock::time_point now = Clock::now();
-  const double before_s = std::exchange(due_s_, start_s(mount));
+  const double before_s = std::exchange(due_s_, start_s(sensor_index));
   if (!due_ || schedule_.rate_hz <= 0.0) {
     due_ = now;
     return;
   }
   const double speed = schedule_.rate_hz * periods_s_.front();
   *due_ += seconds((due_s_ - before_s) / speed);
-  if (now > *due_ + seconds(periods_s_[mount] / speed)) {
+  if (now > *due_ + seconds(periods_s_[sensor_index] / speed)) {
     ++late_;
     due_ = now;
   }
@@ -93,9 +96,9 @@ SimulatorSource::SimulatorSource(woods2016::PoseReceiver& receiver, const MovedS
     : receiver_(receiver), scene_(scene), options_(options), stop_(stop) {}
 
 std::optional<FrameRequest> SimulatorSource::next() {
-  if (number_ > 0 && request_.mount + 1 < options_.mounts && !stop_.is_requested()) {
+  if (number_ > 0 && request_.sensor_index + 1 < options_.sensor_count && !stop_.is_requested()) {
     request_.motion.reset();
-    ++request_.mount;
+    ++request_.sensor_index;
     return request_;
   }
   if (options_.schedule.rate_hz > 0.0 && number_ > 0) {

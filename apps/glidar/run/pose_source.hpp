@@ -3,7 +3,7 @@
 #pragma once
 
 #include <apps/glidar/run/interrupt.hpp>
-#include <apps/glidar/run/session.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/core/beams.hpp>
 #include <glidar/motion/motion.hpp>
 #include <glidar/woods2016/pose_receiver.hpp>
@@ -19,7 +19,7 @@ namespace glidar::app {
 
 /// A frame to be measured now.
 struct FrameRequest {
-  std::size_t mount = 0;  ///< index of its sensor in the session
+  std::size_t sensor_index = 0;  ///< of its sensor among those of the scene
   std::uint32_t number = 0;
   std::uint64_t index =
       0;  ///< index among this sensor's frames; differs from `number` in recordings
@@ -66,9 +66,9 @@ class MotionSource final : public PoseSource {
   [[nodiscard]] std::uint64_t late() const { return late_; }
 
  private:
-  [[nodiscard]] double start_s(std::size_t mount) const;
-  [[nodiscard]] bool is_done(std::size_t mount) const;
-  void wait_until_due(std::size_t mount);
+  [[nodiscard]] double start_s(std::size_t sensor_index) const;
+  [[nodiscard]] bool is_done(std::size_t sensor_index) const;
+  void wait_until_due(std::size_t sensor_index);
 
   FrameSchedule schedule_;
   std::vector<double> periods_s_;
@@ -96,7 +96,7 @@ class SimulatorSource final : public PoseSource {
   struct Options {
     FrameSchedule schedule;
     std::optional<double> timeout_s;  ///< for a pose; empty: no limit
-    std::size_t mounts = 1;           ///< sensors measured at each pose
+    std::size_t sensor_count = 1;     ///< sensors measured at each pose
   };
   /// All must outlive it.
   SimulatorSource(woods2016::PoseReceiver& receiver, const MovedScene& scene,

@@ -13,16 +13,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void check(const link::RecordedFrame& frame, std::uint64_t number, const Session& session) {
+void check(const link::RecordedFrame& frame, std::uint64_t number, const PreparedScene& prepared) {
   const std::size_t objects = frame.moment.objects.size();
-  const std::size_t instances = session.scene.instances.size();
-  const bool fits = frame.sensor < session.mounts.size() &&
+  const std::size_t instances = prepared.scene.instances.size();
+  const bool fits = frame.sensor < prepared.sensors.size() &&
                     (!frame.is_placed || objects == 0 || objects == instances);
   if (fits) return;
   throw Error(
       {"recording, frame " + std::to_string(number),
        "sensor " + std::to_string(frame.sensor) + " and " + std::to_string(objects) + " objects",
-       std::to_string(session.mounts.size()) + " sensors and " + std::to_string(instances) +
+       std::to_string(prepared.sensors.size()) + " sensors and " + std::to_string(instances) +
            " objects, which the scene has",
        "replay it with the scene that it was recorded with"});
 }
@@ -30,12 +30,12 @@ void check(const link::RecordedFrame& frame, std::uint64_t number, const Session
 }  // namespace
 
 RecordedSource::RecordedSource(link::RecordingReader& recording, const FrameSchedule& schedule,
-                               const Session& session, const StopRequest& stop)
+                               const PreparedScene& prepared, const StopRequest& stop)
     : recording_(recording),
       schedule_(schedule),
-      session_(session),
+      prepared_(prepared),
       stop_(stop),
-      next_indices_(session.mounts.size()) {}
+      next_indices_(prepared.sensors.size()) {}
 
 std::optional<FrameRequest> RecordedSource::next() {
   if (number_ >= schedule_.frames) {
@@ -47,11 +47,11 @@ std::optional<FrameRequest> RecordedSource::next() {
     ending_ = "the recording is complete";
     return std::nullopt;
   }
-  check(*frame, number_, session_);
+  check(*frame, number_, prepared_);
   wait_until_due();
   if (stop_.is_requested()) return std::nullopt;
   ++number_;
-  FrameRequest moment{.mount = frame->sensor,
+  FrameRequest moment{.sensor_index = frame->sensor,
                       .number = frame->moment.number,
                       .index = next_indices_[frame->sensor]++,
                       .due = *due_,
@@ -59,7 +59,7 @@ std::optional<FrameRequest> RecordedSource::next() {
                       .stamp_ns = frame->moment.t_ns,
                       .seed = frame->moment.seed,
                       .frame_hash = std::move(frame->frame_hash)};
-  if (frame->is_placed) moment.motion = motion_at(frame->moment, session_);
+  if (frame->is_placed) moment.motion = motion_at(frame->moment, prepared_);
   return moment;
 }
 

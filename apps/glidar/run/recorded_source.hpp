@@ -12,7 +12,7 @@ class RecordedSource final : public PoseSource {
  public:
   /// All must outlive it.
   RecordedSource(link::RecordingReader& recording, const FrameSchedule& schedule,
-                 const Session& session, const StopRequest& stop);
+                 const PreparedScene& prepared, const StopRequest& stop);
   std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
 
@@ -21,7 +21,7 @@ class RecordedSource final : public PoseSource {
 
   link::RecordingReader& recording_;
   FrameSchedule schedule_;
-  const Session& session_;
+  const PreparedScene& prepared_;
   const StopRequest& stop_;
   std::optional<std::chrono::steady_clock::time_point> due_;
   std::uint64_t number_ = 0;                 ///< of the next frame

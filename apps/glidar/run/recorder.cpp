@@ -8,17 +8,18 @@
 
 namespace glidar::app {
 
-void Recorder::begin(const Session& session, const CommandRecord& command) {
+void Recorder::begin(const PreparedScene& prepared, const CommandRecord& command) {
   link::RecordingHead head{.version = version(), .command = command, .files = {}};
-  for (const std::string& file : session.files) {
+  for (const std::string& file : prepared.files) {
     const std::optional<Hash128> hash = hash_file(file);
     head.files.push_back({.path = file, .hash = hash ? hex(*hash) : ""});
   }
   writer_.begin(head);
 }
 
-link::RecordedFrame line_of(std::size_t mount, const Frame& frame, const lockstep::Moment* placed) {
-  link::RecordedFrame line{.sensor = static_cast<std::uint32_t>(mount),
+link::RecordedFrame line_of(std::size_t sensor_index, const Frame& frame,
+                            const lockstep::Moment* placed) {
+  link::RecordedFrame line{.sensor = static_cast<std::uint32_t>(sensor_index),
                            .moment = placed != nullptr ? *placed : lockstep::Moment{},
                            .is_placed = placed != nullptr,
                            .frame_hash = frame_hash(frame)};

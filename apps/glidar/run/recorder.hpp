@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/run/session.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/link/recording.hpp>
 
 #include <string>
@@ -16,8 +16,8 @@ class Recorder {
   Recorder(const std::string& path, bool is_durable)
       : writer_(path),
         durability_(is_durable ? link::Durability::synced : link::Durability::none) {}
-  /// Call when the session is open.
-  void begin(const Session& session, const CommandRecord& command);
+  /// Call when the scene is prepared.
+  void begin(const PreparedScene& prepared, const CommandRecord& command);
   void write(const link::RecordedFrame& frame) { writer_.write(frame); }
   void commit() { writer_.commit(durability_); }
 
@@ -26,8 +26,9 @@ class Recorder {
   link::Durability durability_;
 };
 
-/// The record of a frame of one of the session's sensors. `placed`: poses by a client or simulator;
+/// The record of a frame of one sensor. `placed`: poses by a client or simulator;
 /// nullptr: by the command.
-link::RecordedFrame line_of(std::size_t mount, const Frame& frame, const lockstep::Moment* placed);
+link::RecordedFrame line_of(std::size_t sensor_index, const Frame& frame,
+                            const lockstep::Moment* placed);
 
 }  // namespace glidar::app

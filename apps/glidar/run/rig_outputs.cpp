@@ -21,20 +21,20 @@ namespace {
 }
 
 /// Adds a path to the outputs of the sensors that it fits.
-void distribute(const std::string& path, const OutputFlags& flags, const Session& session,
+void distribute(const std::string& path, const OutputFlags& flags, const PreparedScene& prepared,
                 std::vector<OutputFlags>& outputs, Console& console) {
   const FileFormat& format = format_of(flags, path);
   std::string reasons;
   std::size_t fitting = 0;
-  for (std::size_t i = 0; i < session.mounts.size(); ++i) {
-    const Mount& mount = session.mounts[i];
-    const std::string reason = misfit(format, flags.sink.picture, mount.sensor, mount.beams);
+  for (std::size_t i = 0; i < prepared.sensors.size(); ++i) {
+    const ActiveSensor& active = prepared.sensors[i];
+    const std::string reason = misfit(format, flags.sink.picture, active.sensor, active.beams);
     if (reason.empty()) {
       outputs[i].paths.push_back(path);
       ++fitting;
       continue;
     }
-    reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", mount.name, reason);
+    reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", active.name, reason);
   }
   if (fitting == 0) refuse_output(path, format, reasons);
   if (!reasons.empty()) console.info(fmt::format("{} is not written for {}", path, reasons));
@@ -42,13 +42,13 @@ void distribute(const std::string& path, const OutputFlags& flags, const Session
 
 }  // namespace
 
-std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const Session& session,
+std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const PreparedScene& prepared,
                                            Console& console) {
-  std::vector<OutputFlags> outputs(session.mounts.size(), flags.output);
-  if (session.mounts.size() == 1) return outputs;
+  std::vector<OutputFlags> outputs(prepared.sensors.size(), flags.output);
+  if (prepared.sensors.size() == 1) return outputs;
   for (OutputFlags& output : outputs) output.paths.clear();
   for (const std::string& path : flags.output.paths) {
-    distribute(path, flags.output, session, outputs, console);
+    distribute(path, flags.output, prepared, outputs, console);
   }
   return outputs;
 }

@@ -80,8 +80,8 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
           std::make_unique<woods2016::CloudPublisher>(context_, publisher_options(flags_), faults_);
     });
   }
-  open_session();
-  if (recorder_) recorder_->begin(session_, flags_.command);
+  open_scene();
+  if (recorder_) recorder_->begin(prepared_, flags_.command);
   if (flags_.pose_source && !recording_) {
     prepare_poses();
     with_option_name("--pose-source", [&] {
@@ -91,15 +91,15 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
   }
 }
 
-void StreamRun::open_session() {
-  const Mount unknown{.sensor = {}};
+void StreamRun::open_scene() {
+  const ActiveSensor unknown{.sensor = {}};
   std::vector<Output> outputs;
   if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), unknown, unknown.beams);
-  open(
-      flags_.render, [&] { refuse_overwrite_of_inputs(session_.files, outputs); }, console_,
-      session_);
-  files_ = outputs_by_sensor(flags_.render, session_, console_);
-  reserved_files_ = reserved_files(flags_, session_.files);
+  prepare_scene(
+      flags_.render, [&] { refuse_overwrite_of_inputs(prepared_.files, outputs); }, console_,
+      prepared_);
+  files_ = outputs_by_sensor(flags_.render, prepared_, console_);
+  reserved_files_ = reserved_files(flags_, prepared_.files);
   std::vector<std::string> columns;
   if (publisher_) {
     columns = kPublishedColumns;
@@ -114,9 +114,9 @@ void StreamRun::open_session() {
 /// The original topic for one sensor, one topic per sensor for a rig.
 std::map<std::uint32_t, std::string> StreamRun::topics() const {
   std::map<std::uint32_t, std::string> topics;
-  for (const Mount& mount : session_.mounts) {
-    const std::string label = label_of(flags_.render, mount);
-    if (!label.empty()) topics[mount.id] = woods2016::rig_topic(label);
+  for (const ActiveSensor& active : prepared_.sensors) {
+    const std::string label = label_of(flags_.render, active);
+    if (!label.empty()) topics[active.id] = woods2016::rig_topic(label);
   }
   if (topics.size() > 1 && flags_.publishes_latest) {
     throw Error({"--publish-latest",
@@ -129,7 +129,7 @@ std::map<std::uint32_t, std::string> StreamRun::topics() const {
 /// The whole scene becomes the object that the simulator moves.
 void StreamRun::prepare_poses() {
   moved_scene_.object_from_instance.clear();
-  for (const Trajectory& trajectory : session_.motion.world_from_instance) {
+  for (const Trajectory& trajectory : prepared_.motion.world_from_instance) {
     if (!std::holds_alternative<ConstantPose>(trajectory)) {
       throw Error({.where = "--pose-source",
                    .found = "the scene file moves its objects",
@@ -138,11 +138,11 @@ void StreamRun::prepare_poses() {
     }
     moved_scene_.object_from_instance.push_back(std::get<ConstantPose>(trajectory).pose);
   }
-  if (!std::holds_alternative<ConstantPose>(session_.motion.world_from_rig)) {
+  if (!std::holds_alternative<ConstantPose>(prepared_.motion.world_from_rig)) {
     console_.info(
         "the simulator gives the sensor's pose; the scene file's motion of it is ignored");
   }
-  const Mount& first = session_.mounts.front();
+  const ActiveSensor& first = prepared_.sensors.front();
   if (!first.name.empty() || !looks_along_z(first.beams)) {
     moved_scene_.optical_from_rig = optical_from_body();
   }
@@ -161,7 +161,7 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
       .duration_s = duration_s_};
   if (recording_) {
     schedule.rate_hz = flags_.replay_rate_hz;
-    return std::make_unique<RecordedSource>(*recording_, schedule, session_, stop);
+    return std::make_unique<RecordedSource>(*recording_, schedule, prepared_, stop);
   }
   if (receiver_) {
     schedule.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
@@ -169,12 +169,13 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
         *receiver_, moved_scene_,
         SimulatorSource::Options{.schedule = schedule,
                                  .timeout_s = flags_.pose_timeout_s,
-                                 .mounts = session_.mounts.size()},
+                                 .sensor_count = prepared_.sensors.size()},
         stop);
   }
   std::vector<double> periods_s;
-  for (const Mount& mount : session_.mounts) periods_s.push_back(1.0 / mount.sensor.rate_hz);
-  if (!flags_.is_unpaced) schedule.rate_hz = session_.mounts.front().sensor.rate_hz;
+  for (const ActiveSensor& active : prepared_.sensors)
+    periods_s.push_back(1.0 / active.sensor.rate_hz);
+  if (!flags_.is_unpaced) schedule.rate_hz = prepared_.sensors.front().sensor.rate_hz;
   return std::make_unique<MotionSource>(schedule, std::move(periods_s), stop);
 }
 
@@ -262,26 +263,26 @@ void StreamRun::stream(PoseSource& source, StopRequest& stop) {
 }
 
 void StreamRun::move(const RigMotion& motion) {
-  for (Mount& mount : session_.mounts) mount.motion = motion_of(motion, mount);
+  for (ActiveSensor& active : prepared_.sensors) active.motion = motion_of(motion, active);
   if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(motion));
 }
 
 void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
-  const Mount& mount = session_.mounts[request.mount];
-  measured.beams = mount.simulator->beams(request.number);
+  const ActiveSensor& active = prepared_.sensors[request.sensor_index];
+  measured.beams = active.simulator->beams(request.number);
   measured.index = request.index;
-  measured.mount = request.mount;
+  measured.sensor_index = request.sensor_index;
   measured.placed = placed_;
   measured.frame_hash = request.frame_hash;
   measured.due = request.due;
   measured.frame.number = request.number;
-  measured.frame.sensor_id = mount.id;
+  measured.frame.sensor_id = active.id;
   measured.frame.stamp_ns =
-      request.stamp_ns.value_or(frame_interval(mount.sensor, request.number).start_ns);
+      request.stamp_ns.value_or(frame_interval(active.sensor, request.number).start_ns);
   measured.frame.seed = request.seed.value_or(flags_.render.seed);
-  mount.simulator->simulate(mount.motion, fields_, measured.frame);
+  active.simulator->simulate(active.motion, fields_, measured.frame);
   if (measured_++ > 0) return;
-  print_advice(view_advice({session_.scene, mount.sensor, *measured.beams, measured.frame}),
+  print_advice(view_advice({prepared_.scene, active.sensor, *measured.beams, measured.frame}),
                console_);
 }
 
@@ -293,16 +294,16 @@ bool StreamRun::writes_files() const {
   return has_outputs(flags_.render.output);
 }
 
-std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount,
+std::vector<Output> StreamRun::plan(const OutputFlags& files, const ActiveSensor& active,
                                     const Beams& beams) {
-  SidecarContext context{.scene = session_.scene,
-                         .sensor = mount.sensor,
+  SidecarContext context{.scene = prepared_.scene,
+                         .sensor = active.sensor,
                          .beams = beams,
                          .renderer = renderer_name(flags_.render),
                          .inputs = reserved_files_};
   if (!flags_.pose_source && !recording_) {  // otherwise the command does not contain the poses
     context.command = flags_.command;
-    const std::string label = label_of(flags_.render, mount);
+    const std::string label = label_of(flags_.render, active);
     if (!label.empty()) {
       context.command.arguments.insert(context.command.arguments.end(), {"--sensor-name", label});
     }
@@ -311,7 +312,8 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount
 }
 
 void StreamRun::deliver(const MeasuredFrame& measured) {
-  if (recorder_) recorder_->write(line_of(measured.mount, measured.frame, measured.placed.get()));
+  if (recorder_)
+    recorder_->write(line_of(measured.sensor_index, measured.frame, measured.placed.get()));
   if (!measured.frame_hash.empty()) compare(measured, flags_.replay, stats_.latency.count());
   if (publisher_ && publisher_->wants(measured.index)) publish(measured);
   if (writes_files()) write_files(measured);
@@ -319,22 +321,22 @@ void StreamRun::deliver(const MeasuredFrame& measured) {
 }
 
 void StreamRun::publish(const MeasuredFrame& measured) {
-  make_point_cloud(measured.frame, *measured.beams, session_.scene,
+  make_point_cloud(measured.frame, *measured.beams, prepared_.scene,
                    output_frame("legacy", *measured.beams, measured.frame.world_from_sensor),
                    kPublishedColumns, cloud_);
   publisher_->write(cloud_, measured.frame);
 }
 
 void StreamRun::write_files(const MeasuredFrame& measured) {
-  const Mount& mount = session_.mounts[measured.mount];
-  OutputFlags files = files_[measured.mount];
+  const ActiveSensor& active = prepared_.sensors[measured.sensor_index];
+  OutputFlags files = files_[measured.sensor_index];
   if (!has_outputs(files)) return;
-  const std::string label = label_of(flags_.render, mount);
+  const std::string label = label_of(flags_.render, active);
   if (!label.empty()) files = labelled(files, label);
   const std::vector<Output> outputs =
-      plan(numbered(files, static_cast<std::uint32_t>(measured.index)), mount, *measured.beams);
+      plan(numbered(files, static_cast<std::uint32_t>(measured.index)), active, *measured.beams);
   refuse_overwrite_of_inputs(reserved_files_, outputs);
-  write_outputs(outputs, measured.frame, *measured.beams, session_.scene);
+  write_outputs(outputs, measured.frame, *measured.beams, prepared_.scene);
 }
 
 void StreamRun::serve_peers() {

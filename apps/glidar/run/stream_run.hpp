@@ -9,8 +9,8 @@
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/pose_source.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorder.hpp>
-#include <apps/glidar/run/session.hpp>
 #include <apps/glidar/run/stream_stats.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/files/atomic_file.hpp>
@@ -36,7 +36,7 @@ class StreamRun {
   int run();
 
  private:
-  void open_session();
+  void open_scene();
   [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
@@ -48,7 +48,7 @@ class StreamRun {
   void measure(const FrameRequest& request, MeasuredFrame& measured);
   [[nodiscard]] bool is_wanted(std::uint64_t index) const;
   [[nodiscard]] bool writes_files() const;
-  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Mount& mount,
+  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const ActiveSensor& active,
                                          const Beams& beams);
   void move(const RigMotion& motion);
   void deliver(const MeasuredFrame& measured);
@@ -68,7 +68,7 @@ class StreamRun {
   std::unique_ptr<link::RecordingReader> recording_;  ///< recording to repeat
   std::shared_ptr<const lockstep::Moment> placed_;    ///< poses of the simulator's last message
   double duration_s_ = 0.0;
-  Session session_;
+  PreparedScene prepared_;
   std::vector<std::string> reserved_files_;  ///< files that no output may replace
   std::vector<OutputFlags> files_;           ///< of each sensor
   MovedScene moved_scene_;

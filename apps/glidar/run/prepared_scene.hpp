@@ -20,8 +20,8 @@ struct RigMotion {
   std::vector<Trajectory> world_from_instance;
 };
 
-/// A sensor on the rig, ready to measure.
-struct Mount {
+/// A sensor that measures: the only one, or one of a rig.
+struct ActiveSensor {
   std::string name = {};  ///< empty: the only sensor
   std::uint32_t id = 0;   ///< index in the scene file; its random numbers depend on it
   Sensor sensor;
@@ -29,39 +29,40 @@ struct Mount {
   Beams beams = {};  ///< of frame 0
   Motion motion = {};
   std::uint32_t frames = 1;                   ///< in the requested duration
-  std::shared_ptr<Simulator> simulator = {};  ///< made by open()
+  std::shared_ptr<Simulator> simulator = {};  ///< made by prepare_scene()
 };
 
-/// A prepared measurement: the loaded scene and sensors with their poses and motion.
-struct Session {
+/// A loaded scene, ready to be measured: with its sensors, their poses and motion, and a renderer.
+struct PreparedScene {
   Scene scene;
-  std::vector<Mount> mounts;  ///< one, or those of the scene file's rig
+  std::vector<ActiveSensor> sensors;  ///< one, or those of the scene file's rig
   RigMotion motion;
   std::unique_ptr<Renderer> renderer;
-  std::unique_ptr<Woods2016Camera> paper;  ///< for --quantized-framebuffer; else none
-  std::vector<std::string> files;          ///< all files that were read
+  std::unique_ptr<Woods2016Camera> woods2016_camera;  ///< for --quantized-framebuffer; else none
+  std::vector<std::string> files;                     ///< all files that were read
 };
 
 /// Loads and prepares the inputs of the options; `on_loaded` is called before the renderer is
 /// prepared, which can take long. The console shows progress and advice. Throws Error.
-void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Console& console,
-          Session& session);
+void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loaded,
+                   Console& console, PreparedScene& prepared);
 
 /// The label of this sensor's files and topics: its name on a rig; empty if --sensor-name is given
 /// or there is no rig.
-std::string label_of(const RenderFlags& flags, const Mount& mount);
+std::string label_of(const RenderFlags& flags, const ActiveSensor& active);
 
-/// The session's only sensor. Throws Error if there are several.
-Mount& only_mount(Session& session);
+/// The only sensor. Throws Error if there are several.
+ActiveSensor& only_sensor(PreparedScene& prepared);
 
 /// The motion of a sensor and all instances.
-Motion motion_of(RigMotion motion, const Mount& mount);
+Motion motion_of(RigMotion motion, const ActiveSensor& active);
 
 /// Starts a frame of the sequence: sets its number, sensor, stamp and seed.
-void start_frame(const RenderFlags& flags, std::uint32_t number, const Mount& mount, Frame& frame);
+void start_frame(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
+                 Frame& frame);
 
-/// A simulator of the session's scene, with the framebuffer that its options select.
-std::shared_ptr<Simulator> make_simulator(const Session& session,
+/// A simulator of the scene, with the framebuffer that its options select.
+std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,
                                           const std::shared_ptr<const BeamCache>& sensor);
 
 /// Prints advice as warnings.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/run/session.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
 
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/placement.hpp>
@@ -59,10 +59,10 @@ SceneFile load(const RenderFlags& flags, Console& console) {
 
 /// Scene and sensor files, models and their textures, materials and buffers.
 std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& loaded,
-                                    const std::vector<Mount>& mounts) {
+                                    const std::vector<ActiveSensor>& sensors) {
   std::vector<std::string> files = loaded.files;
-  for (const Mount& mount : mounts) {
-    files.insert(files.end(), mount.sensor.files.begin(), mount.sensor.files.end());
+  for (const ActiveSensor& active : sensors) {
+    files.insert(files.end(), active.sensor.files.begin(), active.sensor.files.end());
   }
   for (const std::string& file : files_of(flags.motion)) files.push_back(file);
   for (const std::string& file : files_of(loaded.scene)) files.push_back(file);
@@ -82,7 +82,7 @@ std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
   return static_cast<std::uint32_t>(std::max(1.0, frames));
 }
 
-/// The names of sensors or mounts.
+/// The names of the sensors.
 template <class Named>
 std::string names_of(const std::vector<Named>& all) {
   std::string names;
@@ -91,46 +91,49 @@ std::string names_of(const std::vector<Named>& all) {
 }
 
 /// The sensors of the rig, configured by the flags.
-std::vector<Mount> make_mounts(const RenderFlags& flags, const std::vector<RigSensor>& sensors) {
-  if (sensors.empty() || sensors.front().name.empty()) {
+std::vector<ActiveSensor> make_active_sensors(const RenderFlags& flags,
+                                              const std::vector<RigSensor>& in_file) {
+  if (in_file.empty() || in_file.front().name.empty()) {
     if (!flags.sensor_name.empty()) {
       throw Error({"--sensor-name", flags.sensor_name, "a scene file with a rig of sensors",
                    "leave it out"});
     }
-    const Sensor* in_file = sensors.empty() ? nullptr : &sensors.front().sensor;
-    return {{.sensor = make_sensor(flags.sensor, in_file)}};
+    const Sensor* only = in_file.empty() ? nullptr : &in_file.front().sensor;
+    return {{.sensor = make_sensor(flags.sensor, only)}};
   }
   if (names_sensor(flags.sensor)) {
     throw Error({"--sensor and camera options", "given for a scene file with a rig of sensors", "",
-                 "leave them out; --sensor-name NAME chooses one of " + names_of(sensors)});
+                 "leave them out; --sensor-name NAME chooses one of " + names_of(in_file)});
   }
-  std::vector<Mount> mounts;
-  for (std::uint32_t i = 0; i < sensors.size(); ++i) {
-    mounts.push_back({.name = sensors[i].name,
-                      .id = i,
-                      .sensor = make_sensor(flags.sensor, &sensors[i].sensor),
-                      .rig_from_sensor = sensors[i].rig_from_sensor});
+  std::vector<ActiveSensor> sensors;
+  for (std::uint32_t i = 0; i < in_file.size(); ++i) {
+    sensors.push_back({.name = in_file[i].name,
+                       .id = i,
+                       .sensor = make_sensor(flags.sensor, &in_file[i].sensor),
+                       .rig_from_sensor = in_file[i].rig_from_sensor});
   }
-  const auto is_chosen = [&](const Mount& mount) { return mount.name == flags.sensor_name; };
-  if (!flags.sensor_name.empty() && std::none_of(mounts.begin(), mounts.end(), is_chosen)) {
-    throw Error({"--sensor-name", flags.sensor_name, names_of(sensors), ""});
+  const auto is_chosen = [&](const ActiveSensor& active) {
+    return active.name == flags.sensor_name;
+  };
+  if (!flags.sensor_name.empty() && std::none_of(sensors.begin(), sensors.end(), is_chosen)) {
+    throw Error({"--sensor-name", flags.sensor_name, names_of(in_file), ""});
   }
-  return mounts;
+  return sensors;
 }
 
 /// The pose of the first sensor, which gives that of the rig.
-Pose first_sensor_pose(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
-                       Console& console) {
-  const Mount& first = session.mounts.front();
+Pose first_sensor_pose(const RenderFlags& flags, const SceneFile& loaded,
+                       const PreparedScene& prepared, Console& console) {
+  const ActiveSensor& first = prepared.sensors.front();
   ScenePose in_file{loaded.world_from_rig, loaded.looks_at};
   if (in_file.world_from_sensor) {
     in_file.world_from_sensor = *in_file.world_from_sensor * first.rig_from_sensor;
   }
-  const Pose world_from_sensor = pose_sensor(flags.pose, in_file, first.beams, session.scene);
+  const Pose world_from_sensor = pose_sensor(flags.pose, in_file, first.beams, prepared.scene);
   const bool is_placed = in_file.world_from_sensor || loaded.rig_motion ||
                          sensor_pose_given(flags.pose) || !flags.motion.trajectory.empty();
   if (!looks_along_z(first.beams) && !is_placed) {
-    console.info(placement_advice(session.scene, world_from_sensor));
+    console.info(placement_advice(prepared.scene, world_from_sensor));
   }
   return world_from_sensor;
 }
@@ -138,10 +141,10 @@ Pose first_sensor_pose(const RenderFlags& flags, const SceneFile& loaded, const 
 /// The motion of the rig and the objects. Options give the pose and rotation of the first sensor;
 /// the scene file and trajectories give those of the rig, which are the sensor's if there is only
 /// one.
-RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
-                      const Pose& world_from_first) {
+RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded,
+                      const PreparedScene& prepared, const Pose& world_from_first) {
   const bool is_given = sensor_pose_given(flags.pose);
-  const Mount& first = session.mounts.front();
+  const ActiveSensor& first = prepared.sensors.front();
   const bool is_in_file = loaded.rig_motion || (loaded.world_from_rig && !loaded.looks_at &&
                                                 !flags.motion.sensor_rate_rad_s);
   const bool is_rigs = !flags.motion.trajectory.empty() || (is_in_file && !is_given);
@@ -152,29 +155,29 @@ RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const S
       sensor_trajectory(flags.motion, start, optical_from_first, is_given, loaded.rig_motion);
   if (!is_rigs) trajectory = compose_extrinsic(trajectory, first.rig_from_sensor.inverse());
   return {.world_from_rig = std::move(trajectory),
-          .world_from_instance = make_motion(session.scene, ConstantPose{},
-                                             instance_trajectories(flags.motion, session.scene,
+          .world_from_instance = make_motion(prepared.scene, ConstantPose{},
+                                             instance_trajectories(flags.motion, prepared.scene,
                                                                    loaded.world_from_instance))
                                      .world_from_instance};
 }
 
 /// The firing time of the last beam of the last frame.
-std::int64_t last_firing_ns(const Mount& mount) {
-  const std::int64_t start_ns = frame_interval(mount.sensor, mount.frames - 1).start_ns;
-  if (mount.beams.times_ns.empty()) return start_ns;
-  return start_ns + *std::max_element(mount.beams.times_ns.begin(), mount.beams.times_ns.end());
+std::int64_t last_firing_ns(const ActiveSensor& active) {
+  const std::int64_t start_ns = frame_interval(active.sensor, active.frames - 1).start_ns;
+  if (active.beams.times_ns.empty()) return start_ns;
+  return start_ns + *std::max_element(active.beams.times_ns.begin(), active.beams.times_ns.end());
 }
 
 /// Warns of times outside a trajectory.
-void warn_extrapolation(const Session& session, const Report& report) {
+void warn_extrapolation(const PreparedScene& prepared, const Report& report) {
   TimeInterval requested{.first_ns = 0, .last_ns = 0};
-  for (const Mount& mount : session.mounts) {
-    requested.last_ns = std::max(requested.last_ns, last_firing_ns(mount));
+  for (const ActiveSensor& active : prepared.sensors) {
+    requested.last_ns = std::max(requested.last_ns, last_firing_ns(active));
   }
-  glidar::warn_extrapolation(session.motion.world_from_rig, "sensor", requested, report);
-  for (std::size_t i = 0; i < session.motion.world_from_instance.size(); ++i) {
-    glidar::warn_extrapolation(session.motion.world_from_instance[i],
-                               session.scene.instances[i].name, requested, report);
+  glidar::warn_extrapolation(prepared.motion.world_from_rig, "sensor", requested, report);
+  for (std::size_t i = 0; i < prepared.motion.world_from_instance.size(); ++i) {
+    glidar::warn_extrapolation(prepared.motion.world_from_instance[i],
+                               prepared.scene.instances[i].name, requested, report);
   }
 }
 
@@ -196,20 +199,20 @@ void check_target(const RenderFlags& flags) {
 
 /// Computes the poses and motion of sensors and objects; shows the progress.
 void place_sensors(const RenderFlags& flags, const SceneFile& loaded, Console& console,
-                   Session& session) {
+                   PreparedScene& prepared) {
   const ProgressScope progress(console, "aiming the sensor");
-  for (Mount& mount : session.mounts) {
-    mount.beams = make_beams(mount.sensor);
-    mount.frames = frame_count(flags, mount.sensor);
+  for (ActiveSensor& active : prepared.sensors) {
+    active.beams = make_beams(active.sensor);
+    active.frames = frame_count(flags, active.sensor);
   }
-  const Pose world_from_first = first_sensor_pose(flags, loaded, session, console);
-  session.motion = make_motion(flags, loaded, session, world_from_first);
-  warn_extrapolation(session, console.report());
+  const Pose world_from_first = first_sensor_pose(flags, loaded, prepared, console);
+  prepared.motion = make_motion(flags, loaded, prepared, world_from_first);
+  warn_extrapolation(prepared, console.report());
   if (!flags.sensor_name.empty()) {  // last: the poses must not depend on the selected sensor
-    std::erase_if(session.mounts,
-                  [&](const Mount& mount) { return mount.name != flags.sensor_name; });
+    std::erase_if(prepared.sensors,
+                  [&](const ActiveSensor& active) { return active.name != flags.sensor_name; });
   }
-  for (Mount& mount : session.mounts) mount.motion = motion_of(session.motion, mount);
+  for (ActiveSensor& active : prepared.sensors) active.motion = motion_of(prepared.motion, active);
 }
 
 }  // namespace
@@ -218,58 +221,60 @@ void print_advice(const std::vector<std::string>& advice, Console& console) {
   for (const std::string& sentence : advice) console.warn(sentence);
 }
 
-void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Console& console,
-          Session& session) {
+void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loaded,
+                   Console& console, PreparedScene& prepared) {
   check_target(flags);
   // before a long load
-  if (!is_scene_file(flags.input)) session.mounts = make_mounts(flags, {});
+  if (!is_scene_file(flags.input)) prepared.sensors = make_active_sensors(flags, {});
   SceneFile loaded = load(flags, console);
-  session.mounts = make_mounts(flags, loaded.sensors);
-  session.files = files_read(flags, loaded, session.mounts);
+  prepared.sensors = make_active_sensors(flags, loaded.sensors);
+  prepared.files = files_read(flags, loaded, prepared.sensors);
   if (on_loaded) on_loaded();
-  session.scene = std::move(loaded.scene);
-  apply_surface_option(flags, session.mounts.front().sensor, session.scene);
-  pose_model(flags.pose, session.scene);
-  print_advice(size_advice(session.scene, flags.model.metres_per_unit || flags.pose.scale),
+  prepared.scene = std::move(loaded.scene);
+  apply_surface_option(flags, prepared.sensors.front().sensor, prepared.scene);
+  pose_model(flags.pose, prepared.scene);
+  print_advice(size_advice(prepared.scene, flags.model.metres_per_unit || flags.pose.scale),
                console);
-  place_sensors(flags, loaded, console, session);
+  place_sensors(flags, loaded, console, prepared);
   const ProgressScope progress(console, "preparing the scene");
-  session.renderer = make_renderer(session.scene, flags.renderer);
+  prepared.renderer = make_renderer(prepared.scene, flags.renderer);
   if (flags.quantized_framebuffer) {
-    session.paper = make_paper_camera(session.scene, flags.renderer);
+    prepared.woods2016_camera = make_paper_camera(prepared.scene, flags.renderer);
   }
-  for (Mount& mount : session.mounts) {
-    mount.simulator =
-        make_simulator(session, std::make_shared<const BeamCache>(mount.sensor, mount.beams));
+  for (ActiveSensor& active : prepared.sensors) {
+    active.simulator =
+        make_simulator(prepared, std::make_shared<const BeamCache>(active.sensor, active.beams));
   }
 }
 
-std::string label_of(const RenderFlags& flags, const Mount& mount) {
-  return flags.sensor_name.empty() ? mount.name : std::string();
+std::string label_of(const RenderFlags& flags, const ActiveSensor& active) {
+  return flags.sensor_name.empty() ? active.name : std::string();
 }
 
-Mount& only_mount(Session& session) {
-  if (session.mounts.size() == 1) return session.mounts.front();
-  throw Error({"scene file", fmt::format("a rig of {} sensors", session.mounts.size()),
-               "one sensor here", "choose it with --sensor-name: " + names_of(session.mounts)});
+ActiveSensor& only_sensor(PreparedScene& prepared) {
+  if (prepared.sensors.size() == 1) return prepared.sensors.front();
+  throw Error({"scene file", fmt::format("a rig of {} sensors", prepared.sensors.size()),
+               "one sensor here", "choose it with --sensor-name: " + names_of(prepared.sensors)});
 }
 
-Motion motion_of(RigMotion motion, const Mount& mount) {
-  return {.world_from_sensor = compose_extrinsic(motion.world_from_rig, mount.rig_from_sensor),
+Motion motion_of(RigMotion motion, const ActiveSensor& active) {
+  return {.world_from_sensor = compose_extrinsic(motion.world_from_rig, active.rig_from_sensor),
           .world_from_instance = std::move(motion.world_from_instance)};
 }
 
-void start_frame(const RenderFlags& flags, std::uint32_t number, const Mount& mount, Frame& frame) {
+void start_frame(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
+                 Frame& frame) {
   frame.number = number;
-  frame.sensor_id = mount.id;
-  frame.stamp_ns = frame_interval(mount.sensor, number).start_ns;
+  frame.sensor_id = active.id;
+  frame.stamp_ns = frame_interval(active.sensor, number).start_ns;
   frame.seed = flags.seed;
 }
 
-std::shared_ptr<Simulator> make_simulator(const Session& session,
+std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,
                                           const std::shared_ptr<const BeamCache>& sensor) {
-  auto simulator = std::make_shared<Simulator>(session.scene, sensor, *session.renderer);
-  if (session.paper) simulator->set_return_replacement(woods2016_measurement(*session.paper));
+  auto simulator = std::make_shared<Simulator>(prepared.scene, sensor, *prepared.renderer);
+  if (prepared.woods2016_camera)
+    simulator->set_return_replacement(woods2016_measurement(*prepared.woods2016_camera));
   return simulator;
 }
 
