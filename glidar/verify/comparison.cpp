@@ -96,7 +96,7 @@ void compare_beam(const ExactScene& scene, const RealVector& origin, const RealV
     return;
   }
   const bool is_hit = reported.instance != kInvalidId;
-  ++(exact.hit.hit ? result.judged_hits : result.judged_misses);
+  ++(exact.hit.hit ? result.compared_hits : result.compared_misses);
   if (is_hit && !exact.hit.hit) ++result.wrong_hits;
   if (!is_hit && exact.hit.hit) ++result.wrong_misses;
   if (!is_hit || !exact.hit.hit) return;

@@ -33,8 +33,8 @@ AccuracyCase run_row(const SpecialCase& special, const VerifySubject& subject) {
 
 void VerifyResult::add(const VerifyResult& other) {
   rays += other.rays;
-  judged_hits += other.judged_hits;
-  judged_misses += other.judged_misses;
+  compared_hits += other.compared_hits;
+  compared_misses += other.compared_misses;
   near_edges += other.near_edges;
   wrong_hits += other.wrong_hits;
   wrong_misses += other.wrong_misses;
@@ -51,7 +51,7 @@ bool VerifyResult::passed() const {
 bool KnownFailure::covers(const VerifyResult& result) const {
   constexpr std::size_t kMinRaysPerSkipped = 50;
   const double max_wrong = max_wrong_share * static_cast<double>(result.rays);
-  return result.judged_hits > 0 && result.judged_misses > 0 &&
+  return result.compared_hits > 0 && result.compared_misses > 0 &&
          result.near_edges * kMinRaysPerSkipped < result.rays &&
          static_cast<double>(result.wrong()) <= max_wrong &&
          result.range_error_ulp <= max_range_error_ulp &&

@@ -22,8 +22,8 @@ inline constexpr double kNormalBound_rad = 1e-6;  ///< normals are stored in flo
 /// Errors over many rays.
 struct VerifyResult {
   std::size_t rays = 0;
-  std::size_t judged_hits = 0;
-  std::size_t judged_misses = 0;
+  std::size_t compared_hits = 0;
+  std::size_t compared_misses = 0;
   std::size_t near_edges = 0;  ///< not compared
   std::size_t wrong_hits = 0;
   std::size_t wrong_misses = 0;

@@ -19,8 +19,8 @@ class AccuracyCase:
     shape: str
     distance_m: float
     rays: int
-    judged_hits: int
-    judged_misses: int
+    compared_hits: int
+    compared_misses: int
     near_edges: int
     """Rays too close to an edge to be tested."""
     wrong_hits: int

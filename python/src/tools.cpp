@@ -128,9 +128,10 @@ void bind_tools(nb::module_& module) {
       .def_ro("shape", &AccuracyCase::shape)
       .def_ro("distance_m", &AccuracyCase::distance_m)
       .def_prop_ro("rays", [](const AccuracyCase& self) { return self.result.rays; })
-      .def_prop_ro("judged_hits", [](const AccuracyCase& self) { return self.result.judged_hits; })
-      .def_prop_ro("judged_misses",
-                   [](const AccuracyCase& self) { return self.result.judged_misses; })
+      .def_prop_ro("compared_hits",
+                   [](const AccuracyCase& self) { return self.result.compared_hits; })
+      .def_prop_ro("compared_misses",
+                   [](const AccuracyCase& self) { return self.result.compared_misses; })
       .def_prop_ro("near_edges", [](const AccuracyCase& self) { return self.result.near_edges; })
       .def_prop_ro("wrong_hits", [](const AccuracyCase& self) { return self.result.wrong_hits; })
       .def_prop_ro("wrong_misses",

@@ -180,7 +180,7 @@ def test_verify_passes_on_this_machine():
     found = glidar.verify()
     assert found.passed, str(found)
     assert len(found.rows) > 40
-    assert all(row.judged_hits > 0 and row.rays > 0 for row in found.rows)
+    assert all(row.compared_hits > 0 and row.rays > 0 for row in found.rows)
     assert {row.name for row in found.rows} == {
         "one shape at rest", "several instances", "above a planet", "scanner among bodies",
         "moving sensor and target", "sensor on a vertex", "at vertices and edges", "beside the outline"}

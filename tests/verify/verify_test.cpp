@@ -116,8 +116,8 @@ TEST_F(SpecialCases, EveryRayRendererPassesOrHasAKnownFailure) {
     const AccuracyCase row = row_of(c, subject("rays"));
     EXPECT_TRUE(all_passed({row})) << c.name << ", " << c.shape << ", " << c.distance_m;
     EXPECT_NE(row.verdict(), Verdict::fixed) << "remove it from the list: " << c.name;
-    EXPECT_GT(row.result.judged_hits, 100U) << c.name << ", " << c.shape;
-    EXPECT_GT(row.result.judged_misses, 20U) << c.name << ", " << c.shape;
+    EXPECT_GT(row.result.compared_hits, 100U) << c.name << ", " << c.shape;
+    EXPECT_GT(row.result.compared_misses, 20U) << c.name << ", " << c.shape;
   }
 }
 
@@ -166,7 +166,8 @@ TEST_F(SpecialCases, ShiftedRangesAndSwappedIdsAreDetectedForOneStaticShape) {
 }
 
 TEST(VerifyResult, AnyErrorOverItsBoundFails) {
-  const VerifyResult good{.rays = 1000, .judged_hits = 500, .judged_misses = 490, .near_edges = 10};
+  const VerifyResult good{
+      .rays = 1000, .compared_hits = 500, .compared_misses = 490, .near_edges = 10};
   EXPECT_TRUE(good.passed());
   const auto spoiled = [&](auto member, auto value) {
     VerifyResult result = good;
@@ -178,7 +179,7 @@ TEST(VerifyResult, AnyErrorOverItsBoundFails) {
   EXPECT_FALSE(spoiled(&VerifyResult::wrong_ids, std::size_t{1}));
   EXPECT_FALSE(spoiled(&VerifyResult::range_error_ulp, 0.00101));
   EXPECT_FALSE(spoiled(&VerifyResult::normal_error_rad, 1.1e-6));
-  EXPECT_FALSE(spoiled(&VerifyResult::judged_hits, std::size_t{0}));
+  EXPECT_FALSE(spoiled(&VerifyResult::compared_hits, std::size_t{0}));
   EXPECT_FALSE(spoiled(&VerifyResult::near_edges, std::size_t{100}));
 }
 
@@ -203,7 +204,8 @@ TEST_F(SpecialCases, AKnownFailureBeyondItsBoundFails) {
 }
 
 TEST(AccuracyCase, AKnownFailureIsAnErrorOnlyBeyondItsBound) {
-  const VerifyResult good{.rays = 1000, .judged_hits = 500, .judged_misses = 490, .near_edges = 10};
+  const VerifyResult good{
+      .rays = 1000, .compared_hits = 500, .compared_misses = 490, .near_edges = 10};
   VerifyResult bad = good;
   bad.wrong_hits = 2;
   bad.wrong_ids = 1;

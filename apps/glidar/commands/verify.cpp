@@ -49,7 +49,7 @@ void print_row(const AccuracyCase& row) {
     return;
   }
   fmt::print("{:<25} {:<15} {:>8} {:>7} {:>7} {:>6} {:>9.2e} {:>9.2e} {:>9.2e} {:>5}  {}\n",
-             row.name, row.shape, row.distance_m, r.judged_hits, r.judged_misses, r.near_edges,
+             row.name, row.shape, row.distance_m, r.compared_hits, r.compared_misses, r.near_edges,
              r.range_error_m, r.range_error_ulp, r.normal_error_rad, r.wrong(),
              verdict_name(row.verdict()));
 }
@@ -111,8 +111,8 @@ nlohmann::ordered_json json_of(const AccuracyCase& row) {
           {"shape", row.shape},
           {"distance_m", row.distance_m},
           {"rays", r.rays},
-          {"judged_hits", r.judged_hits},
-          {"judged_misses", r.judged_misses},
+          {"compared_hits", r.compared_hits},
+          {"compared_misses", r.compared_misses},
           {"near_edges", r.near_edges},
           {"wrong_hits", r.wrong_hits},
           {"wrong_misses", r.wrong_misses},
