@@ -77,8 +77,8 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
   const Frame frame = simulator.simulate(model.world_from_sensor);
   link::Context context;
   const Report silent;
-  link::ErrorLog faults(silent);
-  lockstep::Server server(context, {.endpoint = link::parse_endpoint(endpoint)}, faults);
+  link::ErrorLog errors(silent);
+  lockstep::Server server(context, {.endpoint = link::parse_endpoint(endpoint)}, errors);
   link::CloudPool clouds;
   for (;;) {
     const std::optional<lockstep::Received> received = server.receive();

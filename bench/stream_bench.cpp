@@ -83,8 +83,8 @@ class Reader {
 
 void publish(benchmark::State& state, const View& view, bool is_read) {
   link::Context context;
-  link::ErrorLog faults({});
-  woods2016::CloudPublisher publisher(context, {.endpoint = {"127.0.0.1", kPort}}, faults);
+  link::ErrorLog errors({});
+  woods2016::CloudPublisher publisher(context, {.endpoint = {"127.0.0.1", kPort}}, errors);
   const std::unique_ptr<Reader> reader = is_read ? std::make_unique<Reader>() : nullptr;
   while (is_read && publisher.counts().subscribers == 0) publisher.serve();
   const auto beams = std::make_shared<const Beams>(view.beams);

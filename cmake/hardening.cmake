@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 
-# What makes faults in memory harder to exploit, in every optimised build without sanitizers.
+# What makes memory errors harder to exploit, in every optimised build without sanitizers.
 # scripts/check_binaries.py looks for it in what was built.
 option(GLIDAR_HARDENING "Harden what is built: checked copies, stack protector, read-only relocations" ON)
 

@@ -40,7 +40,7 @@ def readelf(*arguments):
     return done.stdout
 
 
-def search_path_faults(dynamic):
+def search_path_problems(dynamic):
     """What is wrong with RUNPATH and RPATH, given the output of `readelf -d`."""
     for entries in re.findall(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", dynamic):
         for entry in sorted(set(entries.split(":"))):
@@ -50,7 +50,7 @@ def search_path_faults(dynamic):
                 yield f"the search path for libraries '{entries}' has the relative entry '{entry}'"
 
 
-def hardening_faults(dynamic, segments, symbols):
+def hardening_problems(dynamic, segments, symbols):
     """What hardening is missing, given the output of `readelf -d`, `-lh` and `--dyn-syms`."""
     if not re.search(r"Type:\s+DYN", segments):
         yield "it is not position-independent"
@@ -64,7 +64,7 @@ def hardening_faults(dynamic, segments, symbols):
         yield "copies are not checked (_FORTIFY_SOURCE)"
 
 
-def jump_target_faults(content):
+def jump_target_problems(content):
     """Errors in the marks of jump targets. The note that a whole program has them is not required:
     the startup code of Debian 12 has none, so no program there gets it."""
     machine = int.from_bytes(content[18:20], "little")
@@ -72,13 +72,13 @@ def jump_target_faults(content):
         yield "targets of indirect jumps are not marked (-fcf-protection)"
 
 
-def faults(path, search_path_only=False):
+def problems(path, search_path_only=False):
     """All that is wrong with one file, in words."""
     dynamic = readelf("-d", path)
-    found = list(search_path_faults(dynamic))
+    found = list(search_path_problems(dynamic))
     if not search_path_only and OWN.match(path.name) and not NOT_SHIPPED.search(path.name):
-        found += hardening_faults(dynamic, readelf("-lh", path), readelf("--dyn-syms", path))
-        found += jump_target_faults(Path(path).read_bytes())
+        found += hardening_problems(dynamic, readelf("-lh", path), readelf("--dyn-syms", path))
+        found += jump_target_problems(Path(path).read_bytes())
     return found
 
 
@@ -88,7 +88,7 @@ def check(folders, search_path_only=False):
     for folder in folders:
         for path in elf_files(folder):
             count += 1
-            complaints += [f"{path}: {fault}" for fault in faults(path, search_path_only)]
+            complaints += [f"{path}: {problem}" for problem in problems(path, search_path_only)]
     return count, complaints
 
 

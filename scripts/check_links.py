@@ -71,9 +71,9 @@ def check_page(root, page):
     complaints = []
     for number, line in visible_lines((root / page).read_text(encoding="utf-8")):
         for target in LINK.findall(re.sub(r"(`+).+?\1", "", line)):
-            fault = "" if EXTERNAL.match(target) else check_link(root, page, target)
-            if fault:
-                complaints.append(f"{page}:{number}: {fault}")
+            problem = "" if EXTERNAL.match(target) else check_link(root, page, target)
+            if problem:
+                complaints.append(f"{page}:{number}: {problem}")
     return complaints
 
 

@@ -53,7 +53,7 @@ class Findings:
     clouds: int = 0
     lost_clouds: int = 0
     attacks: int = 0
-    faults: list = field(default_factory=list)
+    errors: list = field(default_factory=list)
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def has_all(self):
@@ -119,7 +119,7 @@ class Soak(HostileClients):
         while not self.over.is_set():
             now = time.monotonic() - self.started
             if self.lockstep.poll() is not None or self.stream.poll() is not None:
-                self.findings.faults.append("glidar ended before its time")
+                self.findings.errors.append("glidar ended before its time")
                 break
             if end is None and (self.findings.has_all() or now > MAX_WAIT_S):
                 end = now + self.seconds
@@ -137,7 +137,7 @@ class Soak(HostileClients):
         try:
             client(np.random.default_rng(seed))
         except Exception as error:  # whatever it is: the run is over and has failed
-            self.findings.faults.append(f"{client.__name__}: {error!r}")
+            self.findings.errors.append(f"{client.__name__}: {error!r}")
             self.over.set()
 
     def end(self):
@@ -151,8 +151,8 @@ class Soak(HostileClients):
                 program.kill()
                 code = program.wait()
             program.stdout.close()
-            if not self.findings.faults and code != 128 + signal.SIGTERM:
-                self.findings.faults.append(f"{program.args[-1]}: exit code {code}")
+            if not self.findings.errors and code != 128 + signal.SIGTERM:
+                self.findings.errors.append(f"{program.args[-1]}: exit code {code}")
         self.context.destroy(linger=0)
         self.log.close()
         return [json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
@@ -274,16 +274,16 @@ def growth_mb(times, memory):
 
 def judge(findings, memory, tolerance_mb=MEMORY_TOLERANCE_MB):
     """Everything that must not be."""
-    if findings.faults:
-        return findings.faults
-    faults = []
+    if findings.errors:
+        return findings.errors
+    errors = []
     for column, name in ((1, "lock-step"), (2, "streaming")):
         growth = growth_mb(memory[:, 0], memory[:, column])
         if growth > tolerance_mb:
-            faults.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {tolerance_mb}")
+            errors.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {tolerance_mb}")
     if not findings.has_all():
-        faults.append("a client did nothing")
-    return faults
+        errors.append("a client did nothing")
+    return errors
 
 
 def report(findings, memory, stats, latencies):
@@ -301,7 +301,7 @@ def report(findings, memory, stats, latencies):
         print(f"memory, {name}: {memory[0, column]:.1f} MB at first, {memory[:, column].max():.1f} MB at most, "
               f"{growth_mb(memory[:, 0], memory[:, column]):+.2f} MB from the second quarter to the last")
     if findings.attacks:
-        print(f"{findings.attacks} attacks; cut off or refused: {served.get('faults')} {streamed.get('faults')}")
+        print(f"{findings.attacks} attacks; cut off or refused: {served.get('errors')} {streamed.get('errors')}")
     print(f"{findings.connections} connections; {served.get('requests')} messages served")
 
 
@@ -344,17 +344,17 @@ def main(arguments=None):
         finally:
             stats = soak.end()
         log = Path(folder, "log.txt").read_text(encoding="utf-8")
-    faults = judge(soak.findings, memory, HOSTILE_TOLERANCE_MB if flags.hostile else MEMORY_TOLERANCE_MB)
-    if not soak.findings.faults:
+    errors = judge(soak.findings, memory, HOSTILE_TOLERANCE_MB if flags.hostile else MEMORY_TOLERANCE_MB)
+    if not soak.findings.errors:
         latencies = np.concatenate([np.array(one).reshape(-1, 2) for one in soak.findings.latencies])
         report(soak.findings, memory, stats, latencies)
         if flags.picture:
             draw(memory, latencies, flags.picture)
-    for fault in faults:
-        print(f"soak: {fault}", file=sys.stderr)
-    if faults:
+    for error in errors:
+        print(f"soak: {error}", file=sys.stderr)
+    if errors:
         print(log[-4000:], file=sys.stderr)
-    return 1 if faults else 0
+    return 1 if errors else 0
 
 
 if __name__ == "__main__":

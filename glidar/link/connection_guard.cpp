@@ -180,12 +180,12 @@ std::uint64_t ConnectionGuard::delivered(int descriptor) {
   return connection.cookie;
 }
 
-void ConnectionGuard::cut_off(const ConnectionId& connection, const std::string& fault,
+void ConnectionGuard::cut_off(const ConnectionId& connection, const std::string& kind,
                               const std::string& why) {
   const std::lock_guard lock(mutex_);
   const auto found = connections_.find(connection.descriptor);
   if (found == connections_.end() || found->second.is_cut) return;
-  if (connection.cookie == 0 || connection.cookie == found->second.cookie) cut(found, fault, why);
+  if (connection.cookie == 0 || connection.cookie == found->second.cookie) cut(found, kind, why);
 }
 
 bool ConnectionGuard::is_open(const ConnectionId& connection) const {
@@ -306,11 +306,11 @@ void ConnectionGuard::check_unread() {
           std::to_string(limits_.all_unread_bytes) + "; it sent the most");
 }
 
-void ConnectionGuard::cut(Connections::iterator connection, const std::string& fault,
+void ConnectionGuard::cut(Connections::iterator connection, const std::string& kind,
                           const std::string& why) {
   connection->second.is_cut = true;
   shut_down(connection->first, connection->second.cookie);
-  if (!fault.empty()) errors_.report(fault, why);
+  if (!kind.empty()) errors_.report(kind, why);
 }
 
 std::size_t ConnectionGuard::open_connections() const {

@@ -80,7 +80,7 @@ class ConnectionGuard {
   /// Returns the cookie.
   std::uint64_t delivered(int descriptor);
   /// Closes the connection and logs an error of this kind.
-  void cut_off(const ConnectionId& connection, const std::string& fault, const std::string& why);
+  void cut_off(const ConnectionId& connection, const std::string& kind, const std::string& why);
   /// False if the connection has ended.
   [[nodiscard]] bool is_open(const ConnectionId& connection) const;
   /// Bytes that the peer has received; 0: unknown.
@@ -111,7 +111,7 @@ class ConnectionGuard {
   void hold_back();
   void report_descriptors();
   void check_unread();
-  void cut(Connections::iterator connection, const std::string& fault, const std::string& why);
+  void cut(Connections::iterator connection, const std::string& kind, const std::string& why);
   [[nodiscard]] std::size_t open_connections() const;
 
   mutable std::mutex mutex_;

@@ -55,8 +55,8 @@ Endpoint parse_endpoint(const std::string& text) {
   Endpoint endpoint{.host = text.substr(kTcp.size(), colon - kTcp.size())};
   const std::string_view port = std::string_view(text).substr(colon + 1);
   if (port == "*") return endpoint;
-  const auto [stop, fault] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
-  if (fault != std::errc() || stop != port.data() + port.size() || endpoint.port == 0) {
+  const auto [stop, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
+  if (error != std::errc() || stop != port.data() + port.size() || endpoint.port == 0) {
     refuse("a port is a number from 1 to 65535, or * for any");
   }
   return endpoint;

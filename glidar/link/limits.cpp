@@ -63,8 +63,8 @@ void set_limit(Limits& limits, std::string_view text) {
   const std::string_view number =
       equals == std::string_view::npos ? std::string_view() : text.substr(equals + 1);
   std::int64_t value = 0;
-  const auto [stop, fault] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (fault != std::errc() || stop != number.data() + number.size() || value < kind.min ||
+  const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error != std::errc() || stop != number.data() + number.size() || value < kind.min ||
       value > kind.max) {
     throw Error({.where = "--limit " + std::string(kind.name),
                  .found = "'" + std::string(number) + "'",

@@ -364,9 +364,9 @@ std::vector<PeerEvent> Socket::events() {
   return found;
 }
 
-void Socket::cut_off(const ConnectionId& connection, const std::string& fault,
+void Socket::cut_off(const ConnectionId& connection, const std::string& kind,
                      const std::string& why) {
-  if (impl_->guard() != nullptr) impl_->guard()->cut_off(connection, fault, why);
+  if (impl_->guard() != nullptr) impl_->guard()->cut_off(connection, kind, why);
 }
 
 std::uint64_t Socket::taken_bytes(const ConnectionId& connection) const {

@@ -148,7 +148,7 @@ class Socket {
   /// events are stored until then.
   std::vector<PeerEvent> events();
   /// Closes a connection, if the socket has protection, and logs an error of this kind.
-  void cut_off(const ConnectionId& connection, const std::string& fault, const std::string& why);
+  void cut_off(const ConnectionId& connection, const std::string& kind, const std::string& why);
   /// Bytes that the peer has received; 0: unknown, or no protection.
   [[nodiscard]] std::uint64_t taken_bytes(const ConnectionId& connection) const;
   /// False if the connection has ended; true without protection.

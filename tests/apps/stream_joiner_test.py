@@ -166,7 +166,7 @@ class LateSubscriber(StreamTest):
         err = self.finished(program, 0)
         self.assertEqual(err.count("1 peer has shaken hands but not subscribed to clouds within 0.2 s"), 1, err)
         self.assertEqual(self.stats()["clouds"]["sent"], 3)
-        self.assertEqual(self.stats()["faults"], {"subscription missing": 1})
+        self.assertEqual(self.stats()["errors"], {"subscription missing": 1})
 
     def test_an_invalid_timeout_is_refused(self):
         for text in ("-1", "nan", "soon"):

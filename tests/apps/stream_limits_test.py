@@ -115,7 +115,7 @@ class Lockstep(LimitsTest):
                 self.is_cut_off(peer, part(b"", more=True) * 1000)
         self.assertTrue(self.is_answered(self.client()))
         self.assertIn("without a complete message", self.stop(program))
-        self.assertGreaterEqual(self.stats()["faults"]["peer cut off"], 1)
+        self.assertGreaterEqual(self.stats()["errors"]["peer cut off"], 1)
 
     def test_garbage_does_not_affect_replies_to_others(self):
         program = self.listen()
@@ -160,9 +160,9 @@ class Streaming(LimitsTest):
                 peer.send(parts)
                 wait_until(peer.is_closed, "the end of the connection", program)
         self.goes_on()
-        faults = self.stop(program)
-        self.assertIn("more than 8 subscriptions (--limit subscriptions)", faults)
-        self.assertEqual(self.stats()["faults"]["subscription limit"], 2)
+        errors = self.stop(program)
+        self.assertIn("more than 8 subscriptions (--limit subscriptions)", errors)
+        self.assertEqual(self.stats()["errors"]["subscription limit"], 2)
 
     def test_messages_that_never_end_are_cut_off_at_both_ports(self):
         program = self.serve()
@@ -171,7 +171,7 @@ class Streaming(LimitsTest):
                 self.is_cut_off(peer, part(b"", more=True) + part(b"\5" * 100, more=True) * 1000)
         self.goes_on()
         self.stop(program)
-        self.assertGreaterEqual(self.stats()["faults"]["peer cut off"], 1)
+        self.assertGreaterEqual(self.stats()["errors"]["peer cut off"], 1)
 
     def test_a_flood_of_handshakes_does_not_stop_the_clouds(self):
         program = self.serve()
@@ -202,7 +202,7 @@ class Streaming(LimitsTest):
         for peer in idle:
             peer.socket.close()
         self.assertEqual(self.stop(program).count("file descriptors used up"), 1)
-        self.assertIn("file descriptors used up", self.stats()["faults"])
+        self.assertIn("file descriptors used up", self.stats()["errors"])
 
     def test_sigterm_ends_it_although_nobody_reads(self):
         program = self.publish_box("--width", "512", "--height", "512", "--fov", "20", "--subscribers", "0", "--rate",

@@ -229,7 +229,7 @@ class Poses(StreamTest):
         simulator.shut_down()
         self.assertEqual([t for t, _ in subscriber.clouds_until_shutdown()], [7, 3, 4])
         self.assertIn("timestamp decreased: from timestamp 7 to 3", self.finished(program, 0))
-        self.assertEqual(self.stats()["faults"], {"timestamp decreased": 1})
+        self.assertEqual(self.stats()["errors"], {"timestamp decreased": 1})
 
     def test_of_a_restarted_simulator_are_used(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "10")

@@ -45,7 +45,7 @@ class Binaries(unittest.TestCase):
         programs = [path for path in (BUILD / "tests").glob("glidar_*") if path.is_file() and os.access(path, os.X_OK)]
         self.assertGreaterEqual(len(programs), 8)
         for program in programs:
-            self.assertEqual(check_binaries.faults(program, search_path_only=not is_hardened()), [], program)
+            self.assertEqual(check_binaries.problems(program, search_path_only=not is_hardened()), [], program)
         if (BUILD / "python/glidar").is_dir():
             self.require_sound(BUILD / "python", least=1)
 

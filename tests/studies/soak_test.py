@@ -50,7 +50,7 @@ class SoakTest(unittest.TestCase):
             run.first_replies[3] = b"something else"
             run.run()
             run.end()
-        self.assertIn("request 3 has another reply than before", " ".join(run.findings.faults))
+        self.assertIn("request 3 has another reply than before", " ".join(run.findings.errors))
 
     def test_a_program_that_dies_is_a_fault(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -59,14 +59,14 @@ class SoakTest(unittest.TestCase):
             run.stream.wait()
             run.run()
             run.end()
-        self.assertEqual(run.findings.faults, ["glidar ended before its time"])
+        self.assertEqual(run.findings.errors, ["glidar ended before its time"])
 
     def test_memory_that_grows_is_a_fault(self):
         self.assertEqual(soak.judge(findings(), memory(0.0)), [])
         self.assertEqual(soak.judge(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800)), [])
-        faults = soak.judge(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800))
-        self.assertEqual(len(faults), 1)
-        self.assertIn("lock-step: memory grew by 2.2 MB", faults[0])
+        errors = soak.judge(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800))
+        self.assertEqual(len(errors), 1)
+        self.assertIn("lock-step: memory grew by 2.2 MB", errors[0])
 
     def test_a_client_that_does_nothing_is_a_fault(self):
         self.assertEqual(soak.judge(soak.Findings(), memory(0.0)), ["a client did nothing"])

@@ -41,8 +41,8 @@ std::vector<double> json_of(const Pose& pose) {
 LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
     : flags_(flags),
       console_(console),
-      faults_(console.report()),
-      server_(context_, server_options(flags, console), faults_) {
+      errors_(console.report()),
+      server_(context_, server_options(flags, console), errors_) {
   if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
   if (!flags_.record.empty()) {
     recorder_ = std::make_unique<Recorder>(flags_.record, flags_.is_durable);
@@ -273,7 +273,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
 }
 
 void LockstepRun::finish(const std::string& ending) {
-  faults_.flush();
+  errors_.flush();
   const lockstep::Server::Counts& counts = server_.counts();
   if (recorder_) recorder_->commit();  // before the statistics, for which the disk may be full
   if (stats_file_) {
@@ -281,7 +281,7 @@ void LockstepRun::finish(const std::string& ending) {
                                          {"requests", counts.received},
                                          {"refused", counts.refused},
                                          {"clouds", counts.clouds},
-                                         {"faults", faults_.counts()}};
+                                         {"errors", errors_.counts()}};
     stats_file_->write(text.dump(2) + "\n");
     stats_file_->commit();
   }

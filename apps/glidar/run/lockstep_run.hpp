@@ -59,7 +59,7 @@ class LockstepRun {
 
   const StreamFlags& flags_;
   Console& console_;
-  link::ErrorLog faults_;
+  link::ErrorLog errors_;
   std::unique_ptr<AtomicFile> stats_file_;
   link::Context context_;
   lockstep::Server server_;

@@ -43,7 +43,7 @@ std::string json_text(const StreamSummary& summary) {
         {"max", kMilli * latency.max_s()}}}};
   if (summary.clouds) all["clouds"] = json_of(*summary.clouds);
   if (summary.poses) all["poses"] = json_of(*summary.poses);
-  all["faults"] = summary.faults;
+  all["errors"] = summary.errors;
   constexpr int kIndent = 2;
   return all.dump(kIndent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

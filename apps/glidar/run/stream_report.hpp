@@ -22,7 +22,7 @@ struct StreamSummary {
   std::uint64_t late = 0;      ///< frames after their due time
   std::optional<woods2016::CloudPublisher::Counts> clouds = {};
   std::optional<woods2016::PoseReceiver::Counts> poses = {};
-  std::map<std::string, std::uint64_t> faults = {};
+  std::map<std::string, std::uint64_t> errors = {};
 };
 
 /// The JSON of --stats; docs/link.md describes every key.

@@ -62,7 +62,7 @@ void compare(const MeasuredFrame& measured, const std::string& recording, std::u
 StreamRun::StreamRun(StreamFlags flags, Console& console)
     : flags_(std::move(flags)),
       console_(console),
-      faults_(console.report()),
+      errors_(console.report()),
       duration_s_(std::exchange(flags_.render.duration_s, std::nullopt)
                       .value_or(std::numeric_limits<double>::infinity())) {
   if (!flags_.stats.empty()) {
@@ -77,7 +77,7 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
   if (flags_.port) {
     with_option_name("--bind, --port", [&] {
       publisher_ =
-          std::make_unique<woods2016::CloudPublisher>(context_, publisher_options(flags_), faults_);
+          std::make_unique<woods2016::CloudPublisher>(context_, publisher_options(flags_), errors_);
     });
   }
   open_scene();
@@ -86,7 +86,7 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
     prepare_poses();
     with_option_name("--pose-source", [&] {
       receiver_ =
-          std::make_unique<woods2016::PoseReceiver>(context_, receiver_options(flags_), faults_);
+          std::make_unique<woods2016::PoseReceiver>(context_, receiver_options(flags_), errors_);
     });
   }
 }
@@ -361,12 +361,12 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     }
   };
   if (publisher_) attempt([&] { publisher_->shut_down(is_urgent ? kUrgent : kUnhurried); });
-  faults_.flush();
+  errors_.flush();
   StreamSummary summary{.stats = stats_,
                         .ending = ending,
                         .measured = measured_,
                         .late = late_,
-                        .faults = faults_.counts()};
+                        .errors = errors_.counts()};
   if (publisher_) summary.clouds = publisher_->counts();
   if (receiver_) summary.poses = receiver_->counts();
   if (stats_file_) {

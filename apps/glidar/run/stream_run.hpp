@@ -59,7 +59,7 @@ class StreamRun {
 
   StreamFlags flags_;
   Console& console_;
-  link::ErrorLog faults_;
+  link::ErrorLog errors_;
   std::unique_ptr<AtomicFile> stats_file_;
   link::Context context_;
   std::unique_ptr<woods2016::CloudPublisher> publisher_;

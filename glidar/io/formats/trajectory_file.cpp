@@ -43,9 +43,9 @@ void require_count(const TextRows& rows, std::size_t count, const char* what) {
 /// Appends the pose; throws Error at the word of an invalid part.
 void append(const TextRows& rows, const TimedPose& pose, const std::array<Word, 3>& parts,
             std::vector<TimedPose>& poses) {
-  const auto fault = find_error(poses.empty() ? nullptr : &poses.back(), pose);
-  if (fault)
-    rows.reject(parts[static_cast<std::size_t>(fault->part)], fault->found, fault->allowed);
+  const auto error = find_error(poses.empty() ? nullptr : &poses.back(), pose);
+  if (error)
+    rows.reject(parts[static_cast<std::size_t>(error->part)], error->found, error->allowed);
   poses.push_back(pose);
 }
 
