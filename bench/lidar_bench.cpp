@@ -65,7 +65,7 @@ struct Stage {
   Stage() {
     noisy.noise = {RangeGaussian{.sigma_m = 0.01}, Dropout{.probability = 0.01},
                    RangeQuantization{.step_m = 0.002}};
-    wide.pulse = LidarEquation{};
+    wide.lidar_equation = LidarEquation{};
     wide.footprint = Footprint{.divergence_x_rad = 3e-3,
                                .divergence_y_rad = 1.5e-3,
                                .exit_x_m = 0.0095,

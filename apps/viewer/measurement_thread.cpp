@@ -31,7 +31,7 @@ namespace {
 /// The sensor without random errors.
 Sensor without_noise(Sensor sensor) {
   sensor.noise.clear();
-  if (sensor.pulse) sensor.pulse->noise_sigma = 0.0;
+  if (sensor.lidar_equation) sensor.lidar_equation->noise_sigma = 0.0;
   return sensor;
 }
 

@@ -73,7 +73,7 @@ void show_sensor_numbers(const Snapshot& snapshot) {
                      2.0 * kDegreesPerRadian * std::atan(0.5 * k.height / k.fy)));
   }
   text(limit_text(sensor.limits));
-  text(sensor.pulse ? "pulsed light" : "light at the sensor (paper)");
+  text(sensor.lidar_equation ? "pulsed light" : "light at the sensor (paper)");
   if (sensor.footprint) text("beams with a footprint");
   if (sensor.weather) text("weather");
   if (sensor.noise.empty()) return;

@@ -154,7 +154,7 @@ void write_phong(TraceWriter& out) {
 
 void write_light(TraceWriter& out) {
   if (!out.has_hit()) return;
-  if (out.sensor.pulse) return write_lidar_equation(out, *out.sensor.pulse);
+  if (out.sensor.lidar_equation) return write_lidar_equation(out, *out.sensor.lidar_equation);
   write_phong(out);
 }
 
@@ -210,7 +210,7 @@ void write_echoes(TraceWriter& out, const WaveformTrace& pulse) {
              noise.empty() ? "" : fmt::format("; normal {:.6f}", noise[k]));
   }
   out.line("received", "{} after noise of sigma {:.3g}, threshold 1", pulse.received.size(),
-           out.sensor.pulse->noise_sigma);
+           out.sensor.lidar_equation->noise_sigma);
   for (std::size_t k = 0; k < pulse.received.size(); ++k) {
     const PulseEcho& echo = pulse.received[k];
     out.line("", "{:.6f} m, signal {:.6g}, {}{}", echo.range_m, echo.signal, source(echo),

@@ -48,7 +48,7 @@ Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, 
 }
 
 Sensor ground_truth_sensor(Sensor sensor) {
-  sensor.pulse.reset();
+  sensor.lidar_equation.reset();
   sensor.footprint.reset();
   sensor.weather.reset();
   sensor.projector_origin_m.reset();
@@ -67,7 +67,7 @@ void set_rate(Sensor& sensor, double rate_hz) {
 
 void check_weather(const Sensor& sensor) {
   if (!sensor.weather) return;
-  if (!sensor.pulse) {
+  if (!sensor.lidar_equation) {
     throw Error({.where = "weather",
                  .found = "the sensor '" + sensor.name + "' has no lidar_equation",
                  .allowed = "weather for a sensor with 'lidar_equation'",

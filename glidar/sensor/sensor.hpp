@@ -44,11 +44,11 @@ struct Sensor {
   double rate_hz = 30.0;      ///< frames per second; see set_rate
   double wavelength_m = 0.0;  ///< of the light; 0: unknown
   Limits limits;
-  PhongHeadlight light;                ///< Phong model of the 2016 paper
-  std::optional<LidarEquation> pulse;  ///< set: a pulsed sensor; replaces `light`
-  std::optional<Footprint> footprint;  ///< of pulses; empty: the beam is a line
-  std::optional<Weather> weather;      ///< empty: clear air; affects `pulse`
-  Receiver receiver;                   ///< of pulses
+  PhongHeadlight light;                         ///< Phong model of the 2016 paper
+  std::optional<LidarEquation> lidar_equation;  ///< set: a pulsed sensor; replaces `light`
+  std::optional<Footprint> footprint;           ///< of pulses; empty: the beam is a line
+  std::optional<Weather> weather;               ///< empty: clear air; affects `lidar_equation`
+  Receiver receiver;                            ///< of pulses
   /// Position of the light source in the sensor frame: surfaces that it does not see are occluded.
   /// Empty: the sensor's origin.
   std::optional<Eigen::Vector3d> projector_origin_m;

@@ -41,7 +41,7 @@ void apply_first(const Simulation& s, std::size_t count, const Columns& measured
 
 std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame,
                                    const PointTrace& trace, std::size_t pulse) {
-  if (!sensor.pulse || !(sensor.pulse->noise_sigma > 0.0)) return {};
+  if (!sensor.lidar_equation || !(sensor.lidar_equation->noise_sigma > 0.0)) return {};
   const std::size_t count = trace.pulse ? trace.pulse->echoes.size() : 1;
   RngKey draw = rng_key(frame, Purpose::detection, pulse);
   std::vector<double> numbers;
@@ -66,7 +66,7 @@ PointTrace begin_trace(const Simulation& s, std::size_t entry) {
   PointTrace trace;
   trace.entry = entry;
   trace.direction = s.fired->directions[entry];
-  if (s.sensor.pulses) trace.pulse = trace_waveform(s, pulse, frame);
+  if (s.sensor.pulse_model) trace.pulse = trace_waveform(s, pulse, frame);
   trace.receiver_noise = receiver_noise(s.sensor.sensor, frame, trace, pulse);
   return trace;
 }

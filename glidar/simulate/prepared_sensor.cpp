@@ -19,7 +19,7 @@ std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
     beam = {.divergence_rad = std::sqrt(f.divergence_x_rad * f.divergence_y_rad),
             .exit_diameter_m = std::sqrt(f.exit_x_m * f.exit_y_m)};
   }
-  return prepare_weather(*sensor.weather, *sensor.pulse, sensor.wavelength_m, beam,
+  return prepare_weather(*sensor.weather, *sensor.lidar_equation, sensor.wavelength_m, beam,
                          sensor.receiver.pulse_fwhm_s);
 }
 
@@ -27,7 +27,7 @@ PulseModel pulse_model(const Sensor& sensor, const Scene& scene) {
   PulseModel model;
   model.sub_rays = sensor.footprint ? sample_footprint(*sensor.footprint) : std::vector<SubRay>(1);
   model.weather = weather_of(sensor);
-  model.lidar_equation = model.weather ? model.weather->light : *sensor.pulse;
+  model.lidar_equation = model.weather ? model.weather->light : *sensor.lidar_equation;
   model.has_mirrors = has_mirrors(scene);
   return model;
 }
@@ -35,8 +35,8 @@ PulseModel pulse_model(const Sensor& sensor, const Scene& scene) {
 HitFieldMask required_fields(const Sensor& sensor) {
   HitFieldMask fields;
   fields.shading = true;
-  fields.diffuse = sensor.pulse.has_value();
-  fields.reflectance = !sensor.pulse;
+  fields.diffuse = sensor.lidar_equation.has_value();
+  fields.reflectance = !sensor.lidar_equation;
   fields.normal = sensor.projector_origin_m.has_value();
   add_required_fields(sensor.noise, fields);
   return fields;
@@ -46,7 +46,7 @@ HitFieldMask required_fields(const Sensor& sensor) {
 
 bool needs_waveform(const Sensor& sensor, const Scene& scene) {
   if (sensor.weather) return true;
-  if (!sensor.pulse) return false;
+  if (!sensor.lidar_equation) return false;
   const Receiver& receiver = sensor.receiver;
   const Return& first = receiver.returns[0];
   const bool reports_strongest =
@@ -59,8 +59,8 @@ PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
   PreparedSensor prepared{.sensor = sensor,
                           .noise = plan_noise(sensor.noise, 1.0 / sensor.rate_hz),
                           .required_fields = required_fields(sensor),
-                          .pulses = {}};
-  if (needs_waveform(sensor, scene)) prepared.pulses = pulse_model(sensor, scene);
+                          .pulse_model = {}};
+  if (needs_waveform(sensor, scene)) prepared.pulse_model = pulse_model(sensor, scene);
   return prepared;
 }
 

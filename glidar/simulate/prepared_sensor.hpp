@@ -29,8 +29,8 @@ struct PulseModel {
 struct PreparedSensor {
   const Sensor& sensor;
   NoisePlan noise;
-  HitFieldMask required_fields;      ///< ground truth that signal, occlusion and noise read
-  std::optional<PulseModel> pulses;  ///< set when needs_waveform()
+  HitFieldMask required_fields;           ///< ground truth that signal, occlusion and noise read
+  std::optional<PulseModel> pulse_model;  ///< set when needs_waveform()
 };
 
 /// Throws Error when the sensor's weather needs what the sensor lacks, see check_weather(). Refers

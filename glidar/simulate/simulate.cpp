@@ -67,7 +67,7 @@ void cast_beams(std::span<const Simulation> frames, const MeasureTile& measure) 
   const auto measure_one = [&](BeamRange tile) { measure(s, tile); };
   const FunctionRef<void(BeamRange)> on_tile_done(measure_one);
   Hits& hits = s.frame.ground_truth;
-  if (s.sensor.pulses) return cast_pulses(s, {0, s.fired->firings()}, on_tile_done);
+  if (s.sensor.pulse_model) return cast_pulses(s, {0, s.fired->firings()}, on_tile_done);
   const CastRequest request = beam_request(s, on_tile_done);
   if (!s.is_moving) return s.renderer.cast(request, hits);
   cast_moving(timed_scene(s), request, s.workspace.moving_cast, hits);
@@ -112,18 +112,18 @@ void simulate(std::span<Simulation> frames) {
 }
 
 void measure_tile(const Simulation& s, BeamRange tile) {
-  if (s.sensor.pulses) return measure_waveforms(s, tile);
+  if (s.sensor.pulse_model) return measure_waveforms(s, tile);
   const Sensor& sensor = s.sensor.sensor;
   check_limits(sensor.limits, *s.fired, tile, s.frame);
-  if (sensor.pulse) {
-    shade_lidar(*sensor.pulse, s.scene, sensor.wavelength_m, tile, s.frame);
+  if (sensor.lidar_equation) {
+    shade_lidar(*sensor.lidar_equation, s.scene, sensor.wavelength_m, tile, s.frame);
   } else {
     shade_phong(sensor.light, tile, s.frame);
   }
 }
 
 bool takes_one_cast(const Simulation& s) {
-  return !s.sensor.pulses && !s.is_moving;
+  return !s.sensor.pulse_model && !s.is_moving;
 }
 
 }  // namespace glidar

@@ -24,7 +24,7 @@ EchoContribution ghost_path(const Simulation& s, std::size_t mirrored, double en
   const double range_m = memory.hits.range_m[ray] + hits.range_m[mirrored];
   const double sent = energy * share * share *
                       backscatter_at(s.scene, s.sensor.sensor.wavelength_m, hits, mirrored);
-  return {range_m, received_signal(s.sensor.pulses->lidar_equation, sent, range_m), ray,
+  return {range_m, received_signal(s.sensor.pulse_model->lidar_equation, sent, range_m), ray,
           ReturnSource::ghost, kGhostSurface};
 }
 
@@ -32,7 +32,7 @@ EchoContribution ghost_path(const Simulation& s, std::size_t mirrored, double en
 void collect_paths(const Simulation& s, std::size_t beam, BeamSurfaces& surfaces,
                    WaveformBuffer& waveform) {
   const SubRayWorkspace& memory = s.workspace.sub_rays;
-  const std::vector<SubRay>& rays = s.sensor.pulses->sub_rays;
+  const std::vector<SubRay>& rays = s.sensor.pulse_model->sub_rays;
   const std::size_t first = first_sub_ray(s, beam);
   const bool is_spread = rays.size() > 1;
   if (is_spread) surfaces.find(memory.beams, memory.hits, first, rays.size());
@@ -86,7 +86,7 @@ void report_echo(const Simulation& s, const PulseEcho& echo, const EchoContribut
                  std::size_t entry) {
   Frame& frame = s.frame;
   const Sensor& sensor = s.sensor.sensor;
-  const double saturation = s.sensor.pulses->lidar_equation.saturation;
+  const double saturation = s.sensor.pulse_model->lidar_equation.saturation;
   const double range_m = reported_range_m(sensor.receiver, echo);
   Status status = check_limits(sensor.limits, *s.fired, entry, range_m);
   if (status == Status::hit && saturation > 0.0 && echo.signal >= saturation)
@@ -113,7 +113,8 @@ Status missing_return_status(const Simulation& s, const EchoContribution& surfac
   if (surface.source == kInvalidId) {
     return std::isnan(s.fired->directions[beam].x()) ? Status::invalid_pixel : Status::miss;
   }
-  return classify_weak_return(s.sensor.pulses->lidar_equation, strongest_signal, surface.range_m);
+  return classify_weak_return(s.sensor.pulse_model->lidar_equation, strongest_signal,
+                              surface.range_m);
 }
 
 /// Writes what a sub-ray hit, or a miss.
@@ -158,7 +159,7 @@ bool traces(const Simulation& s, std::size_t beam) {
 
 void trace_echoes(const Simulation& s, std::size_t beam, const WaveformBuffer& waveform) {
   WaveformTrace& trace = *s.trace;
-  const std::vector<SubRay>& rays = s.sensor.pulses->sub_rays;
+  const std::vector<SubRay>& rays = s.sensor.pulse_model->sub_rays;
   const std::size_t first = first_sub_ray(s, beam);
   trace.sub_rays = rays.size();
   trace.light_paths.clear();
@@ -183,7 +184,7 @@ Status find_returns(const Simulation& s, std::size_t beam, const EchoContributio
                     PulseMemory& memory) {
   WaveformBuffer& waveform = memory.waveform;
   const Sensor& sensor = s.sensor.sensor;
-  const PulseModel& model = *s.sensor.pulses;
+  const PulseModel& model = *s.sensor.pulse_model;
   const double width_m =
       sensor.footprint && waveform.paths > 0 ? diameter_m(*sensor.footprint, surface.range_m) : 0.0;
   RngKey key = memory.samples.key;
@@ -235,7 +236,7 @@ void measure_pulse(const Simulation& s, std::size_t beam, PulseMemory& memory) {
 void find_signals(const Simulation& s, BeamRange range) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
   const BeamRange sub_rays{first_sub_ray(s, range.begin), first_sub_ray(s, range.end)};
-  received_signals(s.sensor.pulses->lidar_equation, s.scene, s.sensor.sensor.wavelength_m,
+  received_signals(s.sensor.pulse_model->lidar_equation, s.scene, s.sensor.sensor.wavelength_m,
                    memory.hits, sub_rays, std::span(memory.signals).subspan(sub_rays.begin));
 }
 
@@ -246,7 +247,7 @@ void measure_waveforms(const Simulation& s, BeamRange tile) {
   for (std::size_t first = tile.begin; first < tile.end; first += kPulsesPerTask) {
     const BeamRange run{first, std::min(first + kPulsesPerTask, tile.end)};
     find_signals(s, run);
-    sample_receiver(s.sensor.pulses->lidar_equation, s.frame, first, memory.samples);
+    sample_receiver(s.sensor.pulse_model->lidar_equation, s.frame, first, memory.samples);
     for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) measure_pulse(s, pulse, memory);
   }
 }

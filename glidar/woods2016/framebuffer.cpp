@@ -22,7 +22,7 @@ void check_representable(const CastContext& cast) {
                  .allowed = "sensors without lidar_equation, firing times and pointing noise",
                  .remedy = "leave --quantized-framebuffer out"});
   };
-  refuse_if(cast.sensor.pulse.has_value(), "a pulsed sensor");
+  refuse_if(cast.sensor.lidar_equation.has_value(), "a pulsed sensor");
   refuse_if(!cast.beams.times_ns.empty(), "beams with firing times");
   refuse_if(&cast.fired != &cast.beams, "pointing noise");
 }

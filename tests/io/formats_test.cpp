@@ -165,7 +165,7 @@ TEST(KittiFile, IntensityIsFromZeroToOneForEverySensor) {
   // A white diffuse surface at R_ref = 100 m, of reference reflectance 0.5, sends 2 back; at 10 m
   // 100 times that: 200 is reflectivity 1, which Velodynes report as 100 of 255.
   Sensor pulsed;
-  pulsed.pulse = LidarEquation{.reference_reflectance = 0.5, .reference_range_m = 100.0};
+  pulsed.lidar_equation = LidarEquation{.reference_reflectance = 0.5, .reference_range_m = 100.0};
   EXPECT_FLOAT_EQ(kitti_intensity(pulsed, 200.0F), 100.0F / 255.0F);
   EXPECT_FLOAT_EQ(kitti_intensity(pulsed, 20.0F), 10.0F / 255.0F);
   EXPECT_EQ(kitti_intensity(pulsed, 1e9F), 1.0F);

@@ -64,7 +64,7 @@ TEST(Explain, MakesTheSameFrameAsSimulate) {
   for (Stage stage : {Stage(), noisy_stage()}) {
     for (const bool pulsed : {false, true}) {
       if (pulsed) {
-        stage.sensor.pulse = LidarEquation{.noise_sigma = 0.1};
+        stage.sensor.lidar_equation = LidarEquation{.noise_sigma = 0.1};
         stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
         stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
       }
@@ -113,7 +113,7 @@ TEST(Explain, ReportsTheActualDirectionOfABeam) {
 TEST(Explain, TracesTheEchoesOfAPulse) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(1, 1, 1e-3);  // on the edge of the nearer wall
-  stage.sensor.pulse = LidarEquation{};
+  stage.sensor.lidar_equation = LidarEquation{};
   stage.sensor.footprint =
       Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3, .rings = 2};
   stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
@@ -140,7 +140,7 @@ TEST(Explain, TracesTheEchoesOfAPulse) {
 
 TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsPaths) {
   Stage stage;
-  stage.sensor.pulse = LidarEquation{};
+  stage.sensor.lidar_equation = LidarEquation{};
   stage.sensor.footprint = Footprint{.divergence_x_rad = 0.1, .divergence_y_rad = 0.1};
   stage.add_wall(5.3);
   PointTrace story;
@@ -162,7 +162,7 @@ TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsPaths) {
 
 TEST(Explain, ReportsTheReceiversNoise) {
   Stage stage;
-  stage.sensor.pulse = LidarEquation{.noise_sigma = 0.2};
+  stage.sensor.lidar_equation = LidarEquation{.noise_sigma = 0.2};
   stage.sensor.receiver.returns = {{Return::Order::nearest, 0}};
   PointTrace story;
   const Frame frame = stage.shoot(300, &story);
@@ -176,7 +176,7 @@ TEST(Explain, ReportsTheReceiversNoise) {
 
 TEST(Explain, TracesThePulseOfASelectedEntry) {
   Stage stage = noisy_stage();
-  stage.sensor.pulse = LidarEquation{.noise_sigma = 0.2};
+  stage.sensor.lidar_equation = LidarEquation{.noise_sigma = 0.2};
   stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
   stage.sensor.weather = Weather{.rain_mm_per_h = 20.0};
   const auto renderer = make_renderer(stage.scene, {.threads = 2});

@@ -40,7 +40,7 @@ std::ptrdiff_t count(const Frame& frame, ReturnSource cause) {
 Sensor camera(std::uint32_t width, std::uint32_t height, double fov_rad) {
   Sensor sensor;
   sensor.optics = pinhole_from_fov(width, height, fov_rad);
-  sensor.pulse = LidarEquation{.reference_reflectance = 0.01, .reference_range_m = 1e4};
+  sensor.lidar_equation = LidarEquation{.reference_reflectance = 0.01, .reference_range_m = 1e4};
   sensor.footprint = Footprint{.divergence_x_rad = 4e-3, .divergence_y_rad = 4e-3, .rings = 2};
   return sensor;
 }

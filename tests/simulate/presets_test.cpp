@@ -257,7 +257,7 @@ TEST(GroundTruthSensor, DoesNotChangeTheGeometry) {
   noisy.weather = Weather{.rain_mm_per_h = 10.0};
   noisy.projector_origin_m = Eigen::Vector3d::UnitY();
   const Sensor sensor = ground_truth_sensor(noisy);
-  EXPECT_FALSE(sensor.pulse.has_value());
+  EXPECT_FALSE(sensor.lidar_equation.has_value());
   EXPECT_TRUE(noisy.footprint.has_value());
   EXPECT_FALSE(sensor.footprint.has_value());
   EXPECT_FALSE(sensor.weather.has_value());

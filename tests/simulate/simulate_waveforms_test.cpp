@@ -20,7 +20,7 @@ struct Stage : testing::PanelScene {
 
   Stage() {
     sensor.optics = pinhole_from_fov(1, 1, 1e-3);
-    sensor.pulse = LidarEquation{.reference_reflectance = 0.8, .reference_range_m = 100.0};
+    sensor.lidar_equation = LidarEquation{.reference_reflectance = 0.8, .reference_range_m = 100.0};
     sensor.receiver.pulse_fwhm_s = 5e-9;
   }
 
@@ -53,14 +53,14 @@ TEST(NeedsWaveform, IsFalseForBeamsOfASingleRay) {
   stage.scene.materials[0].mirror = 0.0F;
   stage.sensor.receiver.returns = {kLast};
   EXPECT_TRUE(needs_waveform(stage.sensor, stage.scene));
-  stage.sensor.pulse.reset();
+  stage.sensor.lidar_equation.reset();
   EXPECT_FALSE(needs_waveform(stage.sensor, stage.scene));
 }
 
 TEST(SimulateWaveforms, FootprintWithoutWidthEqualsASingleRay) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(40, 30, 0.8);
-  stage.sensor.pulse->noise_sigma = 0.5;
+  stage.sensor.lidar_equation->noise_sigma = 0.5;
   stage.add_panel({-3.0, -2.0, 90.0}, {40.0, 0.0, 40.0}, {0.0, 30.0, 2.0});
   const Frame ray = stage.shoot();
   stage.sensor.receiver.returns = {kFirst};  // of one echo, the strongest
@@ -133,7 +133,7 @@ TEST(SimulateWaveforms, SignalOfAPointTargetDecreasesWithTheFourthPowerOfTheRang
       const double y = part_m * (place / kPlaces - 0.5 * (kPlaces - 1)) - 0.5 * kSide;
       Stage stage;
       stage.spread(0.1, kMaxRings);
-      stage.sensor.pulse->reference_range_m = 1e5;
+      stage.sensor.lidar_equation->reference_range_m = 1e5;
       stage.add_panel({x, y, range_m}, {kSide, 0.0, 0.0}, {0.0, kSide, 0.0});
       sum += static_cast<double>(stage.shoot().intensity[0]);
     }
@@ -206,7 +206,7 @@ TEST(SimulateWaveforms, FirstStrongestAndLastAreReported) {
 
 TEST(SimulateWaveforms, NoiseAloneIsNotAnEchoOfASurface) {
   Stage stage;
-  stage.sensor.pulse->noise_sigma = 0.4;  // passes the threshold once in 150 beams
+  stage.sensor.lidar_equation->noise_sigma = 0.4;  // passes the threshold once in 150 beams
   stage.sensor.receiver.returns = {kLast};
   stage.sensor.optics = pinhole_from_fov(100, 100, 1e-3);
   stage.add_wall(1000.0);  // a signal of 0.01
@@ -240,7 +240,7 @@ TEST(SimulateWaveforms, TooNearTakesPrecedenceOverSaturated) {
   Stage stage;
   stage.add_wall(5.0);
   stage.sensor.limits.near_m = 8.0;
-  stage.sensor.pulse->saturation = 100.0;
+  stage.sensor.lidar_equation->saturation = 100.0;
   EXPECT_EQ(stage.shoot().status[0], Status::too_near);
   stage.spread(1e-3);
   EXPECT_EQ(stage.shoot().status[0], Status::too_near);
@@ -274,7 +274,7 @@ TEST(SimulateWaveforms, GhostOfAMirrorHasTheRangeOfTheWholePath) {
 // The receiver does not see near surfaces, but it sees them through a distant mirror.
 TEST(SimulateWaveforms, GhostUsesTheOverlapAtTheRangeOfTheWholePath) {
   Stage stage = mirror_stage();
-  stage.sensor.pulse->overlap = {{0.0, 0.0}, {8.0, 0.0}, {9.0, 1.0}};
+  stage.sensor.lidar_equation->overlap = {{0.0, 0.0}, {8.0, 0.0}, {9.0, 1.0}};
   const Frame frame = stage.shoot();
   ASSERT_EQ(frame.status[0], Status::hit);
   EXPECT_EQ(frame.intensity[0], mirror_stage().shoot().intensity[0]);
@@ -303,7 +303,7 @@ TEST(SimulateWaveforms, IsIndependentOfTheNumberOfThreads) {
   Stage stage = mirror_stage();
   stage.sensor.optics = pinhole_from_fov(64, 48, 0.5);
   stage.spread(5e-3, 1);
-  stage.sensor.pulse->noise_sigma = 0.2;
+  stage.sensor.lidar_equation->noise_sigma = 0.2;
   stage.sensor.receiver.returns = {kFirst, kStrongest};
   stage.threads = 1;
   const Frame one = stage.shoot();

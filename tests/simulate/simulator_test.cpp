@@ -23,7 +23,7 @@ Sensor pulsed_sensor() {
   Sensor sensor;
   sensor.optics = pinhole_from_fov(24, 16, 0.5);
   sensor.wavelength_m = 905e-9;
-  sensor.pulse = LidarEquation{.noise_sigma = 0.1};
+  sensor.lidar_equation = LidarEquation{.noise_sigma = 0.1};
   sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
   sensor.weather = Weather{.visibility_m = 50.0, .rain_mm_per_h = 20.0};
   sensor.receiver.returns = {{Return::Order::strongest, 0}, {Return::Order::farthest, 0}};

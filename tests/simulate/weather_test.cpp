@@ -26,7 +26,7 @@ Frame shoot(const std::optional<LidarEquation>& pulse, const std::optional<Weath
   Sensor sensor;
   sensor.optics = pinhole_from_fov(9, 7, 0.01);
   sensor.wavelength_m = 905e-9;
-  sensor.pulse = pulse;
+  sensor.lidar_equation = pulse;
   sensor.weather = weather;
   sensor.footprint = footprint;
   const Beams beams = make_beams(sensor);

@@ -164,13 +164,13 @@ TEST_F(Woods2016Measurement, AnEmptyViewGivesOnlyMisses) {
 TEST_F(Woods2016Measurement, RejectsPulsedSensorsAndPointingNoise) {
   const Scene scene = builtin("sphere");
   Sensor sensor = camera(20, 20, 0.4);
-  sensor.pulse = LidarEquation{};
+  sensor.lidar_equation = LidarEquation{};
   const std::string allowed =
       "; allowed: sensors without lidar_equation, firing times and pointing noise; "
       "leave --quantized-framebuffer out";
   EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
             "--quantized-framebuffer: a pulsed sensor" + allowed);
-  sensor.pulse.reset();
+  sensor.lidar_equation.reset();
   sensor.noise = {PointingJitter{1e-4, 1e-4}};
   EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
             "--quantized-framebuffer: pointing noise" + allowed);

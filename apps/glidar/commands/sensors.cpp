@@ -140,7 +140,7 @@ std::string beam_text(const Sensor& sensor) {
 
 std::vector<std::string> returns_of(const Sensor& sensor) {
   std::vector<std::string> names;
-  if (!sensor.pulse) return names;
+  if (!sensor.lidar_equation) return names;
   for (const Return& one : sensor.receiver.returns) names.push_back(return_name(one));
   return names;
 }

@@ -31,7 +31,7 @@ void apply_surface_option(const RenderFlags& flags, const Sensor& sensor, Scene&
   if (is_scene_file(flags.input)) {
     refuse("the input is a scene file", "write 'surface: ...' into its materials");
   }
-  if (!sensor.pulse) {
+  if (!sensor.lidar_equation) {
     refuse("the sensor has no pulsed light", "choose one that has, such as VLP-16");
   }
   const SurfacePreset surface = find_surface(flags.surface, "--surface");

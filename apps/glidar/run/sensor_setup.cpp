@@ -87,7 +87,7 @@ void apply_limits(const SensorFlags& flags, Limits& limits) {
 }
 
 void apply_light(const SensorFlags& flags, Sensor& sensor) {
-  if (sensor.pulse && (flags.ambient || flags.attenuation)) {
+  if (sensor.lidar_equation && (flags.ambient || flags.attenuation)) {
     throw Error({.where = flags.ambient ? "--ambient" : "--attenuation",
                  .found = "the sensor has pulsed light",
                  .allowed = "",

@@ -56,11 +56,12 @@ void visit_light(Sensor& sensor, FieldVisitor& visitor) {
     visitor.needs({key, "lidar_equation", "together with lidar_equation",
                    "add lidar_equation, the range equation that weighs what comes back"});
   }
-  const bool is_pulsed = sensor.pulse.has_value();
+  const bool is_pulsed = sensor.lidar_equation.has_value();
   const auto light = [&](FieldVisitor& nested) { describe(sensor.light, nested); };
   visitor.object({"light", "Phong light source at the sensor"},
                  !(is_pulsed && visitor.is_document()), FieldVisitor::Describe(light));
-  visit_object(visitor, {"lidar_equation", "pulsed light", kNoUnit, false, "none"}, sensor.pulse);
+  visit_object(visitor, {"lidar_equation", "pulsed light", kNoUnit, false, "none"},
+               sensor.lidar_equation);
   visit_object(
       visitor,
       {"footprint", "cross-section of the beam", kNoUnit, false, "an infinitely thin beam"},
@@ -105,7 +106,7 @@ SensorKeys sensor_keys(const Sensor& sensor) {
   keys.sensor.wavelength_m = sensor.wavelength_m;
   keys.sensor.limits = sensor.limits;
   keys.sensor.light = sensor.light;
-  keys.sensor.pulse = sensor.pulse;
+  keys.sensor.lidar_equation = sensor.lidar_equation;
   keys.sensor.footprint = sensor.footprint;
   keys.sensor.weather = sensor.weather;
   keys.sensor.receiver = sensor.receiver;

@@ -111,7 +111,7 @@ void apply_weather(const SensorOptions& options, const SensorOptionNames& names,
 
 void apply_returns(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor) {
   if (options.returns.empty()) return;
-  if (!sensor.pulse) {
+  if (!sensor.lidar_equation) {
     throw Error({.where = names.returns,
                  .found = "the sensor has no pulse light",
                  .allowed = "a sensor with pulse light",

@@ -207,7 +207,7 @@ struct Spelling {
 };
 
 Spelling spelling_of(const Sensor& sensor) {
-  Spelling spelling{.is_reflectance = !sensor.pulse.has_value()};
+  Spelling spelling{.is_reflectance = !sensor.lidar_equation.has_value()};
   for (const NoiseStep& step : sensor.noise) {
     const auto* scale = std::get_if<IntensityScale>(&step);
     if (scale == nullptr) continue;
@@ -231,7 +231,7 @@ std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
   if (spelling.is_reflectance) return numbers;
   const std::vector<double> ranges_m = field_values(cloud, layout, "range", 0);
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    numbers[i] /= received_signal(*sensor.pulse, 1.0, ranges_m[i] - beams.range_offset_m);
+    numbers[i] /= received_signal(*sensor.lidar_equation, 1.0, ranges_m[i] - beams.range_offset_m);
   return numbers;
 }
 
@@ -279,7 +279,7 @@ const Layout& unit_layout() {
 std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& sensor,
                                     const Beams& beams) {
   const bool has_bytes = spelling_of(sensor).vendor != nullptr;
-  const bool is_calibrated = sensor.pulse.has_value() && !has_bytes;
+  const bool is_calibrated = sensor.lidar_equation.has_value() && !has_bytes;
   std::vector<double> numbers = is_calibrated ? reflectivity(cloud, unit_layout(), sensor, beams)
                                               : field_values(cloud, unit_layout(), "intensity", 0);
   std::vector<float> shares(numbers.size());

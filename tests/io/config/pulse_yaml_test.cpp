@@ -15,12 +15,13 @@ const std::string kOptics = "optics: {width: 4, height: 2, fov_deg: 20}\n";
 
 LidarEquation pulse(const std::string& map) {
   const TestFolder folder;
-  return *load_sensor_file(folder.write("s.yaml", kOptics + "lidar_equation: " + map + "\n")).pulse;
+  return *load_sensor_file(folder.write("s.yaml", kOptics + "lidar_equation: " + map + "\n"))
+              .lidar_equation;
 }
 
 TEST(PulseLightInASensorFile, IsAbsentUnlessGiven) {
   const TestFolder folder;
-  EXPECT_FALSE(load_sensor_file(folder.write("s.yaml", kOptics)).pulse.has_value());
+  EXPECT_FALSE(load_sensor_file(folder.write("s.yaml", kOptics)).lidar_equation.has_value());
 }
 
 TEST(PulseLightInASensorFile, GivesEveryNumber) {

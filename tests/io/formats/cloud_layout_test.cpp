@@ -81,7 +81,8 @@ TEST(PointFieldLayout, ReflectivitiesArePercentUpToWhiteAndLargerForRetroReflect
 
 TEST(PointFieldLayout, ReflectivitiesOfPulsedLightDoNotDependOnTheRange) {
   CloudFixture made = points_with("range", std::vector<double>{10.5, 25.5, 100.5, 1.0, 1.0});
-  made.sensor.pulse = LidarEquation{.reference_reflectance = 0.1, .reference_range_m = 100.0};
+  made.sensor.lidar_equation =
+      LidarEquation{.reference_reflectance = 0.1, .reference_range_m = 100.0};
   made.beams.range_offset_m = 0.5;
   // 0.4 of white: S = 0.4 / 0.1 (100 / R)^2
   for (Column& column : made.cloud.columns) {
@@ -93,7 +94,8 @@ TEST(PointFieldLayout, ReflectivitiesOfPulsedLightDoNotDependOnTheRange) {
 
 TEST(PointFieldLayout, ReflectivitiesAreCalibratedInClearAirAndSoLowerInFog) {
   CloudFixture made = points_with("range", std::vector<double>{10.0, 25.0, 50.0, 1.0, 1.0});
-  made.sensor.pulse = LidarEquation{.reference_reflectance = 0.1, .reference_range_m = 100.0};
+  made.sensor.lidar_equation =
+      LidarEquation{.reference_reflectance = 0.1, .reference_range_m = 100.0};
   made.sensor.wavelength_m = 905e-9;
   made.sensor.weather = Weather{.visibility_m = 100.0};
   const double alpha = extinction_per_m(*made.sensor.weather, made.sensor.wavelength_m);
@@ -111,7 +113,7 @@ TEST(PointFieldLayout, ReflectivitiesAreCalibratedInClearAirAndSoLowerInFog) {
 
 TEST(PointFieldLayout, ReflectivitiesOfCalibratedSensorsAreUnchanged) {
   CloudFixture made = points_with("intensity", std::vector<float>{0.0F, 20.0F, 100.0F, 200.0F});
-  made.sensor.pulse = LidarEquation{};
+  made.sensor.lidar_equation = LidarEquation{};
   const IntensityScale compensates{
       .kind = IntensityScale::Kind::plain, .gain = 0.9, .reference_m = 100.0};
   const IntensityScale spells{.kind = IntensityScale::Kind::vendor, .largest = 1000.0};
@@ -120,7 +122,7 @@ TEST(PointFieldLayout, ReflectivitiesOfCalibratedSensorsAreUnchanged) {
               ElementsAre(0.0F, 20.0F, 100.0F, 200.0F));
   EXPECT_THAT(field<float>(made, "livox", "intensity"), ElementsAre(0.0F, 30.0F, 150.0F, 218.0F));
   made = points_with("intensity", std::vector<float>{0.0F, 0.25F, 1.0F});
-  made.sensor.pulse = LidarEquation{};
+  made.sensor.lidar_equation = LidarEquation{};
   made.sensor.noise = {compensates};
   EXPECT_THAT(field<float>(made, "velodyne", "intensity"), ElementsAre(0.0F, 25.0F, 100.0F));
 }

@@ -140,7 +140,7 @@ TEST(Weather, AddsTheExtinctionsOfFogRainAndSnow) {
 TEST(Weather, RequiresALidarEquationAndAWavelength) {
   Sensor sensor;
   EXPECT_NO_THROW(check_weather(sensor));
-  sensor.pulse = LidarEquation{};
+  sensor.lidar_equation = LidarEquation{};
   sensor.weather = Weather{.rain_mm_per_h = 10.0};
   EXPECT_NO_THROW(check_weather(sensor));
   sensor.weather->visibility_m = 100.0;
