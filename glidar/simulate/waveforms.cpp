@@ -199,7 +199,7 @@ Status find_returns(const Simulation& s, std::size_t beam, const EchoContributio
   }
   const std::size_t in_run = beam - memory.samples.key.beam;
   detect_echoes(model.lidar_equation, key, memory.samples.noise[in_run], waveform);
-  enforce_min_separation(sensor.receiver.separation_m, waveform);
+  enforce_min_separation(sensor.receiver.min_return_separation_m, waveform);
   return missing_return_status(s, surface, strongest_signal, beam);
 }
 

@@ -221,7 +221,7 @@ TEST(SimulateWaveforms, AnEchoTooCloseToAStrongerOneIsHidden) {
   stage.add_wall(21.5);
   stage.sensor.receiver.returns = {kFirst, kSecond};
   EXPECT_EQ(stage.shoot().status[1], Status::hit);
-  stage.sensor.receiver.separation_m = 2.0;
+  stage.sensor.receiver.min_return_separation_m = 2.0;
   const Frame frame = stage.shoot();
   EXPECT_NEAR(frame.range_m[0], 21.5, 1e-3);
   EXPECT_EQ(frame.status[1], Status::no_return_of_rank);

@@ -261,8 +261,9 @@ void visit_returns(FieldVisitor& visitor, std::vector<Return>& returns) {
 void validate(const Receiver& receiver) {
   require_number(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3,
                  "receiver, pulse_fwhm_s", receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
-  require_number(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m),
-                 "receiver, min_return_separation_m", receiver.separation_m, "metres from 0");
+  require_number(
+      receiver.min_return_separation_m >= 0.0 && std::isfinite(receiver.min_return_separation_m),
+      "receiver, min_return_separation_m", receiver.min_return_separation_m, "metres from 0");
   require_number(!receiver.returns.empty() && receiver.returns.size() <= kMaxReturns,
                  "receiver, returns", static_cast<double>(receiver.returns.size()),
                  "1 to 16 of them");
@@ -300,13 +301,14 @@ void detect_peaks(double sigma_m, double near_m, WaveformBuffer& work) {
   }
 }
 
-void enforce_min_separation(double separation_m, WaveformBuffer& work) {
-  if (!(separation_m > 0.0) || work.echoes < 2) return;
+void enforce_min_separation(double min_return_separation_m, WaveformBuffer& work) {
+  if (!(min_return_separation_m > 0.0) || work.echoes < 2) return;
   std::array<bool, WaveformBuffer::kMax> hidden;
   std::fill_n(hidden.begin(), work.echoes, false);
   for (std::size_t i = 0; i < work.echoes; ++i) {
     for (std::size_t j = 0; j < work.echoes; ++j) {
-      const bool is_near = std::abs(work.echo[i].range_m - work.echo[j].range_m) < separation_m;
+      const bool is_near =
+          std::abs(work.echo[i].range_m - work.echo[j].range_m) < min_return_separation_m;
       if (is_near && work.echo[j].signal > work.echo[i].signal) hidden[i] = true;
     }
   }
@@ -358,7 +360,7 @@ void describe(Receiver& receiver, FieldVisitor& visitor) {
   visit_choice(visitor, {"timing", "how an echo is timed"}, kNames, receiver.timing);
   visitor.number({"min_return_separation_m",
                   "an echo closer than this to a stronger one is not reported", kUnitMetre},
-                 {0.0, 1e6, false, "metres from 0 to 1e6"}, receiver.separation_m);
+                 {0.0, 1e6, false, "metres from 0 to 1e6"}, receiver.min_return_separation_m);
   visit_returns(visitor, receiver.returns);
   if (visitor.is_reading()) validate(receiver);
 }

@@ -31,7 +31,8 @@ struct Receiver {
   };
   double pulse_fwhm_s = 5e-9;  ///< duration of the pulse, a Gaussian
   Timing timing = Timing::centroid;
-  double separation_m = 0.0;  ///< echoes nearer than this to a stronger one are not reported
+  double min_return_separation_m =
+      0.0;  ///< echoes nearer than this to a stronger one are not reported
   std::vector<Return> returns = {Return{}};  ///< reported echoes of a beam, in this order
 };
 
@@ -95,8 +96,8 @@ struct WaveformBuffer {
 /// at least 1/1000 of its signal, excluding weather, is from other surfaces than the strongest.
 void detect_peaks(double sigma_m, double near_m, WaveformBuffer& work);
 
-/// Removes echoes nearer than separation_m to a stronger one.
-void enforce_min_separation(double separation_m, WaveformBuffer& work);
+/// Removes echoes nearer than min_return_separation_m to a stronger one.
+void enforce_min_separation(double min_return_separation_m, WaveformBuffer& work);
 
 /// The range that the receiver reports for an echo. The range walk of a fixed threshold is
 /// -sigma sqrt(2 ln(A / T)).

@@ -53,7 +53,7 @@ TEST(ReceiverInASensorFile, GivesEveryNumber) {
                          .receiver;
   EXPECT_DOUBLE_EQ(r.pulse_fwhm_s, 6e-9);
   EXPECT_EQ(r.timing, Receiver::Timing::leading_edge);
-  EXPECT_EQ(r.separation_m, 1.2);
+  EXPECT_EQ(r.min_return_separation_m, 1.2);
 }
 
 TEST(ReceiverInASensorFile, TakesNamesOrANumberOfReturns) {

@@ -195,7 +195,7 @@ TEST(SelectReturns, ReportsNoEchoTwice) {
 TEST(ValidateReceiver, ReportsTheNumberOutOfRange) {
   EXPECT_NO_THROW(validate(Receiver{}));
   EXPECT_THROW(validate(Receiver{.pulse_fwhm_s = 0.0}), Error);
-  EXPECT_THROW(validate(Receiver{.separation_m = -1.0}), Error);
+  EXPECT_THROW(validate(Receiver{.min_return_separation_m = -1.0}), Error);
   EXPECT_THROW(validate(Receiver{.returns = {}}), Error);
 }
 
