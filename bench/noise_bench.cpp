@@ -118,9 +118,9 @@ void register_steps() {
   bench_step("stereo", {Stereo{.focal_px = 674.0, .baseline_m = 0.05, .sigma_px = 0.08}});
   bench_step("continuous_wave", {ContinuousWave{.frequencies_hz = {80e6, 16e6, 120e6},
                                                 .electrons_at_full_scale = 2e4}});
-  bench_step("continuous_wave, mixing", {ContinuousWave{.frequencies_hz = {80e6, 16e6, 120e6},
-                                                        .electrons_at_full_scale = 2e4,
-                                                        .mixing = 0.2}});
+  bench_step("continuous_wave, multipath", {ContinuousWave{.frequencies_hz = {80e6, 16e6, 120e6},
+                                                           .electrons_at_full_scale = 2e4,
+                                                           .multipath_fraction = 0.2}});
   bench_step("intensity_gaussian", {IntensityGaussian{.sigma = 0.01}});
   bench_step("intensity_scale unit", {IntensityScale{}});
   bench_step("intensity_scale vendor",

@@ -32,8 +32,9 @@ std::vector<NoiseStep> every_step() {
           NguyenLateral{},
           IclKinect{},
           Stereo{.focal_px = 500.0, .baseline_m = 0.1, .sigma_px = 0.1},
-          ContinuousWave{
-              .frequencies_hz = {80e6, 16e6, 120e6}, .electrons_at_full_scale = 1e5, .mixing = 0.1},
+          ContinuousWave{.frequencies_hz = {80e6, 16e6, 120e6},
+                         .electrons_at_full_scale = 1e5,
+                         .multipath_fraction = 0.1},
           KinectV1{},
           DisparityQuantization{.k_m = 1e4},
           Dropout{.probability = 0.02,

@@ -162,7 +162,7 @@ GLIDAR_SIMD void finish_range(const Waves& waves, const Batch<double>& sigma_tur
 void measure_phases(const ContinuousWave& step, const Waves& waves, const NoiseView& view,
                     const NoiseBatch& batch, WavePhases& phases) {
   if (has_multipath(step)) {
-    mix(step.mixing, {waves.per_m.data(), waves.count}, view, batch, phases);
+    mix(step.multipath_fraction, {waves.per_m.data(), waves.count}, view, batch, phases);
     return;
   }
   phases.amplitude = batch.intensity;
@@ -257,7 +257,7 @@ void describe(ContinuousWave& step, FieldVisitor& visitor) {
   visitor.number({"background_electrons", "B"}, kFromZero, step.background_electrons);
   visitor.number({"contrast", "C, of the demodulation"}, kUpToOne, step.contrast);
   visitor.number({"multipath_fraction", "share of light from neighbouring pixels"}, kBelowOne,
-                 step.mixing);
+                 step.multipath_fraction);
   visitor.number({"min_coherence", "below it, mixed waves cancel"}, kZeroToOne, step.min_coherence);
   visitor.number({"max_phase_residual", "above it, phases fit no range; rms, in turns"}, kFromZero,
                  step.max_phase_residual);

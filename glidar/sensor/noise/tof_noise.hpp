@@ -36,7 +36,7 @@ struct ContinuousWave {
   double electrons_at_full_scale = 0.0;  ///< at intensity 1
   double background_electrons = 0.0;
   double contrast = 1.0;
-  double mixing = 0.0;
+  double multipath_fraction = 0.0;
   double min_coherence = 0.6;
   double max_phase_residual = 0.1;
 };
@@ -46,7 +46,7 @@ double unambiguous_m(const std::vector<double>& frequencies_hz);
 
 /// True if pixels mix their light with that of their neighbours.
 inline bool has_multipath(const ContinuousWave& step) {
-  return step.mixing > 0.0;
+  return step.multipath_fraction > 0.0;
 }
 
 /// Keys in sensor files.

@@ -114,7 +114,7 @@ TEST(ContinuousWave, AnEdgeHasThePhasorMeanOrIsInvalid) {
   ContinuousWave law = kinect_v2();
   law.frequencies_hz = {16e6};
   law.electrons_at_full_scale = 1e12;
-  law.mixing = 0.8;
+  law.multipath_fraction = 0.8;
   NoiseStage stage(3, 5, 2.0);
   const auto set = [&](double near_m, double far_m) {
     stage.reset(near_m);
