@@ -105,7 +105,7 @@ void write_hit(TraceWriter& out) {
   out.line("hit", "object '{}' (id {}, class {}), triangle {}, material '{}'", instance.name,
            instance.id, out.scene.class_names.at(instance.class_id), hits.primitive[i],
            material.name);
-  if (out.trace.pulse && out.trace.pulse->sub_rays > 1)
+  if (out.trace.waveform && out.trace.waveform->sub_rays > 1)
     out.line("", "of the sub-ray with the strongest contribution");
   out.line("", "range {:.9g} m, depth {:.9g} m, incidence {:.4f} deg", hits.range_m[i],
            hits.depth_m[i], kDegreesPerRadian * std::acos(std::min(1.0F, hits.cos_incidence[i])));
@@ -135,7 +135,7 @@ void write_lidar_equation(TraceWriter& out, const LidarEquation& light) {
     out.line("", "weather: extinction {:.4g} per m, transmission of both ways {:.4g}", per_m,
              std::exp(-2.0 * per_m * hits.range_m[i]));
   }
-  if (!out.trace.pulse && !out.trace.receiver_noise.empty()) {
+  if (!out.trace.waveform && !out.trace.receiver_noise.empty()) {
     out.line("", "noise of sigma {:.3g}, normal {:.6f}; threshold 1", light.noise_sigma,
              out.trace.receiver_noise.front());
   }
@@ -228,10 +228,11 @@ void write_noise(TraceWriter& out) {
       out.line("", "unchanged: {}", name(before.status));
       continue;
     }
-    for (const RandomSample& sample : step.draws) {
+    for (const RandomSample& sample : step.samples) {
       out.line("", "{} {:.6f}: {}{}",
-               sample.law == RandomSample::Law::normal ? "normal" : "uniform", sample.value,
-               sample.use, sample.against ? fmt::format(" {:.6g}", *sample.against) : "");
+               sample.distribution == RandomSample::Distribution::normal ? "normal" : "uniform",
+               sample.value, sample.use,
+               sample.probability ? fmt::format(" {:.6g}", *sample.probability) : "");
     }
     out.line("", "result {}", measurement_text(step.after));
   }
@@ -264,9 +265,9 @@ std::string format_trace(const PointTrace& trace, const Simulator& simulator, co
   write_ray(out);
   write_hit(out);
   write_light(out);
-  if (trace.pulse) {
-    write_paths(out, *trace.pulse);
-    write_echoes(out, *trace.pulse);
+  if (trace.waveform) {
+    write_paths(out, *trace.waveform);
+    write_echoes(out, *trace.waveform);
   }
   out.line("measured", "{}", measurement_text(trace.measured));
   write_noise(out);

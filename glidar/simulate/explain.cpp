@@ -42,7 +42,7 @@ void apply_first(const Simulation& s, std::size_t count, const Columns& measured
 std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame,
                                    const PointTrace& trace, std::size_t pulse) {
   if (!sensor.lidar_equation || !(sensor.lidar_equation->noise_sigma > 0.0)) return {};
-  const std::size_t count = trace.pulse ? trace.pulse->echoes.size() : 1;
+  const std::size_t count = trace.waveform ? trace.waveform->echoes.size() : 1;
   RngKey draw = rng_key(frame, Purpose::detection, pulse);
   std::vector<double> numbers;
   for (; draw.block < count; ++draw.block) numbers.push_back(normals(random_words(draw))[0]);
@@ -66,7 +66,7 @@ PointTrace begin_trace(const Simulation& s, std::size_t entry) {
   PointTrace trace;
   trace.entry = entry;
   trace.direction = s.fired->directions[entry];
-  if (s.sensor.pulse_model) trace.pulse = trace_waveform(s, pulse, frame);
+  if (s.sensor.pulse_model) trace.waveform = trace_waveform(s, pulse, frame);
   trace.receiver_noise = receiver_noise(s.sensor.sensor, frame, trace, pulse);
   return trace;
 }
@@ -87,10 +87,10 @@ PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelect
   apply_first(s, 0, measured);
   trace.measured = measurement_of(frame, trace.entry);
   for (std::size_t k = 0; k < noise.steps.size(); ++k) {
-    std::vector<RandomSample> draws =
+    std::vector<RandomSample> samples =
         trace_samples(noise.steps, k, *beams, frame, noise.frame_s, trace.entry);
     apply_first(s, k + 1, measured);
-    trace.noise.push_back({std::move(draws), measurement_of(frame, trace.entry)});
+    trace.noise.push_back({std::move(samples), measurement_of(frame, trace.entry)});
   }
   return trace;
 }

@@ -27,14 +27,14 @@ struct PointTrace {
   std::size_t entry = 0;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< with pointing errors, sensor's frame
   Measurement measured;                                 ///< before noise
-  std::optional<WaveformTrace> pulse = {};              ///< where beams are more than a ray
+  std::optional<WaveformTrace> waveform = {};           ///< where beams are more than a ray
   /// Of pulsed sensors: the normal numbers that the receiver's noise_sigma multiplies, one for each
   /// echo; one for beams that are a single ray.
   std::vector<double> receiver_noise = {};
 
   /// One noise step.
   struct Step {
-    std::vector<RandomSample> draws;
+    std::vector<RandomSample> samples;
     Measurement after;
   };
   std::vector<Step> noise;  ///< one for each of the sensor's noise steps

@@ -88,12 +88,12 @@ def _measurement(core: _core.Measurement) -> Measurement:
 
 
 def _sample(core: _core.RandomSample) -> RandomSample:
-    return RandomSample("normal" if core.is_normal else "uniform", core.value, core.use, core.against)
+    return RandomSample("normal" if core.is_normal else "uniform", core.value, core.use, core.probability)
 
 
 def trace_of(core: _core.PointTrace) -> PointTrace:
     """Converts the trace of the extension."""
-    measured, *after = (_measurement(reading) for reading in core.readings)
-    steps = (NoiseStep(tuple(_sample(sample) for sample in core.draws(k)), reading) for k, reading in enumerate(after))
+    measured, *after = (_measurement(one) for one in core.measurements)
+    steps = (NoiseStep(tuple(_sample(sample) for sample in core.samples(k)), one) for k, one in enumerate(after))
     echoes = (Echo(echo.range_m, echo.signal, echo.sigma_m, echo.is_mixed) for echo in core.echoes)
     return PointTrace(core.entry, core.direction, measured, tuple(steps), tuple(echoes), core.text)

@@ -18,7 +18,7 @@ void bind_trajectory_state(nb::module_& module);
 void bind_frame(nb::module_& module);
 void bind_frame_state(nb::module_& module);
 void bind_simulator(nb::module_& module);
-void bind_story(nb::module_& module);
+void bind_point_trace(nb::module_& module);
 void bind_tools(nb::module_& module);
 
 }  // namespace glidar::python

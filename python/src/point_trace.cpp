@@ -16,12 +16,12 @@ namespace glidar::python {
 namespace {
 
 /// A trace as text and as data.
-struct Told {
-  PointTrace story;
+struct TracedPoint {
+  PointTrace trace;
   std::string text;
 };
 
-Told explained(const Measured& measured, std::size_t entry) {
+TracedPoint trace_point(const Measured& measured, std::size_t entry) {
   return unlocked([&](Watch& watch) {
     Frame frame;
     frame.stamp_ns = measured.frame.stamp_ns;
@@ -31,20 +31,20 @@ Told explained(const Measured& measured, std::size_t entry) {
     PreparedScene& prepared = measured.rendered();
     const std::lock_guard turn(prepared.turn);
     Simulator simulator(*prepared.scene, measured.sensor, *prepared.renderer);
-    Told told{explain(simulator, *measured.motion, entry, frame, watch.progress()), ""};
-    told.text = format_trace(told.story, simulator, frame);
-    return told;
+    TracedPoint traced{explain(simulator, *measured.motion, entry, frame, watch.progress()), ""};
+    traced.text = format_trace(traced.trace, simulator, frame);
+    return traced;
   });
 }
 
-std::vector<Measurement> readings(const Told& told) {
-  std::vector<Measurement> all = {told.story.measured};
-  for (const PointTrace::Step& step : told.story.noise) all.push_back(step.after);
+std::vector<Measurement> measurements(const TracedPoint& traced) {
+  std::vector<Measurement> all = {traced.trace.measured};
+  for (const PointTrace::Step& step : traced.trace.noise) all.push_back(step.after);
   return all;
 }
 
-std::vector<RandomSample> draws(const Told& told, std::size_t step) {
-  return told.story.noise.at(step).draws;
+std::vector<RandomSample> samples(const TracedPoint& traced, std::size_t step) {
+  return traced.trace.noise.at(step).samples;
 }
 
 void bind_parts(nb::module_& module) {
@@ -57,10 +57,12 @@ void bind_parts(nb::module_& module) {
       .def_ro("sigma_m", &Measurement::sigma_m);
   nb::class_<RandomSample>(module, "RandomSample")
       .def_prop_ro("is_normal",
-                   [](const RandomSample& self) { return self.law == RandomSample::Law::normal; })
+                   [](const RandomSample& self) {
+                     return self.distribution == RandomSample::Distribution::normal;
+                   })
       .def_ro("value", &RandomSample::value)
       .def_ro("use", &RandomSample::use)
-      .def_ro("against", &RandomSample::against);
+      .def_ro("probability", &RandomSample::probability);
   nb::class_<PulseEcho>(module, "Echo")
       .def_ro("range_m", &PulseEcho::range_m)
       .def_ro("signal", &PulseEcho::signal)
@@ -70,18 +72,18 @@ void bind_parts(nb::module_& module) {
 
 }  // namespace
 
-void bind_story(nb::module_& module) {
+void bind_point_trace(nb::module_& module) {
   bind_parts(module);
-  nb::class_<Told>(module, "PointTrace")
-      .def_ro("text", &Told::text)
-      .def_prop_ro("entry", [](const Told& self) { return self.story.entry; })
-      .def_prop_ro("direction", [](const Told& self) { return self.story.direction; })
-      .def_prop_ro("readings", readings)
-      .def("draws", draws, nb::arg("step"))
-      .def_prop_ro("echoes", [](const Told& self) {
-        return self.story.pulse ? self.story.pulse->received : std::vector<PulseEcho>{};
+  nb::class_<TracedPoint>(module, "PointTrace")
+      .def_ro("text", &TracedPoint::text)
+      .def_prop_ro("entry", [](const TracedPoint& self) { return self.trace.entry; })
+      .def_prop_ro("direction", [](const TracedPoint& self) { return self.trace.direction; })
+      .def_prop_ro("measurements", measurements)
+      .def("samples", samples, nb::arg("step"))
+      .def_prop_ro("echoes", [](const TracedPoint& self) {
+        return self.trace.waveform ? self.trace.waveform->received : std::vector<PulseEcho>{};
       });
-  module.def("explain", explained, nb::arg("frame"), nb::arg("entry"));
+  module.def("explain", trace_point, nb::arg("frame"), nb::arg("entry"));
 }
 
 }  // namespace glidar::python

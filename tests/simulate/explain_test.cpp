@@ -24,15 +24,15 @@ struct Stage : testing::PanelScene {
     add_wall(8.0);
   }
   /// Simulates, or explains if a trace is requested.
-  Frame shoot(std::size_t entry, PointTrace* story) const {
+  Frame shoot(std::size_t entry, PointTrace* trace) const {
     const auto renderer = make_renderer(scene, {.threads = 2});
     const Motion motion = static_motion(scene, Pose::Identity());
     Simulator simulator(scene, sensor, *renderer);
     Frame frame;
     frame.seed = 5;
     frame.number = 2;
-    if (story != nullptr) {
-      *story = explain(simulator, motion, entry, frame);
+    if (trace != nullptr) {
+      *trace = explain(simulator, motion, entry, frame);
     } else {
       simulator.simulate(motion, {}, frame);
     }
@@ -68,8 +68,8 @@ TEST(Explain, MakesTheSameFrameAsSimulate) {
         stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
         stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
       }
-      PointTrace story;
-      expect_same(stage.shoot(7, &story), stage.shoot(7, nullptr));
+      PointTrace trace;
+      expect_same(stage.shoot(7, &trace), stage.shoot(7, nullptr));
     }
   }
 }
@@ -78,35 +78,35 @@ TEST(Explain, TracesAnEntryThroughAllNoiseSteps) {
   const Stage stage = noisy_stage();
   std::size_t dropped = 0;
   for (const std::size_t entry : {0U, 21U, 600U, 1111U, 1199U}) {
-    PointTrace story;
-    const Frame frame = stage.shoot(entry, &story);
-    ASSERT_EQ(story.noise.size(), 4U);
-    EXPECT_EQ(story.measured.range_m, frame.ground_truth.range_m[entry]);
-    EXPECT_EQ(story.noise[0].after.range_m, story.measured.range_m) << "the beam was turned before";
-    const double noisy_m = story.measured.range_m + 0.1 * story.noise[1].draws.at(0).value;
-    EXPECT_NEAR(story.noise[1].after.range_m, noisy_m, 1e-12);
-    EXPECT_FLOAT_EQ(story.noise[1].after.sigma_m, 0.1F);
-    EXPECT_NEAR(story.noise[2].after.range_m, noisy_m, 0.025 + 1e-12);
-    const bool is_dropped = story.noise[3].draws.at(0).value < 0.3;
-    EXPECT_EQ(story.noise[3].after.status, is_dropped ? Status::dropped : Status::hit);
-    EXPECT_EQ(story.noise[3].after.status, frame.status[entry]);
+    PointTrace trace;
+    const Frame frame = stage.shoot(entry, &trace);
+    ASSERT_EQ(trace.noise.size(), 4U);
+    EXPECT_EQ(trace.measured.range_m, frame.ground_truth.range_m[entry]);
+    EXPECT_EQ(trace.noise[0].after.range_m, trace.measured.range_m) << "the beam was turned before";
+    const double noisy_m = trace.measured.range_m + 0.1 * trace.noise[1].samples.at(0).value;
+    EXPECT_NEAR(trace.noise[1].after.range_m, noisy_m, 1e-12);
+    EXPECT_FLOAT_EQ(trace.noise[1].after.sigma_m, 0.1F);
+    EXPECT_NEAR(trace.noise[2].after.range_m, noisy_m, 0.025 + 1e-12);
+    const bool is_dropped = trace.noise[3].samples.at(0).value < 0.3;
+    EXPECT_EQ(trace.noise[3].after.status, is_dropped ? Status::dropped : Status::hit);
+    EXPECT_EQ(trace.noise[3].after.status, frame.status[entry]);
     dropped += is_dropped ? 1U : 0U;
-    EXPECT_FALSE(story.pulse.has_value());
+    EXPECT_FALSE(trace.waveform.has_value());
   }
   EXPECT_GT(dropped, 0U);
 }
 
 TEST(Explain, ReportsTheActualDirectionOfABeam) {
   Stage stage;
-  PointTrace story;
-  stage.shoot(17, &story);
-  EXPECT_EQ(story.direction, make_beams(stage.sensor).directions[17]);
+  PointTrace trace;
+  stage.shoot(17, &trace);
+  EXPECT_EQ(trace.direction, make_beams(stage.sensor).directions[17]);
   stage = noisy_stage();
-  stage.shoot(17, &story);
-  const double off_rad = (story.direction - make_beams(stage.sensor).directions[17]).norm();
+  stage.shoot(17, &trace);
+  const double off_rad = (trace.direction - make_beams(stage.sensor).directions[17]).norm();
   EXPECT_GT(off_rad, 1e-5);
   EXPECT_NEAR(off_rad,
-              1e-3 * std::hypot(story.noise[0].draws[0].value, story.noise[0].draws[1].value),
+              1e-3 * std::hypot(trace.noise[0].samples[0].value, trace.noise[0].samples[1].value),
               1e-6);
 }
 
@@ -117,25 +117,25 @@ TEST(Explain, TracesTheEchoesOfAPulse) {
   stage.sensor.footprint =
       Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3, .rings = 2};
   stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
-  PointTrace story;
-  const Frame frame = stage.shoot(1, &story);
-  ASSERT_TRUE(story.pulse.has_value());
-  const WaveformTrace& pulse = *story.pulse;
-  EXPECT_EQ(pulse.pulse, 0U) << "the second return of the first pulse";
-  EXPECT_EQ(pulse.sub_rays, sample_footprint(*stage.sensor.footprint).size());
-  ASSERT_EQ(pulse.light_paths.size(), pulse.sub_rays);
+  PointTrace trace;
+  const Frame frame = stage.shoot(1, &trace);
+  ASSERT_TRUE(trace.waveform.has_value());
+  const WaveformTrace& waveform = *trace.waveform;
+  EXPECT_EQ(waveform.pulse, 0U) << "the second return of the first pulse";
+  EXPECT_EQ(waveform.sub_rays, sample_footprint(*stage.sensor.footprint).size());
+  ASSERT_EQ(waveform.light_paths.size(), waveform.sub_rays);
   double share = 0.0;
-  for (const WaveformTrace::LightPath& way : pulse.light_paths) {
+  for (const WaveformTrace::LightPath& way : waveform.light_paths) {
     share += way.share;
     EXPECT_NEAR(way.path.range_m, way.instance == 0 ? 5.0 : 8.0, 1e-4);
-    EXPECT_LT(way.path.source, pulse.sub_rays);
+    EXPECT_LT(way.path.source, waveform.sub_rays);
   }
   EXPECT_NEAR(share, 1.0, 1e-12);
-  ASSERT_EQ(pulse.received.size(), 2U);
+  ASSERT_EQ(waveform.received.size(), 2U);
   EXPECT_EQ(pulse.returns, (std::vector<int>{0, 1}));
-  EXPECT_EQ(pulse.received[0].range_m, frame.range_m[0]);
-  EXPECT_EQ(pulse.received[1].range_m, frame.range_m[1]);
-  EXPECT_EQ(story.measured.range_m, frame.range_m[1]);
+  EXPECT_EQ(waveform.received[0].range_m, frame.range_m[0]);
+  EXPECT_EQ(waveform.received[1].range_m, frame.range_m[1]);
+  EXPECT_EQ(trace.measured.range_m, frame.range_m[1]);
 }
 
 TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsPaths) {
@@ -143,16 +143,16 @@ TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsPaths) {
   stage.sensor.lidar_equation = LidarEquation{};
   stage.sensor.footprint = Footprint{.divergence_x_rad = 0.1, .divergence_y_rad = 0.1};
   stage.add_wall(5.3);
-  PointTrace story;
+  PointTrace trace;
   std::size_t mixed = 0;
   for (std::size_t entry = 0; entry < 20; ++entry) {
-    const Frame frame = stage.shoot(entry, &story);
-    ASSERT_TRUE(story.pulse.has_value());
+    const Frame frame = stage.shoot(entry, &trace);
+    ASSERT_TRUE(trace.waveform.has_value());
     std::set<std::uint16_t> surfaces;
-    for (const WaveformTrace::LightPath& way : story.pulse->light_paths)
+    for (const WaveformTrace::LightPath& way : trace.waveform->light_paths)
       surfaces.insert(way.path.surface);
-    ASSERT_EQ(story.pulse->echoes.size(), 1U);
-    EXPECT_EQ(story.pulse->echoes[0].is_mixed, surfaces.size() > 1);
+    ASSERT_EQ(trace.waveform->echoes.size(), 1U);
+    EXPECT_EQ(trace.waveform->echoes[0].is_mixed, surfaces.size() > 1);
     EXPECT_EQ(frame.return_source[entry] == ReturnSource::mixed_pixel, surfaces.size() > 1);
     if (surfaces.size() > 1) ++mixed;
   }
@@ -164,14 +164,14 @@ TEST(Explain, ReportsTheReceiversNoise) {
   Stage stage;
   stage.sensor.lidar_equation = LidarEquation{.noise_sigma = 0.2};
   stage.sensor.receiver.returns = {{Return::Order::nearest, 0}};
-  PointTrace story;
-  const Frame frame = stage.shoot(300, &story);
+  PointTrace trace;
+  const Frame frame = stage.shoot(300, &trace);
   const RngKey draw = rng_key(frame, Purpose::detection, 300);
-  ASSERT_EQ(story.pulse->echoes.size(), 1U);
-  ASSERT_EQ(story.receiver_noise.size(), 1U);
-  EXPECT_EQ(story.receiver_noise[0], normals(random_words(draw))[0]);
-  EXPECT_NEAR(story.pulse->received[0].signal,
-              story.pulse->echoes[0].signal + 0.2 * normals(random_words(draw))[0], 1e-9);
+  ASSERT_EQ(trace.waveform->echoes.size(), 1U);
+  ASSERT_EQ(trace.receiver_noise.size(), 1U);
+  EXPECT_EQ(trace.receiver_noise[0], normals(random_words(draw))[0]);
+  EXPECT_NEAR(trace.waveform->received[0].signal,
+              trace.waveform->echoes[0].signal + 0.2 * normals(random_words(draw))[0], 1e-9);
 }
 
 TEST(Explain, TracesThePulseOfASelectedEntry) {
@@ -187,22 +187,22 @@ TEST(Explain, TracesThePulseOfASelectedEntry) {
     const auto found = std::find(measured.status.rbegin(), measured.status.rend(), Status::hit);
     return static_cast<std::size_t>(found.base() - measured.status.begin()) - 1;
   };
-  const PointTrace story = explain(simulator, motion, last_hit, frame);
-  EXPECT_EQ(frame.status[story.entry], Status::hit);
-  EXPECT_EQ(last_hit(frame), story.entry);
-  ASSERT_TRUE(story.pulse.has_value());
-  EXPECT_EQ(story.pulse->pulse, story.entry);
-  EXPECT_EQ(story.pulse->received.at(0).range_m, story.measured.range_m);
-  EXPECT_EQ(story.noise.back().after.range_m, frame.range_m[story.entry]);
+  const PointTrace trace = explain(simulator, motion, last_hit, frame);
+  EXPECT_EQ(frame.status[trace.entry], Status::hit);
+  EXPECT_EQ(last_hit(frame), trace.entry);
+  ASSERT_TRUE(trace.waveform.has_value());
+  EXPECT_EQ(trace.waveform->pulse, trace.entry);
+  EXPECT_EQ(trace.waveform->received.at(0).range_m, trace.measured.range_m);
+  EXPECT_EQ(trace.noise.back().after.range_m, frame.range_m[trace.entry]);
   Frame simulated;
   simulator.simulate(motion, {}, simulated);
   expect_same(frame, simulated);
 }
 
 TEST(Explain, RejectsAnInvalidEntry) {
-  PointTrace story;
+  PointTrace trace;
   try {
-    Stage().shoot(1200, &story);
+    Stage().shoot(1200, &trace);
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "index: 1200; allowed: 0 to 1199, the entries of this frame");

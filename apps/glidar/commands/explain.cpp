@@ -139,13 +139,13 @@ int run_explain(const ExplainFlags& flags) {
     check_frame(sidecar, repeated);
     return entry_of(flags, sidecar, repeated, *active.simulator->beams(repeated.number));
   };
-  PointTrace story;
+  PointTrace trace;
   {
     const ProgressScope progress(console, "repeating the measurement");
-    story = explain(*active.simulator, active.motion, pick, frame,
+    trace = explain(*active.simulator, active.motion, pick, frame,
                     [&console](double fraction) { console.set_progress(fraction); });
   }
-  fmt::print("{}", format_trace(story, *active.simulator, frame));
+  fmt::print("{}", format_trace(trace, *active.simulator, frame));
   return kDone;
 }
 

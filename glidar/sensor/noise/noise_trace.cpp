@@ -11,7 +11,7 @@
 namespace glidar {
 namespace {
 
-using Law = RandomSample::Law;
+using Distribution = RandomSample::Distribution;
 using Samples = std::vector<RandomSample>;
 
 /// The entry and the step whose random numbers are requested.
@@ -52,13 +52,13 @@ double shared_uniform(const Query& query) {
 }
 
 Samples normal_sample(const Query& query, const char* use) {
-  return {{Law::normal, shared_normal(query), use}};
+  return {{Distribution::normal, shared_normal(query), use}};
 }
 
 Samples lateral_samples(const Query& query) {
   const auto own = normals(random_words(query.key));
-  return {{Law::normal, own[0], "offset to the right in the image"},
-          {Law::normal, own[1], "offset downwards in the image"}};
+  return {{Distribution::normal, own[0], "offset to the right in the image"},
+          {Distribution::normal, own[1], "offset downwards in the image"}};
 }
 
 Samples samples(const RangeGaussian& /*step*/, const Query& query) {
@@ -77,9 +77,9 @@ Samples samples(const RangeUniform& step, const Query& query) {
   const RandomWords words = random_words(query.key);
   const bool is_normal = step.distribution == RangeUniform::Distribution::normal;
   const auto x = normals(words);
-  const Law law = is_normal ? Law::normal : Law::uniform;
-  return {{law, is_normal ? x[0] : uniform(words[0]), "additive error"},
-          {law, is_normal ? x[1] : uniform(words[1]), "multiplicative error"}};
+  const Distribution distribution = is_normal ? Distribution::normal : Distribution::uniform;
+  return {{distribution, is_normal ? x[0] : uniform(words[0]), "additive error"},
+          {distribution, is_normal ? x[1] : uniform(words[1]), "multiplicative error"}};
 }
 Samples samples(const RangeQuantization& /*step*/, const Query& /*query*/) {
   return {};
@@ -89,32 +89,34 @@ Samples samples(const RangeBias& step, const Query& query) {
   RngKey of_ring = query.key;
   of_ring.frame = kAllFrames;
   of_ring.beam = ring_of(query.beams, query.entry);
-  return {{Law::normal, normals(random_words(of_ring))[0],
+  return {{Distribution::normal, normals(random_words(of_ring))[0],
            "bias of the ring, constant over all frames"}};
 }
 Samples samples(const RangeDrift& step, const Query& query) {
   RngKey of_ring = query.key;
   of_ring.beam = step.per_ring ? ring_of(query.beams, query.entry) : 0;
   const double value = drift_at(query.frame.number, step.tau_s / query.frame_s, of_ring);
-  return {{Law::normal, value, step.per_ring ? "drift of the ring" : "drift of the sensor"}};
+  return {
+      {Distribution::normal, value, step.per_ring ? "drift of the ring" : "drift of the sensor"}};
 }
 Samples samples(const Dropout& step, const Query& query) {
-  RandomSample chance{Law::uniform, shared_uniform(query), "lost if below"};
+  RandomSample chance{Distribution::uniform, shared_uniform(query), "lost if below"};
   const std::vector<float>& cosines = query.frame.ground_truth.cos_incidence;
   if (query.frame.status[query.entry] == Status::hit) {
-    chance.against = drop_probability(step, query.frame.range_m[query.entry],
-                                      cosines.empty() ? 1.0 : double{cosines[query.entry]});
+    chance.probability = drop_probability(step, query.frame.range_m[query.entry],
+                                          cosines.empty() ? 1.0 : double{cosines[query.entry]});
   }
   return {chance};
 }
 Samples samples(const Crosstalk& step, const Query& query) {
   const RandomWords words = random_words(query.key);
-  return {{Law::uniform, uniform(words[0]), "crosstalk if below", step.probability},
-          {Law::uniform, uniform(words[1]), "selects the other channel"},
-          {Law::uniform, uniform(words[2]), "position between near and that channel's range"}};
+  return {
+      {Distribution::uniform, uniform(words[0]), "crosstalk if below", step.probability},
+      {Distribution::uniform, uniform(words[1]), "selects the other channel"},
+      {Distribution::uniform, uniform(words[2]), "position between near and that channel's range"}};
 }
 Samples samples(const FalseAlarms& /*step*/, const Query& query) {
-  return {{Law::uniform, shared_uniform(query), "arrival of the first false alarm"}};
+  return {{Distribution::uniform, shared_uniform(query), "arrival of the first false alarm"}};
 }
 Samples samples(const DisparityQuantization& /*step*/, const Query& /*query*/) {
   return {};
@@ -140,8 +142,8 @@ double window_mean(const KinectV1& step, const Query& query) {
 
 Samples samples(const KinectV1& step, const Query& query) {
   const std::string side = std::to_string(step.window);
-  return {{Law::normal, shared_normal(query), "of this pixel"},
-          {Law::normal, window_mean(step, query),
+  return {{Distribution::normal, shared_normal(query), "of this pixel"},
+          {Distribution::normal, window_mean(step, query),
            "error of the disparity: the mean of " + side + " x " + side +
                " pixels' numbers, scaled to standard deviation 1"}};
 }
@@ -156,7 +158,7 @@ Samples samples(const NguyenLateral& /*step*/, const Query& query) {
 }
 Samples samples(const IclKinect& /*step*/, const Query& query) {
   Samples all = lateral_samples(query);
-  all.push_back({Law::normal, shared_normal(query, 1), "error of the disparity"});
+  all.push_back({Distribution::normal, shared_normal(query, 1), "error of the disparity"});
   return all;
 }
 Samples samples(const Stereo& /*step*/, const Query& query) {
@@ -169,7 +171,7 @@ Samples samples(const ContinuousWave& step, const Query& query) {
   for (std::size_t k = 0; k < count; ++k) {
     key.block = static_cast<std::uint32_t>(k / 4);
     const char* use = k == 0 ? "error of the highest frequency's phase" : "error of a phase";
-    all.push_back({Law::normal, normals(random_words(key)).at(k % 4), use});
+    all.push_back({Distribution::normal, normals(random_words(key)).at(k % 4), use});
   }
   return all;
 }
@@ -183,14 +185,14 @@ Samples samples(const PointingJitter& /*step*/, const Query& query) {
   RngKey key = query.key;
   key.beam = static_cast<std::uint32_t>(query.entry % query.beams.firings());
   const auto own = normals(random_words(key));
-  return {{Law::normal, own[0], "horizontal pointing error"},
-          {Law::normal, own[1], "vertical pointing error"}};
+  return {{Distribution::normal, own[0], "horizontal pointing error"},
+          {Distribution::normal, own[1], "vertical pointing error"}};
 }
 Samples samples(const EncoderError& step, const Query& query) {
   if (!(step.turn_sigma_rad > 0.0)) return {};
   RngKey of_turn = query.key;
   of_turn.beam = 0;
-  return {{Law::normal, normals(random_words(of_turn))[0], "error of the whole frame"}};
+  return {{Distribution::normal, normals(random_words(of_turn))[0], "error of the whole frame"}};
 }
 
 }  // namespace

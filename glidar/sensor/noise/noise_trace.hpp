@@ -13,11 +13,14 @@ namespace glidar {
 
 /// A random number that a noise step uses for an entry of a frame.
 struct RandomSample {
-  enum class Law : std::uint8_t { normal, uniform };  ///< standard normal; uniform in (0, 1)
-  Law law = Law::normal;
+  enum class Distribution : std::uint8_t {
+    normal,
+    uniform
+  };  ///< standard normal; uniform in (0, 1)
+  Distribution distribution = Distribution::normal;
   double value = 0.0;
-  std::string use;                     ///< its use in the step
-  std::optional<double> against = {};  ///< the probability that it is compared with, if any
+  std::string use;                         ///< its use in the step
+  std::optional<double> probability = {};  ///< the probability that it is compared with, if any
 };
 
 /// The random numbers that step `place` of a list uses for an entry, with the same keys as the step

@@ -23,7 +23,7 @@ std::vector<NoiseStep> after_two(const NoiseStep& step) {
   return {RangeGaussian{}, RangeQuantization{.step_m = 1e-12}, step};
 }
 
-/// Calls check(entry, draws, measured frame) for entries of a frame with one step of noise.
+/// Calls check(entry, samples, measured frame) for entries of a frame with one step of noise.
 template <class Check>
 void for_entries(const NoiseStep& step, const Check& check) {
   const NoiseStage before(kRows, kCols, kRange_m);
@@ -39,10 +39,10 @@ void for_entries(const NoiseStep& step, const Check& check) {
 /// A step that adds sigma times its first draw to the range.
 void expect_adds(const NoiseStep& step, double sigma_m) {
   for_entries(
-      step, [&](std::size_t entry, const std::vector<RandomSample>& draws, const Frame& frame) {
-        ASSERT_EQ(draws.size(), 1U);
-        EXPECT_EQ(draws[0].law, RandomSample::Law::normal);
-        EXPECT_NEAR(frame.range_m[entry], kRange_m + sigma_m * draws[0].value, 1e-10) << entry;
+      step, [&](std::size_t entry, const std::vector<RandomSample>& samples, const Frame& frame) {
+        ASSERT_EQ(samples.size(), 1U);
+        EXPECT_EQ(samples[0].distribution, RandomSample::Distribution::normal);
+        EXPECT_NEAR(frame.range_m[entry], kRange_m + sigma_m * samples[0].value, 1e-10) << entry;
       });
 }
 
@@ -90,15 +90,19 @@ void hold(const DisparityQuantization& /*kind*/) {
 }
 
 void hold(const RangeUniform& /*kind*/) {
-  for (const auto law : {RangeUniform::Distribution::normal, RangeUniform::Distribution::uniform}) {
-    const RangeUniform step{.additive_m = 0.1, .multiplicative = 0.01, .distribution = law};
-    for_entries(step, [&](std::size_t entry, const std::vector<RandomSample>& draws,
+  for (const auto distribution :
+       {RangeUniform::Distribution::normal, RangeUniform::Distribution::uniform}) {
+    const RangeUniform step{
+        .additive_m = 0.1, .multiplicative = 0.01, .distribution = distribution};
+    for_entries(step, [&](std::size_t entry, const std::vector<RandomSample>& samples,
                           const Frame& frame) {
-      ASSERT_EQ(draws.size(), 2U);
+      ASSERT_EQ(samples.size(), 2U);
       const auto spread = [](const RandomSample& drawn) {
-        return drawn.law == RandomSample::Law::normal ? drawn.value : 2.0 * drawn.value - 1.0;
+        return drawn.distribution == RandomSample::Distribution::normal ? drawn.value
+                                                                        : 2.0 * drawn.value - 1.0;
       };
-      const double expected = kRange_m * (1.0 + 0.01 * spread(draws[1])) + 0.1 * spread(draws[0]);
+      const double expected =
+          kRange_m * (1.0 + 0.01 * spread(samples[1])) + 0.1 * spread(samples[0]);
       EXPECT_NEAR(frame.range_m[entry], expected, 1e-9) << entry;
     });
   }
@@ -109,28 +113,29 @@ void hold(const Dropout& /*kind*/) {
   const Dropout step{.probability = 0.5,
                      .by_range_m = {{0.0, 0.0}, {20.0, 0.4}},
                      .by_incidence_rad = {{0.0, 0.25}, {1.0, 1.0}}};
-  for_entries(step, [](std::size_t entry, const std::vector<RandomSample>& draws,
+  for_entries(step, [](std::size_t entry, const std::vector<RandomSample>& samples,
                        const Frame& frame) {
-    ASSERT_EQ(draws.size(), 1U);
-    EXPECT_EQ(draws[0].law, RandomSample::Law::uniform);
-    ASSERT_TRUE(draws[0].against.has_value());
-    EXPECT_NEAR(*draws[0].against, 1.0 - 0.5 * 0.8 * 0.75, 1e-12);
-    EXPECT_EQ(frame.status[entry] == Status::dropped, draws[0].value < *draws[0].against) << entry;
+    ASSERT_EQ(samples.size(), 1U);
+    EXPECT_EQ(samples[0].distribution, RandomSample::Distribution::uniform);
+    ASSERT_TRUE(samples[0].probability.has_value());
+    EXPECT_NEAR(*samples[0].probability, 1.0 - 0.5 * 0.8 * 0.75, 1e-12);
+    EXPECT_EQ(frame.status[entry] == Status::dropped, samples[0].value < *samples[0].probability)
+        << entry;
   });
   NoiseStage lost(1, 1, kRange_m);
   lost.lose_beam(0);
   EXPECT_FALSE(
-      trace_samples({step}, 0, lost.beams, lost.frame, kFrame_s, 0)[0].against.has_value());
+      trace_samples({step}, 0, lost.beams, lost.frame, kFrame_s, 0)[0].probability.has_value());
 }
 
 void hold(const Crosstalk& /*kind*/) {
   for_entries(Crosstalk{.probability = 0.5, .near_m = 1.0},
-              [](std::size_t entry, const std::vector<RandomSample>& draws, const Frame& frame) {
-                ASSERT_EQ(draws.size(), 3U);
-                EXPECT_EQ(draws[0].against, 0.5);
-                const bool talks = draws[0].value < 0.5;
+              [](std::size_t entry, const std::vector<RandomSample>& samples, const Frame& frame) {
+                ASSERT_EQ(samples.size(), 3U);
+                EXPECT_EQ(samples[0].probability, 0.5);
+                const bool talks = samples[0].value < 0.5;
                 EXPECT_EQ(frame.return_source[entry] == ReturnSource::crosstalk, talks) << entry;
-                const double expected_m = talks ? 1.0 + 9.0 * draws[2].value : kRange_m;
+                const double expected_m = talks ? 1.0 + 9.0 * samples[2].value : kRange_m;
                 EXPECT_NEAR(frame.range_m[entry], expected_m, 1e-9);
               });
 }
@@ -138,10 +143,10 @@ void hold(const Crosstalk& /*kind*/) {
 void hold(const FalseAlarms& /*kind*/) {
   constexpr double kRate_hz = 3e7;  // one in 5 m
   for_entries(FalseAlarms{.rate_hz = kRate_hz, .near_m = 0.5, .far_m = 100.0, .intensity = 1.0},
-              [](std::size_t entry, const std::vector<RandomSample>& draws, const Frame& frame) {
-                ASSERT_EQ(draws.size(), 1U);
+              [](std::size_t entry, const std::vector<RandomSample>& samples, const Frame& frame) {
+                ASSERT_EQ(samples.size(), 1U);
                 const double false_m =
-                    0.5 - std::log(draws[0].value) * 0.5 * 299792458.0 / kRate_hz;
+                    0.5 - std::log(samples[0].value) * 0.5 * 299792458.0 / kRate_hz;
                 EXPECT_NEAR(frame.range_m[entry], std::min(false_m, kRange_m), 1e-9) << entry;
               });
 }
@@ -149,10 +154,10 @@ void hold(const FalseAlarms& /*kind*/) {
 void hold(const Stereo& /*kind*/) {
   const Stereo stereo{.focal_px = 500.0, .baseline_m = 0.1, .sigma_px = 0.2, .step_px = 0.0};
   for_entries(stereo,
-              [&](std::size_t entry, const std::vector<RandomSample>& draws, const Frame& frame) {
-                ASSERT_EQ(draws.size(), 1U);
+              [&](std::size_t entry, const std::vector<RandomSample>& samples, const Frame& frame) {
+                ASSERT_EQ(samples.size(), 1U);
                 const double k = 500.0 * 0.1;
-                const double expected_m = k / (k / kRange_m + 0.2 * draws[0].value);
+                const double expected_m = k / (k / kRange_m + 0.2 * samples[0].value);
                 EXPECT_NEAR(frame.range_m[entry], expected_m, 1e-9) << entry;
               });
 }
@@ -164,7 +169,7 @@ double range_off_by_m(double steps) {
   return kFineK_m / (kFineK_m / kRange_m + steps);
 }
 
-/// The sum of a pixel's neighbours' own draws over the root of their number, by the window's law.
+/// The sum of a pixel's neighbours' own samples over the root of their number, by the window's law.
 double window_mean(const NoiseStage& stage, const std::vector<NoiseStep>& noise, std::size_t entry,
                    std::size_t reach) {
   double sum = 0.0;
@@ -185,10 +190,10 @@ void hold(const KinectV1& /*kind*/) {
   const KinectV1 kinect{.k_m = kFineK_m, .offset_steps = 0.0, .sigma_steps = 1e5, .window = 5};
   const NoiseStage before(kRows, kCols, kRange_m);
   for_entries(kinect,
-              [&](std::size_t entry, const std::vector<RandomSample>& draws, const Frame& frame) {
-                ASSERT_EQ(draws.size(), 2U);
+              [&](std::size_t entry, const std::vector<RandomSample>& samples, const Frame& frame) {
+                ASSERT_EQ(samples.size(), 2U);
                 const double mean = window_mean(before, after_two(kinect), entry, 2);
-                EXPECT_NEAR(draws[1].value, mean, 1e-12) << entry;
+                EXPECT_NEAR(samples[1].value, mean, 1e-12) << entry;
                 EXPECT_NEAR(frame.range_m[entry], range_off_by_m(1e5 * mean), 1e-7) << entry;
               });
 }
@@ -212,11 +217,12 @@ struct Slope : NoiseStage {
   }
 };
 
-/// The depth of the slope that a pixel sees when it looks `sigma_px` times its first two draws
+/// The depth of the slope that a pixel sees when it looks `sigma_px` times its first two samples
 /// aside, as far as the image goes.
-double seen_on_slope_m(std::size_t entry, double sigma_px, const std::vector<RandomSample>& draws) {
-  const double col = static_cast<double>(entry % kCols) + sigma_px * draws.at(0).value;
-  const double row = static_cast<double>(entry / kCols) + sigma_px * draws.at(1).value;
+double seen_on_slope_m(std::size_t entry, double sigma_px,
+                       const std::vector<RandomSample>& samples) {
+  const double col = static_cast<double>(entry % kCols) + sigma_px * samples.at(0).value;
+  const double row = static_cast<double>(entry / kCols) + sigma_px * samples.at(1).value;
   return kRange_m + kPerCol_m * std::clamp(col, 0.0, kCols - 1.0) +
          kPerRow_m * std::clamp(row, 0.0, kRows - 1.0);
 }
@@ -226,9 +232,9 @@ void hold(const NguyenLateral& /*kind*/) {
   Slope stage;
   stage.apply(noise);
   for (const std::size_t entry : {0U, 99U, 150U, 255U, 256U, 799U}) {
-    const auto draws = trace_samples(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
-    ASSERT_EQ(draws.size(), 2U);
-    EXPECT_NEAR(stage.frame.range_m[entry], seen_on_slope_m(entry, 0.8, draws), 1e-10) << entry;
+    const auto samples = trace_samples(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
+    ASSERT_EQ(samples.size(), 2U);
+    EXPECT_NEAR(stage.frame.range_m[entry], seen_on_slope_m(entry, 0.8, samples), 1e-10) << entry;
   }
 }
 
@@ -238,9 +244,9 @@ void hold(const IclKinect& /*kind*/) {
   Slope stage;
   stage.apply(noise);
   for (const std::size_t entry : {0U, 99U, 150U, 255U, 256U, 799U}) {
-    const auto draws = trace_samples(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
-    ASSERT_EQ(draws.size(), 3U);
-    const double steps = kFineK_m / seen_on_slope_m(entry, 0.5, draws) + 1e5 * draws[2].value;
+    const auto samples = trace_samples(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
+    ASSERT_EQ(samples.size(), 3U);
+    const double steps = kFineK_m / seen_on_slope_m(entry, 0.5, samples) + 1e5 * samples[2].value;
     EXPECT_NEAR(stage.frame.range_m[entry], kFineK_m / steps, 1e-7) << entry;
   }
 }
@@ -248,9 +254,9 @@ void hold(const IclKinect& /*kind*/) {
 void hold(const IntensityGaussian& /*kind*/) {
   const IntensityGaussian step{.sigma = 0.05};
   for_entries(step,
-              [&](std::size_t entry, const std::vector<RandomSample>& draws, const Frame& frame) {
-                ASSERT_EQ(draws.size(), 1U);
-                EXPECT_NEAR(frame.intensity[entry], 1.0 + 0.05 * draws[0].value, 1e-6) << entry;
+              [&](std::size_t entry, const std::vector<RandomSample>& samples, const Frame& frame) {
+                ASSERT_EQ(samples.size(), 1U);
+                EXPECT_NEAR(frame.intensity[entry], 1.0 + 0.05 * samples[0].value, 1e-6) << entry;
               });
 }
 
@@ -282,10 +288,10 @@ void hold(const PointingJitter& /*kind*/) {
   const std::vector<NoiseStep> noise = {RangeGaussian{}, PointingJitter{1e-4, 2e-4}};
   const Beams& aimed = stage.perturb(noise);
   for (const std::size_t entry : {0U, 255U, 256U, 777U}) {
-    const auto draws = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
-    ASSERT_EQ(draws.size(), 2U);
-    EXPECT_NEAR(std::abs(aimed.directions[entry].y()), std::abs(1e-4 * draws[0].value), 1e-9);
-    EXPECT_NEAR(aimed.directions[entry].z(), 2e-4 * draws[1].value, 1e-9);
+    const auto samples = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
+    ASSERT_EQ(samples.size(), 2U);
+    EXPECT_NEAR(std::abs(aimed.directions[entry].y()), std::abs(1e-4 * samples[0].value), 1e-9);
+    EXPECT_NEAR(aimed.directions[entry].z(), 2e-4 * samples[1].value, 1e-9);
   }
 }
 
@@ -296,12 +302,12 @@ void hold(const EncoderError& /*kind*/) {
     const std::vector<NoiseStep> noise = {RangeGaussian{}, EncoderError{.turn_sigma_rad = 1e-3}};
     const Beams& aimed = stage.perturb(noise);
     for (const std::size_t entry : {0U, 255U, 777U}) {
-      const auto draws = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
-      ASSERT_EQ(draws.size(), 1U);
-      EXPECT_EQ(draws[0].law, RandomSample::Law::normal);
+      const auto samples = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
+      ASSERT_EQ(samples.size(), 1U);
+      EXPECT_EQ(samples[0].distribution, RandomSample::Distribution::normal);
       // reported minus true azimuth, of beams that report 0
       const Eigen::Vector3d& beam = aimed.directions[entry];
-      EXPECT_NEAR(-std::atan2(beam.y(), beam.x()), 1e-3 * draws[0].value, 1e-12) << entry;
+      EXPECT_NEAR(-std::atan2(beam.y(), beam.x()), 1e-3 * samples[0].value, 1e-12) << entry;
     }
   }
   expect_none(EncoderError{.step_rad = 1e-3, .eccentricity_rad = 1e-3});
