@@ -24,12 +24,12 @@ Sensor camera(std::uint32_t side) {
 /// GLIDAR, from a pose to a compact cloud.
 class Clouds {
  public:
-  Clouds(const Model* model, const char* kind, bool is_paper, std::uint32_t side)
+  Clouds(const Model* model, const char* kind, bool is_quantized, std::uint32_t side)
       : model_(*model),
         simulator_(model->scene, camera(side), options(kind)),
         motion_(static_motion(model->scene, model->world_from_sensor)) {
-    if (!is_paper) return;
-    camera_ = make_paper_camera(model->scene, options("opengl"));
+    if (!is_quantized) return;
+    camera_ = make_woods2016_camera(model->scene, options("opengl"));
     simulator_.set_return_replacement(woods2016_measurement(*camera_));
   }
 
@@ -68,13 +68,13 @@ void register_model(const Model* model, std::uint32_t side, double goal,
   struct Ours {
     std::string name;
     const char* kind;
-    bool is_paper;
+    bool is_quantized;
   };
   const std::string at = model->name + " " + std::to_string(side) + " ";
   add<Pipeline2015>(at + "2015", model, side);
   for (const Ours& ours : {Ours{"rays", "rays", false}, Ours{"opengl", "opengl", false},
-                           Ours{"opengl, paper target", "rays", true}}) {
-    add<Clouds>(at + ours.name, model, ours.kind, ours.is_paper, side);
+                           Ours{"opengl, quantized framebuffer", "rays", true}}) {
+    add<Clouds>(at + ours.name, model, ours.kind, ours.is_quantized, side);
     ratios.push_back({at + ours.name + " / 2015", at + "2015", at + ours.name, goal});
   }
 }

@@ -42,9 +42,9 @@ void register_cast(const std::string& name, const Model& model, const char* kind
 }
 
 /// Draws the framebuffer and decodes it.
-void register_paper(const std::string& name, const Model& model, std::uint32_t side) {
+void register_framebuffer(const std::string& name, const Model& model, std::uint32_t side) {
   add(name, [&model, side](benchmark::State& state) {
-    const auto camera = make_paper_camera(model.scene, options("opengl"));
+    const auto camera = make_woods2016_camera(model.scene, options("opengl"));
     const Beams beams = make_beams(pinhole_from_fov(side, side, kFov_rad));
     ThreadPool thread_pool(kThreads);
     Woods2016Framebuffer picture;
@@ -66,10 +66,11 @@ void register_model(const Model& model, std::uint32_t side, std::vector<Ratio>& 
   register_raw(at + "raw numbers", model, kRawNumbers, side);
   register_cast(at + "opengl", model, "opengl", side);
   register_cast(at + "rays", model, "rays", side);
-  register_raw(at + "raw paper", model, kRawPaper, side);
-  register_paper(at + "paper", model, side);
+  register_raw(at + "raw framebuffer", model, kRawFramebuffer, side);
+  register_framebuffer(at + "framebuffer", model, side);
   ratios.push_back({at + "cast / raw OpenGL", at + "raw numbers", at + "opengl", kGoal});
-  ratios.push_back({at + "paper target / raw OpenGL", at + "raw paper", at + "paper", kGoal});
+  ratios.push_back({at + "quantized framebuffer / raw OpenGL", at + "raw framebuffer",
+                    at + "framebuffer", kGoal});
   ratios.push_back({at + "opengl / rays", at + "rays", at + "opengl", 0.0});
 }
 

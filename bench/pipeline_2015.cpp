@@ -49,7 +49,7 @@ Eigen::Vector3f KdTree::nearest(const Eigen::Vector3f& to) const {
 Pipeline2015::Pipeline2015(const Model* model, std::uint32_t side)
     : model_(*model),
       side_(side),
-      picture_(*model, kRawPaper, side),
+      picture_(*model, kRawFramebuffer, side),
       tree_(model->scene.meshes[0].positions_m) {}
 
 void Pipeline2015::measure() {

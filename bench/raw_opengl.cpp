@@ -65,7 +65,7 @@ void main() { number = uint(gl_PrimitiveID); }
 )",
                          GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT};
 
-const Raw kRawPaper = {R"(#version 330 core
+const Raw kRawFramebuffer = {R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 uniform mat4 clip_from_object;
@@ -80,7 +80,7 @@ void main() {
   w = gl_Position.w;
 }
 )",
-                       R"(#version 330 core
+                             R"(#version 330 core
 in vec3 n;
 in vec3 l;
 in float w;
@@ -95,7 +95,7 @@ void main() {
   pixel = vec4(a * c, high / 255.0, floor(steps - 256.0 * high) / 255.0, 1.0);
 }
 )",
-                       GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+                             GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
 
 void compile(const opengl::Program& program,
              std::initializer_list<std::pair<GLenum, const char*>> stages) {

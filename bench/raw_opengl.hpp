@@ -50,7 +50,7 @@ struct Raw {
 /// The id of each triangle.
 extern const Raw kRawNumbers;
 /// The shaders of the quantized framebuffer, reduced to untextured models.
-extern const Raw kRawPaper;
+extern const Raw kRawFramebuffer;
 
 /// Compiles one stage after the other and links.
 void compile(const opengl::Program& program,
@@ -62,7 +62,7 @@ class RawOpengl {
  public:
   RawOpengl(const Model& model, const Raw& raw, std::uint32_t side);
 
-  /// Of the perspective and of kRawPaper's depths; at first they are around the model.
+  /// Of the perspective and of kRawFramebuffer's depths; at first they are around the model.
   void set_planes(double near_m, double far_m);
   void draw();
   void draw_and_read();

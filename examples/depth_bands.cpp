@@ -140,7 +140,7 @@ void show_bands(const char* path) {
   glidar::make_renderer(scene, {.kind = "rays"})->cast(request, truth);
   glidar::make_renderer(scene, {.kind = "opengl"})->cast(request, drawn);
 
-  const auto camera = glidar::make_paper_camera(scene, {});
+  const auto camera = glidar::make_woods2016_camera(scene, {});
   Woods2016Framebuffer picture;
   std::vector<Depths> ways;
   camera->draw(request, {}, glidar::Woods2016DepthPlanes{0.1, 20.0}, picture);
@@ -163,7 +163,7 @@ void show_bands(const char* path) {
 
 int main(int argc, char** argv) {
   try {
-    glidar::make_paper_camera(glidar::Scene{}, {});
+    glidar::make_woods2016_camera(glidar::Scene{}, {});
   } catch (const glidar::Error& error) {
     std::printf("%s\n", error.what());
     return kSkipped;

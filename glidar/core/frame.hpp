@@ -94,8 +94,8 @@ struct Frame {
     std::vector<PoseVector> world_from_object;  ///< N, without scale; NaN for a miss
   };
   BeamPoses beam_poses;
-  Woods2016Framebuffer picture;  ///< range and intensity were decoded from it; empty: not used
-  Hits ground_truth;             ///< the surfaces, whether reported or not
+  Woods2016Framebuffer framebuffer;  ///< range and intensity were decoded from it; empty: not used
+  Hits ground_truth;                 ///< the surfaces, whether reported or not
 };
 
 /// Resizes the measured columns to `size` entries (contents unspecified).

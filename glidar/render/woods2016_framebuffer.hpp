@@ -34,12 +34,12 @@ class Woods2016Camera {
 };
 
 /// Builds a camera over a valid scene, which must outlive it. Throws Error without OpenGL.
-std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
-                                                   const RendererOptions& options);
+std::unique_ptr<Woods2016Camera> make_woods2016_camera(const Scene& scene,
+                                                       const RendererOptions& options);
 
 /// The same with the caller's context, see make_opengl_renderer().
-std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
-                                                   const RendererOptions& options,
-                                                   std::unique_ptr<opengl::Context> context);
+std::unique_ptr<Woods2016Camera> make_woods2016_camera(const Scene& scene,
+                                                       const RendererOptions& options,
+                                                       std::unique_ptr<opengl::Context> context);
 
 }  // namespace glidar

@@ -31,7 +31,7 @@ void start_frame(const Simulation& s) {
   frame.deskewed.true_directions.clear();
   frame.deskewed.origins_m.clear();
   frame.deskewed.start_from_sensor.clear();
-  frame.picture.rgba.clear();
+  frame.framebuffer.rgba.clear();
 }
 
 CastRequest beam_request(const Simulation& s, FunctionRef<void(BeamRange)> on_tile_done) {

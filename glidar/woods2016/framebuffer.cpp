@@ -41,12 +41,13 @@ void classify_decoded(const CastContext& cast, BeamRange tile, Frame& frame) {
 
 }  // namespace
 
-void decode_framebuffer(const Woods2016Framebuffer& picture, const Beams& beams, BeamRange range,
-                        std::vector<double>& range_m, std::vector<float>& intensity) {
+void decode_framebuffer(const Woods2016Framebuffer& framebuffer, const Beams& beams,
+                        BeamRange range, std::vector<double>& range_m,
+                        std::vector<float>& intensity) {
   constexpr double kByteSteps = 65536.0;
-  const double step_m = (picture.far_m - picture.near_m) / kByteSteps;
+  const double step_m = (framebuffer.far_m - framebuffer.near_m) / kByteSteps;
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    const std::uint8_t* rgba = &picture.rgba[4 * i];
+    const std::uint8_t* rgba = &framebuffer.rgba[4 * i];
     if (rgba[3] == 0) {
       range_m[i] = std::numeric_limits<double>::quiet_NaN();
       intensity[i] = 0.0F;
@@ -55,7 +56,7 @@ void decode_framebuffer(const Woods2016Framebuffer& picture, const Beams& beams,
     // The inverse of equations (6) to (8). They round D down, so the middle of its step is the best
     // estimate.
     const double steps = 256.0 * rgba[1] + rgba[2] + 0.5;
-    const double depth = picture.near_m + steps * step_m;
+    const double depth = framebuffer.near_m + steps * step_m;
     range_m[i] = depth / beams.directions[i].z();
     intensity[i] = static_cast<float>(rgba[0]) / 255.0F;
   }
@@ -69,9 +70,10 @@ ReturnReplacement woods2016_measurement(Woods2016Camera& camera,
                  .world_from_sensor = frame.world_from_sensor,
                  .world_from_instance = frame.world_from_instance,
                  .cull_back_faces = cast.sensor.cull_back_faces},
-                cast.sensor.light, planes, frame.picture);
+                cast.sensor.light, planes, frame.framebuffer);
     const auto decode = [&](std::size_t begin, std::size_t end) {
-      decode_framebuffer(frame.picture, cast.beams, {begin, end}, frame.range_m, frame.intensity);
+      decode_framebuffer(frame.framebuffer, cast.beams, {begin, end}, frame.range_m,
+                         frame.intensity);
       classify_decoded(cast, {begin, end}, frame);
     };
     cast.thread_pool.parallel_for(cast.beams.size(), kPixelsPerTask, decode);

@@ -46,15 +46,15 @@ class OpenglRenderer(CliTest):
         self.assertAlmostEqual(len(paper), len(exact), delta=5)
         self.assertNotEqual(paper, exact)
         with open(os.path.join(self.folder, "paper.csv.json"), encoding="utf-8") as file:
-            self.assertIn("opengl, paper target", json.dumps(json.load(file)))
+            self.assertIn("opengl, quantized framebuffer", json.dumps(json.load(file)))
 
     @unittest.skipIf(np is None, "NumPy is not installed")
     def test_the_paper_png_is_the_framebuffer_of_the_cloud(self):
         paper = ("--renderer", "opengl", "--quantized-framebuffer")
         self.succeed("render", *VIEW, *paper, "--columns", "xyz,depth,intensity,status", "-o", "a.npz",
-                     "-o", "a.paper.png")
+                     "-o", "a.framebuffer.png")
         self.succeed("render", *VIEW, "--columns", "xyz,depth", "-o", "exact.npz")
-        pixels, texts = formats.read_png(Path(self.folder) / "a.paper.png")
+        pixels, texts = formats.read_png(Path(self.folder) / "a.framebuffer.png")
         self.assertEqual((pixels.shape, pixels.dtype), ((60, 80, 4), np.uint8))
         near, far = (float(x) for x in re.search(r"n = (\S+) m, f = (\S+) m", texts["Description"]).groups())
         red, green, blue, alpha = (pixels[:, :, k].astype(float) for k in range(4))
@@ -71,9 +71,9 @@ class OpenglRenderer(CliTest):
         self.assertLess(np.nanquantile(off, 0.99), 0.52 * (far - near) / 65536)
 
     def test_the_float_framebuffer_has_no_paper_png(self):
-        told = "x.paper.png: the float framebuffer, which has no such image; allowed: this output with --quantized-framebuffer"
+        told = "x.framebuffer.png: the float framebuffer, which has no such image; allowed: this output with --quantized-framebuffer"
         for renderer in ((), ("--renderer", "opengl")):
-            self.assertIn(told, self.refused("render", *VIEW, *renderer, "-o", "x.paper.png"))
+            self.assertIn(told, self.refused("render", *VIEW, *renderer, "-o", "x.framebuffer.png"))
 
     def test_unsupported_sensors_are_refused(self):
         self.assertIn("add --renderer opengl",

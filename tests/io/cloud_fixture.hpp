@@ -133,9 +133,10 @@ inline void set_frame(CloudFixture& made) {
                                Pose::Identity()};
   for (std::size_t i = 0; i < count; ++i)
     frame.status.push_back(is_miss(i) ? Status::miss : Status::hit);
-  frame.picture = {.rows = made.rows, .cols = made.cols, .near_m = 1.25, .far_m = 3.1, .rgba = {}};
+  frame.framebuffer = {
+      .rows = made.rows, .cols = made.cols, .near_m = 1.25, .far_m = 3.1, .rgba = {}};
   for (std::size_t k = 0; k < 4 * count; ++k)
-    frame.picture.rgba.push_back(static_cast<std::uint8_t>(k * 37));
+    frame.framebuffer.rgba.push_back(static_cast<std::uint8_t>(k * 37));
 }
 
 }  // namespace fixture

@@ -200,13 +200,12 @@ TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithASuitableScale) {
   EXPECT_THAT(write_error(made, "a.depth.png"), HasSubstr("a depth of -2 m, behind the sensor"));
 }
 
-TEST(PaperPng, RejectsFramesOfOtherRenderTargets) {
+TEST(Woods2016Png, RejectsFramesOfOtherRenderTargets) {
   CloudFixture made = make_fixture();
-  made.frame.picture.rgba.clear();
-  EXPECT_THAT(
-      write_error(made, "a.paper.png"),
-      HasSubstr("a frame that was not read from the paper's framebuffer; allowed: a frame of "
-                "the paper's target"));
+  made.frame.framebuffer.rgba.clear();
+  EXPECT_THAT(write_error(made, "a.framebuffer.png"),
+              HasSubstr("a frame without a quantized framebuffer; allowed: a frame of "
+                        "the paper's target"));
 }
 
 TEST(TransformFile, IsTheFirstObjectInTheCloudsFrameWithoutScale) {

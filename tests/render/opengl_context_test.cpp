@@ -75,7 +75,7 @@ class OpenglContext : public ::testing::Test {
 
 TEST_F(OpenglContext, ASharedContextDrawsTheSameHitsAndFramebuffer) {
   const std::unique_ptr<Renderer> theirs = renderer();
-  const auto camera = make_paper_camera(scene_, {.threads = 1}, shared());
+  const auto camera = make_woods2016_camera(scene_, {.threads = 1}, shared());
   Hits hits;
   Woods2016Framebuffer framebuffer;
   for (int frame = 0; frame < 3; ++frame) {  // in turns
@@ -85,7 +85,7 @@ TEST_F(OpenglContext, ASharedContextDrawsTheSameHitsAndFramebuffer) {
   EXPECT_GT(uses_, 6);
   EXPECT_EQ(hits.primitive, expected());
   Woods2016Framebuffer own;
-  make_paper_camera(scene_, {.threads = 1})->draw(request(), {}, {}, own);
+  make_woods2016_camera(scene_, {.threads = 1})->draw(request(), {}, {}, own);
   EXPECT_EQ(framebuffer.rgba, own.rgba);
 }
 
@@ -124,7 +124,7 @@ TEST_F(OpenglContext, NoContextIsCurrentAfterwardsIfNoneWasBefore) {
 
 TEST_F(OpenglContext, ResultsDoNotDependOnThePreviousState) {
   const std::unique_ptr<Renderer> theirs = renderer();
-  const auto camera = make_paper_camera(scene_, {.threads = 1}, shared());
+  const auto camera = make_woods2016_camera(scene_, {.threads = 1}, shared());
   Woods2016Framebuffer before;
   camera->draw(request(), {}, {}, before);
   GLuint sampler = 0;

@@ -76,7 +76,7 @@ TEST_F(OpenglLeak, MemoryStaysConstantOverBatchesAndResizes) {
 }
 
 TEST_F(OpenglLeak, MemoryStaysConstantOverTenThousandFramebuffers) {
-  const auto camera = make_paper_camera(scene_, {.threads = 1});
+  const auto camera = make_woods2016_camera(scene_, {.threads = 1});
   Woods2016Framebuffer framebuffer;
   expect_flat(1000, 10'000, 1.0, [&](int /*frame*/) {
     camera->draw({.beams = beams_, .world_from_sensor = pose_}, {}, {}, framebuffer);
@@ -97,7 +97,7 @@ TEST_F(OpenglLeak, MemoryStaysConstantOverAHundredRenderers) {
 TEST_F(OpenglLeak, MemoryStaysConstantOverAHundredFramebufferCameras) {
   Woods2016Framebuffer framebuffer;
   expect_flat(10, 100, 100 * kPerContext_MiB, [&](int /*frame*/) {
-    make_paper_camera(scene_, {.threads = 1})
+    make_woods2016_camera(scene_, {.threads = 1})
         ->draw({.beams = beams_, .world_from_sensor = pose_}, {}, {}, framebuffer);
   });
 }

@@ -30,7 +30,7 @@ struct Measured {
   Frame exact;  ///< from the renderer's hits
 
   [[nodiscard]] double step_m() const {
-    return (frame.picture.far_m - frame.picture.near_m) / 65536.0;
+    return (frame.framebuffer.far_m - frame.framebuffer.near_m) / 65536.0;
   }
 };
 
@@ -48,7 +48,7 @@ class Woods2016Measurement : public ::testing::Test {
                           std::optional<Woods2016DepthPlanes> planes = {}) {
     Measured measured;
     const Motion motion = static_motion(scene, pose);
-    const auto camera = make_paper_camera(scene, {.kind = "opengl", .threads = 2});
+    const auto camera = make_woods2016_camera(scene, {.kind = "opengl", .threads = 2});
     const HitFieldMask fields{.depth = true, .incidence = true};
     Simulator simulator(scene, sensor, {.threads = 2});
     simulator.simulate(motion, fields, measured.exact);
@@ -93,7 +93,8 @@ TEST_F(Woods2016Measurement, IsWithinHalfADepthStepAndOneIntensityStepOnASphere)
   const Pose pose = look_at({6.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Measured m = measure(scene, camera(300, 200, 0.4), pose);
   expect_near_exact(m, 0.0005);
-  EXPECT_LT(m.frame.picture.far_m - m.frame.picture.near_m, 2.0 + 1e-6);  // tight around the sphere
+  EXPECT_LT(m.frame.framebuffer.far_m - m.frame.framebuffer.near_m,
+            2.0 + 1e-6);  // tight around the sphere
 }
 
 TEST_F(Woods2016Measurement, IsAsExactOnAColouredAsteroid) {
@@ -149,8 +150,8 @@ TEST_F(Woods2016Measurement, GivenPlanesSetTheDepthStep) {
   const Scene scene = builtin("sphere");
   const Pose pose = look_at({6.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Measured m = measure(scene, camera(300, 200, 0.4), pose, Woods2016DepthPlanes{1.0, 1001.0});
-  EXPECT_EQ(m.frame.picture.far_m, 1001.0);
-  EXPECT_TRUE(m.exact.picture.rgba.empty());
+  EXPECT_EQ(m.frame.framebuffer.far_m, 1001.0);
+  EXPECT_TRUE(m.exact.framebuffer.rgba.empty());
   expect_near_exact(m, 0.0005);  // the step is 500 times as large
 }
 
@@ -177,13 +178,14 @@ TEST_F(Woods2016Measurement, RejectsPulsedSensorsAndPointingNoise) {
 }
 
 TEST(Woods2016Framebuffer, DecodesToTheMiddleOfAStepAndDividesByTheCosine) {
-  Woods2016Framebuffer picture{.rows = 1, .cols = 3, .near_m = 10.0, .far_m = 75.536, .rgba = {}};
-  picture.rgba = {0, 0, 0, 0, 51, 1, 2, 255, 255, 255, 255, 255};
+  Woods2016Framebuffer framebuffer{
+      .rows = 1, .cols = 3, .near_m = 10.0, .far_m = 75.536, .rgba = {}};
+  framebuffer.rgba = {0, 0, 0, 0, 51, 1, 2, 255, 255, 255, 255, 255};
   const Beams beams = make_beams(
       Pinhole{{.width = 3, .height = 1, .fx = 1.0, .fy = 1.0, .cx = 1.5, .cy = 0.5}, {}});
   std::vector<double> range_m(3);
   std::vector<float> intensity(3);
-  decode_framebuffer(picture, beams, {0, 3}, range_m, intensity);
+  decode_framebuffer(framebuffer, beams, {0, 3}, range_m, intensity);
   EXPECT_TRUE(std::isnan(range_m[0]));
   EXPECT_EQ(intensity[0], 0.0F);
   EXPECT_DOUBLE_EQ(range_m[1], 10.2585);  // step 256 + 2 of 1 mm

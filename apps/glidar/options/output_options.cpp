@@ -126,7 +126,7 @@ void hide_standard_output(CLI::App& command) {
 std::string output_names_text() {
   std::string text = "Output files by suffix:\n";
   for (const FileFormat& format : file_formats()) {
-    text += fmt::format("  {:<13} {}\n", format.suffix, format.description);
+    text += fmt::format("  {:<17} {}\n", format.suffix, format.description);
   }
   text += "\nColumns of clouds (* by default):\n";
   std::string names;

@@ -26,7 +26,7 @@ void add_fisher_options(CLI::App& command, FisherFlags& flags) {
 }  // namespace
 
 std::string renderer_name(const RenderFlags& flags) {
-  return flags.renderer.kind + (flags.quantized_framebuffer ? ", paper target" : "");
+  return flags.renderer.kind + (flags.quantized_framebuffer ? ", quantized framebuffer" : "");
 }
 
 void add_render_options(CLI::App& command, RenderFlags& flags) {

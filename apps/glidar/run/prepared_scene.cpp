@@ -183,7 +183,7 @@ void warn_extrapolation(const PreparedScene& prepared, const Report& report) {
 
 void check_target(const RenderFlags& flags) {
   for (const std::string& path : flags.output.paths) {
-    if (flags.quantized_framebuffer || format_of(flags.output, path).suffix != ".paper.png")
+    if (flags.quantized_framebuffer || format_of(flags.output, path).suffix != ".framebuffer.png")
       continue;
     throw Error({.where = "--output, " + path,
                  .found = "the float framebuffer, which has no such image",
@@ -239,7 +239,7 @@ void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loa
   const ProgressScope progress(console, "preparing the scene");
   prepared.renderer = make_renderer(prepared.scene, flags.renderer);
   if (flags.quantized_framebuffer) {
-    prepared.woods2016_camera = make_paper_camera(prepared.scene, flags.renderer);
+    prepared.woods2016_camera = make_woods2016_camera(prepared.scene, flags.renderer);
   }
   for (ActiveSensor& active : prepared.sensors) {
     active.simulator =

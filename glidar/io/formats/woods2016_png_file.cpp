@@ -11,17 +11,18 @@
 
 namespace glidar {
 
-void write_paper_png(const CloudFile& job, AtomicFile& file) {
-  const Woods2016Framebuffer& picture = job.frame.picture;
-  if (picture.rgba.empty()) {
-    throw Error({file.path().string(), "a frame that was not read from the paper's framebuffer",
-                 "a frame of the paper's target",
+void write_woods2016_png(const CloudFile& job, AtomicFile& file) {
+  const Woods2016Framebuffer& framebuffer = job.frame.framebuffer;
+  if (framebuffer.rgba.empty()) {
+    throw Error({file.path().string(), "a frame without a quantized framebuffer",
+                 "a frame of --quantized-framebuffer",
                  "render with --renderer opengl --quantized-framebuffer"});
   }
-  write_png({PngKind::rgba8, picture.cols, picture.rows, std::as_bytes(std::span(picture.rgba)),
+  write_png({PngKind::rgba8, framebuffer.cols, framebuffer.rows,
+             std::as_bytes(std::span(framebuffer.rgba)),
              fmt::format("alpha 0: no surface; intensity R / 255; depth n + (256 G + B + 1/2) "
                          "(f - n) / 65536, n = {:.17g} m, f = {:.17g} m",
-                         picture.near_m, picture.far_m)},
+                         framebuffer.near_m, framebuffer.far_m)},
             file);
 }
 

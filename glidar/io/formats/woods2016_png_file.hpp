@@ -8,6 +8,6 @@ namespace glidar {
 
 /// Writes the frame's Woods2016Framebuffer byte by byte as 8-bit RGBA; the file's description
 /// contains its clipping planes. Throws Error when the frame was not read from such a framebuffer.
-void write_paper_png(const CloudFile& job, AtomicFile& file);
+void write_woods2016_png(const CloudFile& job, AtomicFile& file);
 
 }  // namespace glidar

@@ -27,11 +27,11 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& dra
   GLint max_size = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &max_size);
   if (drawn.size() > static_cast<std::size_t>(max_size)) {
-    throw Error(
-        {.where = "opengl renderer",
-         .found = "a mesh of " + std::to_string(drawn.size()) + " triangles",
-         .allowed = "up to " + std::to_string(max_size) + " with this driver's paper target",
-         .remedy = "leave --quantized-framebuffer out"});
+    throw Error({.where = "opengl renderer",
+                 .found = "a mesh of " + std::to_string(drawn.size()) + " triangles",
+                 .allowed = "up to " + std::to_string(max_size) +
+                            " with this driver's quantized framebuffer",
+                 .remedy = "leave --quantized-framebuffer out"});
   }
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   std::vector<Eigen::Vector4f> normals;

@@ -89,16 +89,16 @@ class OpenglWoods2016Camera final : public Woods2016Camera {
 
 }  // namespace
 
-std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
-                                                   const RendererOptions& options) {
+std::unique_ptr<Woods2016Camera> make_woods2016_camera(const Scene& scene,
+                                                       const RendererOptions& options) {
   validate(scene);
-  return make_paper_camera(scene, options,
-                           std::make_unique<opengl::EglContext>(options.graphics_device));
+  return make_woods2016_camera(scene, options,
+                               std::make_unique<opengl::EglContext>(options.graphics_device));
 }
 
-std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
-                                                   const RendererOptions& options,
-                                                   std::unique_ptr<opengl::Context> context) {
+std::unique_ptr<Woods2016Camera> make_woods2016_camera(const Scene& scene,
+                                                       const RendererOptions& options,
+                                                       std::unique_ptr<opengl::Context> context) {
   validate(scene);
   const auto make = [&](const Scene& whole) -> std::unique_ptr<Woods2016Camera> {
     return std::make_unique<OpenglWoods2016Camera>(whole, options, std::move(context));

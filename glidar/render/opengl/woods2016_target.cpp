@@ -14,7 +14,7 @@ void Woods2016Target::begin(std::uint32_t rows, std::uint32_t cols) {
   GLint max_size = 0;
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max_size);
   if (rows > static_cast<std::uint32_t>(max_size) || cols > static_cast<std::uint32_t>(max_size)) {
-    throw Error({.where = "paper target",
+    throw Error({.where = "quantized framebuffer",
                  .found = std::to_string(cols) + " x " + std::to_string(rows) + " pixels",
                  .allowed = "up to " + std::to_string(max_size) + " on a side with this driver",
                  .remedy = "leave --quantized-framebuffer out"});

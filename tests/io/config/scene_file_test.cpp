@@ -360,7 +360,7 @@ TEST(SceneFile, ExampleLoads) {
   EXPECT_EQ(file.scene.class_names,
             (std::vector<std::string>{"unlabelled", "asteroid", "calibration target"}));
   ASSERT_TRUE(file.sensors.size() == 1 && file.world_from_rig);
-  EXPECT_EQ(file.sensors[0].sensor.name, "paper camera");
+  EXPECT_EQ(file.sensors[0].sensor.name, "Woods 2016 camera");
   // The whole scene lies in the cone of the camera's 20 degrees.
   const Eigen::AlignedBox3d box = bounds(file.scene);
   const Eigen::Vector3d centre = file.world_from_rig->inverse() * box.center();

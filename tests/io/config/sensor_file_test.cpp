@@ -131,9 +131,9 @@ TEST(SensorFile, WindowsLineEndsAndByteOrderMark) {
             "a");
 }
 
-TEST(SensorFile, PaperCameraIsThePapers) {
+TEST(SensorFile, Woods2016CameraHasThePapersNumbers) {
   const Sensor sensor =
-      load_sensor_file(std::filesystem::path(kSourceFolder) / "sensors/paper-256.yaml");
+      load_sensor_file(std::filesystem::path(kSourceFolder) / "sensors/woods2016-256.yaml");
   const PinholeIntrinsics k = std::get<Pinhole>(sensor.optics).intrinsics;
   EXPECT_EQ(k.width, 256U);
   EXPECT_EQ(k.height, 256U);

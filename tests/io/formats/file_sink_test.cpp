@@ -27,7 +27,7 @@ using ::testing::IsEmpty;
 TEST(FileFormats, TheLongestSuffixSelectsTheFormat) {
   EXPECT_EQ(format_for("a.png").suffix, ".png");
   EXPECT_EQ(format_for("a.depth.png").suffix, ".depth.png");
-  EXPECT_EQ(format_for("a.paper.png").suffix, ".paper.png");
+  EXPECT_EQ(format_for("a.framebuffer.png").suffix, ".framebuffer.png");
   EXPECT_EQ(format_for("out.d/scan.2.pcd").suffix, ".pcd");
   EXPECT_EQ(format_for("A.PCD").suffix, ".pcd");
 }
@@ -38,7 +38,7 @@ TEST(FileFormats, AnUnknownSuffixIsReportedWithAllSuffixesAndTheNearest) {
       text,
       AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
             HasSubstr(
-                ".pcd .ply .npz .csv .bin .kitti .npy .depth.png .paper.png .png .transform "
+                ".pcd .ply .npz .csv .bin .kitti .npy .depth.png .framebuffer.png .png .transform "
                 ".bev.png .view.png .depth.tiff .rgb.png .normal.png .instance.png .class.png")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
@@ -160,7 +160,7 @@ TEST(FileSink, PreviewsAndPosesHaveNoSidecar) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   fixture::add_image_columns(made.cloud);
-  for (const char* name : {"a.png", "a.paper.png", "a.transform", "a.bev.png", "a.view.png"})
+  for (const char* name : {"a.png", "a.framebuffer.png", "a.transform", "a.bev.png", "a.view.png"})
     write_cloud(made, folder / name);
   EXPECT_EQ(folder.names().size(), 5U);
 }

@@ -287,7 +287,7 @@ class Formats(unittest.TestCase):
 
     def test_paper_png(self):
         for folder, (rows, cols) in SIZES.items():
-            image, texts = formats.read_png(FOLDER / folder / "a.paper.png")
+            image, texts = formats.read_png(FOLDER / folder / "a.framebuffer.png")
             wanted = (np.arange(4 * rows * cols) * 37 % 256).astype(np.uint8)
             np.testing.assert_array_equal(image, wanted.reshape(rows, cols, 4))
             self.assertTrue(texts["Description"].endswith("n = 1.25 m, f = 3.1000000000000001 m"), texts)
