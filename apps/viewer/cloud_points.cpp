@@ -10,12 +10,12 @@ namespace glidar::app {
 void make_cloud_points(const Snapshot& snapshot, const Eigen::Vector3d& anchor_m,
                        std::vector<Eigen::Vector3f>& points) {
   const Pose anchor_from_world(Eigen::Translation3d(-anchor_m));
-  const OutputFrame cloud_frame{
+  const OutputFrame target_frame{
       .frame_id = "anchor",
       .cloud_from_sensor = anchor_from_world * snapshot.frame.world_from_sensor};
   const std::vector<std::string> columns = {"xyz"};
   PointCloud cloud;
-  make_point_cloud(snapshot.frame, *snapshot.beams, snapshot.prepared->scene, cloud_frame, columns,
+  make_point_cloud(snapshot.frame, *snapshot.beams, snapshot.prepared->scene, target_frame, columns,
                    cloud);
   const auto& xyz = std::get<std::vector<double>>(cloud.columns[0].values);
   points.resize(cloud.size());

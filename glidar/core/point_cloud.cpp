@@ -352,19 +352,19 @@ HitFieldMask fields_needed_by(std::span<const std::string> column_names) {
 }
 
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
-                      const OutputFrame& cloud_frame, std::span<const std::string> column_names,
+                      const OutputFrame& target_frame, std::span<const std::string> column_names,
                       PointCloud& cloud) {
   cloud.rows = frame.rows;
   cloud.cols = frame.cols;
-  cloud.frame_id = cloud_frame.frame_id;
-  cloud.world_from_cloud = frame.world_from_sensor * cloud_frame.cloud_from_sensor.inverse();
+  cloud.frame_id = target_frame.frame_id;
+  cloud.world_from_cloud = frame.world_from_sensor * target_frame.cloud_from_sensor.inverse();
   cloud.columns.resize(column_names.size());
   const Source source{frame,
                       beams,
                       scene,
-                      cloud_frame.cloud_from_sensor,
-                      cloud_frame.deskew,
-                      cloud_frame.thread_pool};
+                      target_frame.cloud_from_sensor,
+                      target_frame.deskew,
+                      target_frame.thread_pool};
   for (std::size_t c = 0; c < column_names.size(); ++c) {
     const ColumnKind& kind = kind_named(column_names[c]);
     if (!has(frame, kind.needs)) {

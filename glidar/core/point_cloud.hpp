@@ -46,7 +46,7 @@ std::span<const std::string> cloud_column_names();
 HitFieldMask fields_needed_by(std::span<const std::string> column_names);
 
 /// Fills `cloud` with the named columns of a frame, reusing its memory.
-///  xyz           f64 x3, metres in `cloud_frame`, from the measured range; NaN unless a hit
+///  xyz           f64 x3, metres in `target_frame`, from the measured range; NaN unless a hit
 ///  true_xyz      f64 x3, the same from the ground truth range, whether reported or not, along the
 ///                beam as fired
 ///  intensity     f32
@@ -54,7 +54,7 @@ HitFieldMask fields_needed_by(std::span<const std::string> column_names);
 ///                which does not affect coordinates
 ///  true_range    f64, metres, ground truth, also with range_offset_m; NaN for a miss
 ///  sigma         f32, metres, standard deviation of the range's random error
-///  normal, shading_normal  f32 x3, unit, in `cloud_frame`
+///  normal, shading_normal  f32 x3, unit, in `target_frame`
 ///  incidence     f32, radians
 ///  instance, class  u32, the instance's id and class_id; kInvalidId for a miss
 ///  primitive     u32, triangle of the mesh; kInvalidId for a miss
@@ -70,7 +70,7 @@ HitFieldMask fields_needed_by(std::span<const std::string> column_names);
 ///                NaN for a miss
 /// Throws Error for an unknown column, and when the frame was cast without a column that it needs.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
-                      const OutputFrame& cloud_frame, std::span<const std::string> column_names,
+                      const OutputFrame& target_frame, std::span<const std::string> column_names,
                       PointCloud& cloud);
 
 /// The column of this name, or nullptr.

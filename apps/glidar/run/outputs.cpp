@@ -88,7 +88,7 @@ void plan_legacy(const std::string& name, const SidecarContext& context, const R
     const std::filesystem::path path = name + suffix;
     outputs.push_back({.path = path,
                        .columns = columns_of(format_for(path), {"xyz", "intensity"}),
-                       .cloud_frame = "legacy",
+                       .frame_name = "legacy",
                        .sink = make_file_sink(path, options, context, report)});
   }
 }
@@ -100,7 +100,7 @@ Output plan_output(const std::string& path, const OutputFlags& flags,
   const FileFormat& format = format_of(flags, path);
   Output output{.path = path == kStandardOutput ? std::filesystem::path(path) : output_path(path),
                 .columns = columns_of(format, requested_columns(flags)),
-                .cloud_frame = flags.frame,
+                .frame_name = flags.frame,
                 .deskew = flags.deskew,
                 .sink = nullptr};
   if (path == kStandardOutput) {
@@ -234,10 +234,10 @@ void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const
   for (const Output& output : outputs) {
     if (report.progress) report.progress("writing " + output.path.string(), -1.0);
     const bool is_same_cloud = previous != nullptr && previous->columns == output.columns &&
-                               previous->cloud_frame == output.cloud_frame &&
+                               previous->frame_name == output.frame_name &&
                                previous->deskew == output.deskew;
     if (!is_same_cloud) {
-      OutputFrame axes = output_frame(output.cloud_frame, beams, frame.world_from_sensor);
+      OutputFrame axes = output_frame(output.frame_name, beams, frame.world_from_sensor);
       axes.deskew = output.deskew;
       make_point_cloud(frame, beams, scene, axes, output.columns, cloud);
       previous = &output;

@@ -27,8 +27,8 @@ OutputFlags labelled(const OutputFlags& flags, const std::string& label);
 struct Output {
   std::filesystem::path path;
   std::vector<std::string> columns;
-  std::string cloud_frame;  ///< optical, ros, gl, world or legacy
-  bool deskew = false;      ///< points as fired from where the sensor was
+  std::string frame_name;  ///< optical, ros, gl, world or legacy
+  bool deskew = false;     ///< points as fired from where the sensor was
   std::unique_ptr<FileSink> sink;
 };
 
