@@ -106,13 +106,6 @@ constexpr NumberRule kSmallAngle = {0.0, 5.0, false, "degrees from 0 to 5"};
 
 }  // namespace
 
-double encoder_error_rad(const EncoderError& model, double azimuth_rad) {
-  const double rounding = model.step_rad > 0.0
-                              ? rounding_error(model.step_rad, 1.0 / model.step_rad, azimuth_rad)
-                              : 0.0;
-  return rounding + eccentricity_error(model, azimuth_rad);
-}
-
 void perturb(const PointingJitter& step, const RngKey& key, std::size_t first, std::size_t count,
              Beams& beams) {
   const Eigen::Vector3d up = axes_of(beams).up;

@@ -37,9 +37,6 @@ struct EncoderError {
   double turn_sigma_rad = 0.0;
 };
 
-/// Error of the reported azimuth without the random error of the frame.
-double encoder_error_rad(const EncoderError& model, double azimuth_rad);
-
 /// Keys in sensor files.
 void describe(PointingJitter& step, FieldVisitor& visitor);
 void describe(EncoderError& step, FieldVisitor& visitor);
