@@ -183,7 +183,7 @@ class View:
         away = self.clouds["exact"]
         self.cosines = (self.normals * away).sum(axis=1) / np.linalg.norm(away, axis=1)
         self.world_from_middle = displaced(np.zeros(3), target.middle)
-        information = frame.information(reference=np.linalg.inv(self.pose) @ self.world_from_middle)
+        information = frame.fisher_information(reference=np.linalg.inv(self.pose) @ self.world_from_middle)
         self.fisher = information.matrix
         self.bound_m = np.sqrt(np.trace(target.spread @ np.linalg.inv(self.fisher)))
         rows = self.plane_rows()

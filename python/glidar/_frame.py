@@ -376,7 +376,7 @@ class Frame(Immutable):
             raise Error("index", f"{index}", "", "the frame has no hits")
         return int(entries[whole(index, "index", len(entries) - 1)])
 
-    def information(
+    def fisher_information(
         self, *, sigma_m: float = 0.01, reference: npt.ArrayLike | None = None, instance: int | None = None
     ) -> FisherInformation:
         """Fisher information of the frame about the sensor's pose, and the bounds of any estimate. Requires
@@ -394,7 +394,7 @@ class Frame(Immutable):
         sigma = float(floats(sigma_m, "sigma_m", ()))
         objects = len(self._core.world_from_objects)
         only = None if instance is None else whole(instance, "instance", objects - 1)
-        return FisherInformation(_core.information(self._core, sigma, pose, only))
+        return FisherInformation(_core.fisher_information(self._core, sigma, pose, only))
 
     def __repr__(self) -> str:
         return f"<glidar.Frame {self.number} of {self.rows} x {self.cols} beams, {self.hits} hits, seed {self.seed}>"

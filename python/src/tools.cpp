@@ -110,10 +110,10 @@ void bind_information(nb::module_& module) {
       .def("json", information_json)
       .def("save", write_information, nb::arg("path"),
            nb::sig("def save(self, path: str) -> None"));
-  module.def("information", information, nb::arg("frame"), nb::arg("sigma_m"),
+  module.def("fisher_information", information, nb::arg("frame"), nb::arg("sigma_m"),
              nb::arg("sensor_from_reference"), nb::arg("instance").none());
   module.def(
-      "information_state", state_of, nb::arg("information"),
+      "information_state", state_of, nb::arg("fisher_information"),
       nb::sig("def information_state(information: FisherInformation) -> dict[str, typing.Any]"));
   module.def("restore_information", restore_information, nb::arg("state"),
              nb::sig("def restore_information(state: dict[str, typing.Any]) -> FisherInformation"));

@@ -228,7 +228,7 @@ class Motion(CliTest):
                             "--up-vector", "0,1,0", "--fisher", "-o", "view.pcd").stdout
         self.assertIn("sigma of ranges assumed: 0.01 m", told)
         self.assertIn("DEGENERATE   translation along x", told)
-        with open(os.path.join(self.folder, "view.information.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "view.fisher.json"), encoding="utf-8") as file:
             information = json.load(file)
         self.assertEqual(sum(d["degenerate"] for d in information["directions"]), 3)
         self.assertIn("give --fisher too", self.refused(

@@ -58,8 +58,8 @@ class Folders(CliTest):
     def test_every_frame_of_a_folder_has_its_own_information(self):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--duration", "0.2",
                      "--fisher", "-o", "out.kitti/")  # fmt: skip
-        found = sorted(name for name in os.listdir(self.folder) if name.endswith(".information.json"))
-        self.assertEqual(found, ["out_000000.information.json", "out_000001.information.json"])
+        found = sorted(name for name in os.listdir(self.folder) if name.endswith(".fisher.json"))
+        self.assertEqual(found, ["out_000000.fisher.json", "out_000001.fisher.json"])
         self.assertEqual(len(os.listdir(os.path.join(self.folder, "out.kitti", "velodyne"))), 2)
 
 

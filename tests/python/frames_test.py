@@ -162,9 +162,9 @@ def test_explain_rejects_entries_out_of_range(frame):
 def test_fisher_information_of_a_plane_has_three_degenerate_directions():
     plane = glidar.Scene("builtin:plane")
     frame = glidar.simulate(plane, glidar.camera(32, 32), glidar.look_at([0, 0, 2], [0, 0, 0], [0, 1, 0]), columns="all")
-    information = frame.information(sigma_m=0.02)
+    information = frame.fisher_information(sigma_m=0.02)
     with pytest.raises(glidar.Error, match="instance: 99"):
-        frame.information(instance=99)
+        frame.fisher_information(instance=99)
     assert information.matrix.shape == (6, 6)
     assert np.allclose(information.matrix, information.matrix.T)
     assert [d.degenerate for d in information.directions] == [False] * 3 + [True] * 3

@@ -182,7 +182,7 @@ def test_a_frame_survives_pickling_with_all_its_functions(built, noisy, tmp_path
     assert back.ground_truth.normal.tobytes() == frame.ground_truth.normal.tobytes()
     assert back.cloud("all", frame="world") == frame.cloud("all", frame="world")
     assert str(back.explain(100)) == str(frame.explain(100))
-    assert np.array_equal(back.information().matrix, frame.information().matrix)
+    assert np.array_equal(back.fisher_information().matrix, frame.fisher_information().matrix)
     for one, name in ((frame, "one.npz"), (back, "two.npz")):
         one.save(tmp_path / name, columns="all", sidecar=False)
     assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
@@ -314,14 +314,14 @@ def test_small_types_survive_pickling(built, camera):
     with pytest.raises(TypeError):
         hash(mesh)
     assert np.array_equal(again(frame.ground_truth).range_m, frame.ground_truth.range_m, equal_nan=True)
-    for value in (frame.explain(5), frame.information()):
+    for value in (frame.explain(5), frame.fisher_information()):
         for back in (again(value), copy.copy(value), copy.deepcopy(value)):
             assert back == value
             assert hash(back) == hash(value)
             assert str(back) == str(value)
     assert frame.explain(5) != frame.explain(6)
-    assert frame.information() != frame.information(sigma_m=0.02)
-    assert again(frame.information()).to_dict() == frame.information().to_dict()
+    assert frame.fisher_information() != frame.fisher_information(sigma_m=0.02)
+    assert again(frame.fisher_information()).to_dict() == frame.fisher_information().to_dict()
     assert again(glidar.Status.hit) is glidar.Status.hit
     first = built["first"]
     assert first == built["first"]

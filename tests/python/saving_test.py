@@ -72,9 +72,9 @@ def test_file_of_a_preset_is_byte_identical_to_that_of_the_command_line(tmp_path
 
 def test_fisher_information_is_byte_identical_to_that_of_the_command_line(scene_file, tmp_path, program):
     program("render", scene_file, "--fisher", "-o", tmp_path / "a.pcd")
-    information = glidar.simulate(glidar.Scene(scene_file)).information()
+    information = glidar.simulate(glidar.Scene(scene_file)).fisher_information()
     information.save(tmp_path / "ours.json")
-    assert (tmp_path / "ours.json").read_bytes() == (tmp_path / "a.information.json").read_bytes()
+    assert (tmp_path / "ours.json").read_bytes() == (tmp_path / "a.fisher.json").read_bytes()
 
 
 def test_trace_text_is_identical_to_that_of_the_command_line(scene_file, tmp_path, program):

@@ -24,7 +24,7 @@ frames: list[glidar.Frame] = glidar.simulate_batch(scene, sensor, np.stack([np.e
 spin = glidar.Trajectory.spin(np.eye(4), [0, 0, 1])
 frames.append(glidar.simulate(scene, "VLP-16", spin, objects=[np.eye(4)]))
 xyz = frame.cloud(["xyz"], frame="world", hits_only=True)["xyz"]
-print(xyz.shape, frame.information().bound, frame.explain(0).steps, nearest)
+print(xyz.shape, frame.fisher_information().bound, frame.explain(0).steps, nearest)
 try:
     glidar.load_sensor("none")
 except glidar.Error as error:

@@ -16,7 +16,7 @@ namespace {
 
 void add_fisher_options(CLI::App& command, FisherFlags& flags) {
   const OptionGroup group(command, "Fisher information");
-  group.add_flag("--fisher", "Cramer-Rao bounds of the sensor's pose, to NAME.information.json",
+  group.add_flag("--fisher", "Cramer-Rao bounds of the sensor's pose, to NAME.fisher.json",
                  flags.is_requested);
   group.add("--range-sigma", "M", "Sigma of ranges if the sensor has no noise, m [0.01]",
             flags.sigma_m, number(kAboveZero, kFinite, "a finite number above 0"));

@@ -22,7 +22,7 @@ std::filesystem::path fisher_path(const std::filesystem::path& output,
   const FileFormat& format = format_for(output);
   const bool is_numbered = frame && format.is_folder;  // the names of other formats have the number
   return name.substr(0, name.size() - format.suffix.size()) +
-         (is_numbered ? fmt::format("_{:06}", *frame) : "") + ".information.json";
+         (is_numbered ? fmt::format("_{:06}", *frame) : "") + ".fisher.json";
 }
 
 void write_fisher(const FisherFlags& flags, const Frame& frame, const Beams& beams,

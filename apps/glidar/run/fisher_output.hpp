@@ -15,8 +15,8 @@ namespace glidar::app {
 /// Throws Error when --fisher is given without an output file beside which its file is written.
 void check_fisher(const RenderFlags& flags);
 
-/// NAME.information.json beside an output NAME.SUFFIX. If a sequence is one folder NAME.SUFFIX,
-/// each frame has a file NAME_NNNNNN.information.json, as the frames of other formats have.
+/// NAME.fisher.json beside an output NAME.SUFFIX. If a sequence is one folder NAME.SUFFIX,
+/// each frame has a file NAME_NNNNNN.fisher.json, as the frames of other formats have.
 std::filesystem::path fisher_path(const std::filesystem::path& output,
                                   std::optional<std::uint32_t> frame = {});
 

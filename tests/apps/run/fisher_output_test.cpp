@@ -9,14 +9,14 @@ namespace glidar::app {
 namespace {
 
 TEST(FisherOptions, FileIsBesideTheOutput) {
-  EXPECT_EQ(fisher_path("x/cloud.v2.pcd"), "x/cloud.v2.information.json");
-  EXPECT_EQ(fisher_path("view.depth.png"), "view.information.json");
+  EXPECT_EQ(fisher_path("x/cloud.v2.pcd"), "x/cloud.v2.fisher.json");
+  EXPECT_EQ(fisher_path("view.depth.png"), "view.fisher.json");
 }
 
 TEST(FisherOptions, EveryFrameHasAFileAlsoInASharedFolder) {
-  EXPECT_EQ(fisher_path("x/out.kitti"), "x/out.information.json");
-  EXPECT_EQ(fisher_path("x/out.kitti", 3), "x/out_000003.information.json");
-  EXPECT_EQ(fisher_path("x/cloud_000003.pcd", 3), "x/cloud_000003.information.json");
+  EXPECT_EQ(fisher_path("x/out.kitti"), "x/out.fisher.json");
+  EXPECT_EQ(fisher_path("x/out.kitti", 3), "x/out_000003.fisher.json");
+  EXPECT_EQ(fisher_path("x/cloud_000003.pcd", 3), "x/cloud_000003.fisher.json");
 }
 
 TEST(FisherOptions, NeedAnOutputFile) {

@@ -41,7 +41,7 @@ TEST(InformationFile, TableListsBoundsAndDegenerateDirections) {
 
 TEST(InformationFile, JsonHoldsTheMatricesAndNullForInfinity) {
   const TestFolder folder;
-  const auto path = folder.path() / "wall.information.json";
+  const auto path = folder.path() / "wall.fisher.json";
   write_information(wall(), path);
   std::ifstream stream(path);
   const auto json = nlohmann::json::parse(stream);
