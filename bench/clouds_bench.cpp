@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Point clouds (x, y, z, intensity) per second, compared with the original GLIDAR's method.
 #include "many_views.hpp"
-#include "pipeline_2015.hpp"
 #include "ratio_reporter.hpp"
+#include "woods2016_pipeline.hpp"
 
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/simulate/simulator.hpp>
@@ -71,11 +71,11 @@ void register_model(const Model* model, std::uint32_t side, double goal,
     bool is_quantized;
   };
   const std::string at = model->name + " " + std::to_string(side) + " ";
-  add<Pipeline2015>(at + "2015", model, side);
+  add<Woods2016Pipeline>(at + "Woods 2016", model, side);
   for (const Ours& ours : {Ours{"rays", "rays", false}, Ours{"opengl", "opengl", false},
                            Ours{"opengl, quantized framebuffer", "rays", true}}) {
     add<Clouds>(at + ours.name, model, ours.kind, ours.is_quantized, side);
-    ratios.push_back({at + ours.name + " / 2015", at + "2015", at + ours.name, goal});
+    ratios.push_back({at + ours.name + " / Woods 2016", at + "Woods 2016", at + ours.name, goal});
   }
 }
 

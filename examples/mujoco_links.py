@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two clients of `glidar stream` for simulators: in lock-step, and by the protocol of 2015 (docs/link.md). Both start
+"""Two clients of `glidar stream` for simulators: in lock-step, and by the original GLIDAR protocol (docs/link.md). Both start
 GLIDAR and end it, and measure a sensor and an object that are placed as MuJoCo and most simulators place them."""
 
 import socket
@@ -119,10 +119,10 @@ def two_ports():
                 continue
 
 
-class Protocol2015(Glidar):
-    """Publishes a pose and takes its cloud, as simulators of 2015 do."""
+class Woods2016Protocol(Glidar):
+    """Publishes a pose and takes its cloud, as simulators for the original GLIDAR do."""
 
-    name = "2015"
+    name = "woods2016"
     AXES = np.diag([-1.0, -1.0, 1.0])  # x left, y up, z forward, from x right, y down, z forward
 
     def __init__(self, model, *arguments):

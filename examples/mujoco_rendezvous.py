@@ -5,7 +5,7 @@
 
 MuJoCo moves a tumbling satellite, on which no torque acts, and a chaser with a flash LiDAR. GLIDAR measures what the
 LiDAR sees, ICP (small_gicp) finds the satellite's pose in every cloud, and the chaser steers by that pose alone. All
-of it runs twice: in lock-step and by the protocol of 2015 (docs/link/mujoco.md).
+of it runs twice: in lock-step and by the original GLIDAR protocol (docs/link/mujoco.md).
 """
 
 import argparse
@@ -18,7 +18,7 @@ try:
     import mujoco
     import numpy as np
     import small_gicp
-    from mujoco_links import Body, Lockstep, Protocol2015, Trouble, rotation
+    from mujoco_links import Body, Lockstep, Woods2016Protocol, Trouble, rotation
 except ImportError as missing:
     sys.exit(f"{missing}; install what scripts/requirements.txt names: pip install -r scripts/requirements.txt")
 
@@ -205,7 +205,7 @@ def flags_of(arguments):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=60, help="of the simulation [60]")
     parser.add_argument("--sensor", action="append", help="as glidar sensors lists them, repeatable [flash-256]")
-    parser.add_argument("--protocol", choices=["lockstep", "2015", "both"], default="both", help="[both]")
+    parser.add_argument("--protocol", choices=["lockstep", "woods2016", "both"], default="both", help="[both]")
     parser.add_argument("--table", metavar="FILE", help="writes the errors of every frame as CSV")
     parser.add_argument("--picture", metavar="FILE", help="draws four frames and the errors, for example as PNG")
     flags = parser.parse_args(arguments)
@@ -218,7 +218,7 @@ def main(arguments=None):
     flags = flags_of(arguments)
     if flags.picture:
         from mujoco_picture import draw  # needs matplotlib
-    links = {"lockstep": [Lockstep], "2015": [Protocol2015], "both": [Lockstep, Protocol2015]}[flags.protocol]
+    links = {"lockstep": [Lockstep], "woods2016": [Woods2016Protocol], "both": [Lockstep, Woods2016Protocol]}[flags.protocol]
     runs, every = {}, max(round(flags.seconds / PERIOD_S) // 10, 1)
     for sensor in flags.sensor or ["flash-256"]:
         for link_type in links:

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Asks much of glidar stream for a long time, in lock-step and as in 2015 at once: steady and reconnecting clients, some
-that vanish or send nonsense, and a subscriber that never reads. Reports latencies, missed clouds and memory over time. With
+"""Tests glidar stream under load for a long time, in lock-step and with the original protocol at once: steady and
+reconnecting clients, some that vanish or send nonsense, and a subscriber that never reads. Reports latencies, missed clouds
+and memory over time. With
 --hostile also peers that send garbage, endless messages and floods, ask for too much, and hold connections.
 
 Exit code 1 unless memory is flat, every request was answered, and every reply was the first one's bytes again.
@@ -211,7 +212,7 @@ class Soak(HostileClients):
                     raise ValueError("nonsense was answered with a cloud")
                 self.findings.add(nonsense=1)
 
-    # subscribers of 2015
+    # subscribers of the original protocol
 
     def subscriber(self, **options):
         clouds = self.context.socket(zmq.SUB)

@@ -25,7 +25,7 @@ except ImportError as missing:
     sys.exit(77)
 
 import mujoco_rendezvous as example
-from mujoco_links import Body, Lockstep, Protocol2015, Trouble, rotation
+from mujoco_links import Body, Lockstep, Woods2016Protocol, Trouble, rotation
 from waiting import MAX_WAIT_S
 
 EXAMPLE = ROOT / "examples" / "mujoco_rendezvous.py"
@@ -37,7 +37,7 @@ LARGEST_MM, LARGEST_DEG = 6.0, 0.5
 # Of 0.1 m of noise on about 700 points, 4 mm are left of the range; of the attitude, whose worst axis has a lever of
 # half a metre, about a degree. ICP is no optimum: three times and more.
 NOISY_MM, NOISY_DEG = 80.0, 6.0
-# Lock-step sends float64, the protocol of 2015 float32, whose numbers below 64 m are 2^-18 m apart; 1 nm is for the poses'
+# Lock-step sends float64, the original GLIDAR protocol float32, whose numbers below 64 m are 2^-18 m apart; 1 nm is for the poses'
 # own rounding.
 FLOAT32_M = 2.0**-19 + 1e-9
 
@@ -55,7 +55,7 @@ class Loop(unittest.TestCase):
         return frames
 
     def test_both_protocols_give_the_pose_that_mujoco_has(self):
-        for link_type in (Lockstep, Protocol2015):
+        for link_type in (Lockstep, Woods2016Protocol):
             with self.subTest(link_type.name):
                 translation_mm, rotation_deg = worst(self.approach(link_type, "flash-256"))
                 self.assertLess(translation_mm, LARGEST_MM)
@@ -70,14 +70,14 @@ class Loop(unittest.TestCase):
     def test_both_protocols_give_the_same_clouds_for_the_same_poses(self):
         random = np.random.default_rng(7)
         with (Lockstep(example.SATELLITE, "--sensor", "flash-128") as lockstep,
-              Protocol2015(example.SATELLITE, "--sensor", "flash-128") as legacy):
+              Woods2016Protocol(example.SATELLITE, "--sensor", "flash-128") as woods2016):
             for number in range(8):
                 quaternions = random.normal(size=(2, 4))
                 quaternions /= np.linalg.norm(quaternions, axis=1)[:, None]
                 position = random.normal(size=3)
                 ahead = rotation(quaternions[0]) @ (0.3, -0.2, 40.0)
                 bodies = Body(position, quaternions[0]), Body(position + ahead, quaternions[1])
-                one, other = (link.measure(10**9 * number, *bodies) for link in (lockstep, legacy))
+                one, other = (link.measure(10**9 * number, *bodies) for link in (lockstep, woods2016))
                 self.assertGreater(len(one), 100)
                 np.testing.assert_allclose(other, one, rtol=0, atol=FLOAT32_M)
 
@@ -118,7 +118,7 @@ class Program(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             lines = table.read_text(encoding="utf-8").splitlines()
             self.assertEqual(len(lines), 1 + 2 * round(1 / example.PERIOD_S))
-            self.assertTrue(lines[-1].startswith("flash-256,2015,0.8,45."), lines[-1])
+            self.assertTrue(lines[-1].startswith("flash-256,woods2016,0.8,45."), lines[-1])
             self.assertEqual(picture.read_bytes()[:4], b"\x89PNG")
         self.assertEqual(done.stdout.count("median"), 2)
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The fuzzer's corpus of the Woods 2016 protocol, in every build.
 #include "support/corpus.hpp"
-#include "fuzz/legacy_decoders.hpp"
+#include "fuzz/woods2016_decoders.hpp"
 
 #include <gmock/gmock.h>
 
@@ -10,7 +10,8 @@ namespace glidar {
 namespace {
 
 TEST(Woods2016Corpus, AcceptsValidMessagesOnly) {
-  const auto [accepted, files] = testing::decode_corpus("legacy", testing::try_legacy_decoders);
+  const auto [accepted, files] =
+      testing::decode_corpus("woods2016", testing::try_woods2016_decoders);
   EXPECT_GT(files, 20U);
   EXPECT_THAT(accepted, ::testing::IsSupersetOf({"pose", "pose_turned", "cloud", "cloud_empty",
                                                  "shutdown_cloud", "shutdown_pose"}));

@@ -19,7 +19,7 @@ const Eigen::Vector3d& default_view_direction() {
   return kDirection;
 }
 
-bool legacy_pose_given(const PoseFlags& flags) {
+bool woods2016_pose_given(const PoseFlags& flags) {
   return flags.camera_z_m || flags.camera_q;
 }
 
@@ -78,9 +78,9 @@ Pose eye_pose(const PoseFlags& flags, const Scene& scene, bool is_lidar) {
   return is_lidar ? world_from_optical * optical_from_body() : world_from_optical;
 }
 
-Pose legacy_pose(const PoseFlags& flags) {
-  return legacy_world_from_optical(flags.camera_q.value_or(Eigen::Quaterniond::Identity()),
-                                   flags.camera_z_m.value_or(kLegacyDistance_m));
+Pose woods2016_pose(const PoseFlags& flags) {
+  return woods2016_world_from_optical(flags.camera_q.value_or(Eigen::Quaterniond::Identity()),
+                                      flags.camera_z_m.value_or(kLegacyDistance_m));
 }
 
 TimedPoses load_sensor_poses(const MotionFlags& flags) {
@@ -92,16 +92,16 @@ TimedPoses load_sensor_poses(const MotionFlags& flags) {
 
 }  // namespace
 
-Pose legacy_world_from_object(const Eigen::Quaterniond& model_q) {
+Pose woods2016_world_from_object(const Eigen::Quaterniond& model_q) {
   return make_pose(Eigen::Vector3d::Zero(), model_q.conjugate());
 }
 
-Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q, double distance_m) {
-  return legacy_world_from_optical(camera_q, Eigen::Vector3d(0.0, 0.0, distance_m));
+Pose woods2016_world_from_optical(const Eigen::Quaterniond& camera_q, double distance_m) {
+  return woods2016_world_from_optical(camera_q, Eigen::Vector3d(0.0, 0.0, distance_m));
 }
 
-Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q,
-                               const Eigen::Vector3d& translation_m) {
+Pose woods2016_world_from_optical(const Eigen::Quaterniond& camera_q,
+                                  const Eigen::Vector3d& translation_m) {
   return make_pose(-translation_m, camera_q.conjugate()) * woods2016_from_optical();
 }
 
@@ -124,16 +124,16 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
                  .allowed = "",
                  .remedy = "rotate it in the scene file"});
   }
-  instance.world_from_object = legacy_world_from_object(*flags.model_q);
+  instance.world_from_object = woods2016_world_from_object(*flags.model_q);
 }
 
 bool sensor_pose_given(const PoseFlags& flags) {
-  return flags.eye_m || flags.world_from_sensor || legacy_pose_given(flags);
+  return flags.eye_m || flags.world_from_sensor || woods2016_pose_given(flags);
 }
 
 Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const Beams& beams,
                  const Scene& scene) {
-  const bool is_complete = flags.world_from_sensor || legacy_pose_given(flags) ||
+  const bool is_complete = flags.world_from_sensor || woods2016_pose_given(flags) ||
                            (!flags.eye_m && from_scene_file.world_from_sensor);
   if (is_complete && flags.up) {
     throw Error({.where = "--up-vector",
@@ -145,7 +145,7 @@ Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const
   const Pose optical_from_sensor = is_lidar ? optical_from_body() : Pose::Identity();
   if (flags.eye_m) return eye_pose(flags, scene, is_lidar);
   if (flags.world_from_sensor) return *flags.world_from_sensor;
-  if (legacy_pose_given(flags)) return legacy_pose(flags) * optical_from_sensor;
+  if (woods2016_pose_given(flags)) return woods2016_pose(flags) * optical_from_sensor;
   if (from_scene_file.world_from_sensor) {
     return from_scene_file.looks_at ? *from_scene_file.world_from_sensor * optical_from_sensor
                                     : *from_scene_file.world_from_sensor;

@@ -26,11 +26,11 @@ struct ScenePose {
 ///   p_sensor   = R(q_camera) (p_inertial + (0, 0, D))      in the legacy sensor frame.
 /// The world frame here is that inertial frame; at q_camera = 1 its axes are x left, y up,
 /// z forward.
-Pose legacy_world_from_object(const Eigen::Quaterniond& model_q);
-Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q, double distance_m);
+Pose woods2016_world_from_object(const Eigen::Quaterniond& model_q);
+Pose woods2016_world_from_optical(const Eigen::Quaterniond& camera_q, double distance_m);
 /// The same for any translation instead of (0, 0, D).
-Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q,
-                               const Eigen::Vector3d& translation_m);
+Pose woods2016_world_from_optical(const Eigen::Quaterniond& camera_q,
+                                  const Eigen::Vector3d& translation_m);
 
 /// Applies --scale, --model-q and --model-r to the scene's instance; throws Error when one is given
 /// and the scene has several.

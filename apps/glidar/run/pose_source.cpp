@@ -82,9 +82,9 @@ void MotionSource::wait_until_due(std::size_t sensor_index) {
 RigMotion motion_of(const woods2016::Placement& placement, const MovedScene& scene) {
   RigMotion motion;
   motion.world_from_rig =
-      ConstantPose{legacy_world_from_optical(placement.sensor, placement.translation_m) *
+      ConstantPose{woods2016_world_from_optical(placement.sensor, placement.translation_m) *
                    scene.optical_from_rig};
-  const Pose world_from_object = legacy_world_from_object(placement.object);
+  const Pose world_from_object = woods2016_world_from_object(placement.object);
   for (const Pose& object_from_instance : scene.object_from_instance) {
     motion.world_from_instance.emplace_back(ConstantPose{world_from_object * object_from_instance});
   }

@@ -23,7 +23,7 @@ Scene one_object() {
 TEST(MotionOptions, ObjectRateRotatesTheModelAboutItsOwnAxes) {
   Scene scene = one_object();
   const Eigen::Quaterniond q = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
-  scene.instances[0].world_from_object = legacy_world_from_object(q);
+  scene.instances[0].world_from_object = woods2016_world_from_object(q);
   const auto moving =
       instance_trajectories({.object_rate_rad_s = Eigen::Vector3d(0.1, -0.2, 0.3)}, scene, {});
   ASSERT_EQ(moving.size(), 1U);
@@ -41,7 +41,7 @@ TEST(MotionOptions, ObjectRateRotatesTheModelAboutItsOwnAxes) {
 }
 
 TEST(MotionOptions, SensorRateRotatesTheSensorAboutLeftUpForward) {
-  const Pose start = legacy_world_from_optical(Eigen::Quaterniond::Identity(), 5.0);
+  const Pose start = woods2016_world_from_optical(Eigen::Quaterniond::Identity(), 5.0);
   const MotionFlags flags{.sensor_rate_rad_s = Eigen::Vector3d(std::numbers::pi / 2.0, 0.0, 0.0)};
   const Trajectory turning = sensor_trajectory(flags, start, Pose::Identity(), true, {});
   const Pose after = pose_at(turning, kSecond_ns);

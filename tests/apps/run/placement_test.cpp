@@ -36,7 +36,7 @@ Beams camera() {
 }
 
 /// A point of the object in the sensor frame of the original GLIDAR.
-Eigen::Vector3d legacy_point(const PoseFlags& flags, const Eigen::Vector3d& object_point) {
+Eigen::Vector3d woods2016_point(const PoseFlags& flags, const Eigen::Vector3d& object_point) {
   Scene scene = one_triangle();
   pose_model(flags, scene);
   const Pose world_from_sensor = pose_sensor(flags, {}, camera(), scene);
@@ -45,13 +45,13 @@ Eigen::Vector3d legacy_point(const PoseFlags& flags, const Eigen::Vector3d& obje
 }
 
 TEST(LegacyPose, IdentityPlacesTheObjectOnTheBoresightAtDistanceD) {
-  const Eigen::Vector3d p = legacy_point({.camera_z_m = 7.0}, {0.1, 0.2, 0.3});
+  const Eigen::Vector3d p = woods2016_point({.camera_z_m = 7.0}, {0.1, 0.2, 0.3});
   EXPECT_LT((p - Eigen::Vector3d(0.1, 0.2, 7.3)).norm(), kExact);
 }
 
 TEST(LegacyPose, CameraAttitudeAloneKeepsTheDefaultDistance) {
   const Eigen::Vector3d p =
-      legacy_point({.camera_q = Eigen::Quaterniond::Identity()}, {0.0, 0.0, 0.0});
+      woods2016_point({.camera_q = Eigen::Quaterniond::Identity()}, {0.0, 0.0, 0.0});
   EXPECT_LT((p - Eigen::Vector3d(0.0, 0.0, 1000.0)).norm(), kExact);
 }
 
@@ -59,7 +59,7 @@ TEST(LegacyPose, ModelQuaternionRotatesInertialVectorsIntoTheBody) {
   // 90 degrees about z: R(q) x = y, so that the body's y axis is along the inertial x
   const double h = std::sqrt(0.5);
   const PoseFlags flags{.model_q = Eigen::Quaterniond(h, 0.0, 0.0, h), .camera_z_m = 5.0};
-  const Eigen::Vector3d p = legacy_point(flags, {0.0, 1.0, 0.0});
+  const Eigen::Vector3d p = woods2016_point(flags, {0.0, 1.0, 0.0});
   EXPECT_LT((p - Eigen::Vector3d(1.0, 0.0, 5.0)).norm(), kExact);
 }
 
@@ -67,7 +67,7 @@ TEST(LegacyPose, SensorQuaternionRotatesInertialVectorsIntoTheSensor) {
   // R(q) z = x: the object, straight ahead of an identity sensor, appears on the sensor's x (left)
   const double h = std::sqrt(0.5);
   const PoseFlags flags{.camera_q = Eigen::Quaterniond(h, 0.0, h, 0.0), .camera_z_m = 5.0};
-  const Eigen::Vector3d p = legacy_point(flags, {0.0, 0.0, 0.0});
+  const Eigen::Vector3d p = woods2016_point(flags, {0.0, 0.0, 0.0});
   EXPECT_LT((p - Eigen::Vector3d(5.0, 0.0, 0.0)).norm(), kExact);
 }
 
@@ -78,7 +78,7 @@ TEST(LegacyPose, GeneralAttitudesFollowTheFormula) {
   const Eigen::Vector3d object_point(0.4, -0.6, 1.1);
   const Eigen::Vector3d expected =
       camera_q * (model_q.conjugate() * object_point + Eigen::Vector3d(0.0, 0.0, 12.0));
-  EXPECT_LT((legacy_point(flags, object_point) - expected).norm(), kExact);
+  EXPECT_LT((woods2016_point(flags, object_point) - expected).norm(), kExact);
 }
 
 TEST(LegacyPose, LegacyFrameIsTheOpticalFrameRotatedAboutTheBoresight) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline_2015.hpp"
+#include "woods2016_pipeline.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,19 +46,19 @@ Eigen::Vector3f KdTree::nearest(const Eigen::Vector3f& to) const {
   return points_[best.point];
 }
 
-Pipeline2015::Pipeline2015(const Model* model, std::uint32_t side)
+Woods2016Pipeline::Woods2016Pipeline(const Model* model, std::uint32_t side)
     : model_(*model),
       side_(side),
       picture_(*model, kRawFramebuffer, side),
       tree_(model->scene.meshes[0].positions_m) {}
 
-void Pipeline2015::measure() {
+void Woods2016Pipeline::measure() {
   set_planes();
   picture_.draw_and_read();
   unproject();
 }
 
-void Pipeline2015::set_planes() {
+void Woods2016Pipeline::set_planes() {
   const Eigen::Vector3f eye = model_.world_from_sensor.translation().cast<float>();
   const Eigen::Vector3f middle = bounds(model_.scene).center().cast<float>();
   const Eigen::Vector3f ahead = model_.world_from_sensor.linear().col(2).cast<float>();
@@ -69,7 +69,7 @@ void Pipeline2015::set_planes() {
   picture_.set_planes(near_m_, far_m_);
 }
 
-void Pipeline2015::unproject() {
+void Woods2016Pipeline::unproject() {
   const std::vector<std::uint32_t>& pixels = picture_.pixels();
   const float metres_per_step = (far_m_ - near_m_) / 65536.0F;
   const float slope =

@@ -7,9 +7,9 @@
 
 namespace glidar::testing {
 
-/// Gives the bytes to every decoder of the protocol of 2015 and checks what it promises of a
-/// message it takes: that it writes the same bytes again, and holds nothing but numbers. Returns
+/// Gives the bytes to every decoder of the original GLIDAR protocol and checks what it promises of
+/// a message it takes: that it writes the same bytes again, and holds nothing but numbers. Returns
 /// whether any took it; aborts when a promise is broken.
-bool try_legacy_decoders(std::span<const std::byte> bytes);
+bool try_woods2016_decoders(std::span<const std::byte> bytes);
 
 }  // namespace glidar::testing

@@ -34,9 +34,9 @@ class KdTree {
 /// and the farthest vertex, found in a tree every frame; intensity and two bytes of depth drawn
 /// into RGBA, read back at once; every pixel unprojected, the background removed. Its errors that
 /// do not affect speed are not reproduced.
-class Pipeline2015 {
+class Woods2016Pipeline {
  public:
-  Pipeline2015(const Model* model, std::uint32_t side);
+  Woods2016Pipeline(const Model* model, std::uint32_t side);
 
   /// One point cloud.
   void measure();

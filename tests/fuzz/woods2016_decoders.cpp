@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "legacy_decoders.hpp"
+#include "woods2016_decoders.hpp"
 
 #include <glidar/core/error.hpp>
 #include <glidar/woods2016/message_codec.hpp>
@@ -49,7 +49,7 @@ bool try_cloud(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-bool try_legacy_decoders(std::span<const std::byte> bytes) {
+bool try_woods2016_decoders(std::span<const std::byte> bytes) {
   const bool is_placement = try_placement(bytes);
   const bool is_cloud = try_cloud(bytes);
   const bool is_shutdown = woods2016::is_shutdown(bytes);
