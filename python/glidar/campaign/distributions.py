@@ -25,44 +25,44 @@ class Constant:
 
 @dataclass(frozen=True)
 class Uniform:
-    least: float
-    most: float
+    min: float
+    max: float
     dims = 1
     cells = 1
 
     def sample(self, u, cell):
-        return self.least + (self.most - self.least) * u[:, 0]
+        return self.min + (self.max - self.min) * u[:, 0]
 
 
 @dataclass(frozen=True)
 class LogUniform:
-    least: float
-    most: float
+    min: float
+    max: float
     dims = 1
     cells = 1
 
     def sample(self, u, cell):
-        return self.least * (self.most / self.least) ** u[:, 0]
+        return self.min * (self.max / self.min) ** u[:, 0]
 
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution, truncated to [least, most]: its inverse between the probabilities of the bounds."""
+    """A normal distribution, truncated to [min, max]: its inverse between the probabilities of the bounds."""
 
     mean: float
     sigma: float
-    least: float
-    most: float
+    min: float
+    max: float
     dims = 1
     cells = 1
 
     def sample(self, u, cell):
         from scipy.special import ndtr, ndtri  # imported here because it loads slowly
         # Probabilities near 1 have low resolution: above the mean, sample the mirrored lower tail.
-        sigma = -self.sigma if self.least > self.mean else self.sigma
-        begin, end = (ndtr((x - self.mean) / sigma) for x in (self.least, self.most))
+        sigma = -self.sigma if self.min > self.mean else self.sigma
+        begin, end = (ndtr((x - self.mean) / sigma) for x in (self.min, self.max))
         sample = self.mean + sigma * ndtri(begin + (end - begin) * u[:, 0])
-        return np.clip(sample, self.least, self.most)
+        return np.clip(sample, self.min, self.max)
 
 
 @dataclass(frozen=True)
@@ -104,17 +104,17 @@ KINDS = ["uniform", "log_uniform", "normal", "choice", "grid"]
 
 
 def _normal(field, rule):
-    found = yf.require_keys(field, ["mean", "sigma", "least", "most"])
+    found = yf.require_keys(field, ["mean", "sigma", "min", "max"])
     mean = yf.number(yf.need(field, found, "mean"))
     sigma = yf.number(yf.need(field, found, "sigma"), yf.ABOVE_ZERO)
-    least = yf.optional(found, "least", lambda f: yf.number(f, rule), rule.least)
-    most = yf.optional(found, "most", lambda f: yf.number(f, rule), rule.most)
-    if not least < most:
-        yf.reject(field, f"least {least:g}, most {most:g}", "least below most")
-    if least > mean + 8 * sigma or most < mean - 8 * sigma:
-        yf.reject(field, f"[{least:g}, {most:g}] is more than 8 sigma from the mean {mean:g}",
+    low = yf.optional(found, "min", lambda f: yf.number(f, rule), rule.min)
+    high = yf.optional(found, "max", lambda f: yf.number(f, rule), rule.max)
+    if not low < high:
+        yf.reject(field, f"min {low:g}, max {high:g}", "min below max")
+    if low > mean + 8 * sigma or high < mean - 8 * sigma:
+        yf.reject(field, f"[{low:g}, {high:g}] is more than 8 sigma from the mean {mean:g}",
                   "bounds that the distribution reaches")
-    return Normal(mean, sigma, least, most)
+    return Normal(mean, sigma, low, high)
 
 
 def read_choice(field, read):
@@ -151,7 +151,7 @@ def read_distribution(field, rule=yf.ANY):
     if kind == "uniform":
         return Uniform(*yf.span(value, rule))
     if kind == "log_uniform":
-        positive = yf.Rule(max(rule.least, 0.0), rule.most, True, "a number above 0")
+        positive = yf.Rule(max(rule.min, 0.0), rule.max, True, "a number above 0")
         return LogUniform(*yf.span(value, positive))
     if kind == "normal":
         return _normal(value, rule)

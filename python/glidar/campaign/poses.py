@@ -31,14 +31,14 @@ class Point:
 
 @dataclass(frozen=True)
 class Box:
-    least: tuple
-    most: tuple
+    min: tuple
+    max: tuple
     dims = 3
     cells = 1
 
     def sample(self, u, cell):
-        least, most = np.array(self.least), np.array(self.most)
-        return least + (most - least) * u
+        low, high = np.array(self.min), np.array(self.max)
+        return low + (high - low) * u
 
 
 @dataclass(frozen=True)
@@ -48,14 +48,14 @@ class Shell:
     centre: tuple
     axis: tuple
     half_angle_rad: float
-    least_m: float
-    most_m: float
+    min_radius_m: float
+    max_radius_m: float
     dims = 3
     cells = 1
 
     def sample(self, u, cell):
         # The volume grows with the cube of the radius, a cap with 1 - cos of its angle.
-        cube = self.least_m**3 + (self.most_m**3 - self.least_m**3) * u[:, 2]
+        cube = self.min_radius_m**3 + (self.max_radius_m**3 - self.min_radius_m**3) * u[:, 2]
         directions = rotations.directions_in_cone(self.axis, self.half_angle_rad, u[:, :2])
         return np.array(self.centre) + np.cbrt(cube)[:, None] * directions
 
@@ -64,8 +64,8 @@ class Shell:
 class BoxGrid:
     """Points of a grid; x varies fastest."""
 
-    least: tuple
-    most: tuple
+    min: tuple
+    max: tuple
     counts: tuple
     dims = 0
 
@@ -76,8 +76,8 @@ class BoxGrid:
     def sample(self, u, cell):
         cell = np.asarray(cell, np.int64)
         columns = []
-        for least, most, count in zip(self.least, self.most, self.counts):
-            columns.append(np.linspace(least, most, count)[cell % count])
+        for low, high, count in zip(self.min, self.max, self.counts):
+            columns.append(np.linspace(low, high, count)[cell % count])
             cell = cell // count
         return np.stack(columns, axis=1)
 
@@ -214,18 +214,18 @@ def _shell(field, with_axis):
 
 
 def _box(field):
-    found = yf.require_keys(field, ["least", "most"])
-    least, most = (yf.numbers(yf.need(field, found, key), 3) for key in ("least", "most"))
-    if any(a > b for a, b in zip(least, most)):
-        yf.reject(field, f"least {least}, most {most}", "least not above most on any axis")
-    return Box(tuple(least), tuple(most))
+    found = yf.require_keys(field, ["min", "max"])
+    low, high = (yf.numbers(yf.need(field, found, key), 3) for key in ("min", "max"))
+    if any(a > b for a, b in zip(low, high)):
+        yf.reject(field, f"min {low}, max {high}", "min not above max on any axis")
+    return Box(tuple(low), tuple(high))
 
 
 def _box_grid(field):
-    found = yf.require_keys(field, ["least", "most", "counts"])
-    least, most = (yf.numbers(yf.need(field, found, key), 3) for key in ("least", "most"))
+    found = yf.require_keys(field, ["min", "max", "counts"])
+    low, high = (yf.numbers(yf.need(field, found, key), 3) for key in ("min", "max"))
     counts = [yf.whole(item, 1, 1 << 16) for item in yf.items(yf.need(field, found, "counts"), 3, 3)]
-    return BoxGrid(tuple(least), tuple(most), tuple(counts))
+    return BoxGrid(tuple(low), tuple(high), tuple(counts))
 
 
 def _sphere_grid(field):

@@ -33,8 +33,8 @@ class Field:
 class Rule:
     """The allowed range of a number, with its description for errors."""
 
-    least: float = -1.0e15
-    most: float = 1.0e15
+    min: float = -1.0e15
+    max: float = 1.0e15
     without_ends: bool = False
     allowed: str = "a number from -1e15 to 1e15"
 
@@ -137,7 +137,7 @@ def _require_text(file, node):
         reject(Field(file, "", node), "a string with a zero byte or an unpaired surrogate", "text in UTF-8")
 
 
-def _require_few_nodes(field, most):
+def _require_few_nodes(field, max_nodes):
     """Raises Error when expanded aliases make a small file large or infinite."""
     sizes = {}  # by identity; 0: of a node that contains this one
     stack = [field.node]
@@ -156,8 +156,8 @@ def _require_few_nodes(field, most):
             stack += inner
         else:
             sizes[id(node)] = 1 + sum(sizes[id(child)] for child in _children(node))
-            if sizes[id(node)] > most:
-                reject(Field(field.file, "", node), f"more than {most} values with its aliases expanded",
+            if sizes[id(node)] > max_nodes:
+                reject(Field(field.file, "", node), f"more than {max_nodes} values with its aliases expanded",
                        f"{MAX_NODES} values, and {NODES_PER_BYTE} more for each byte of the file",
                        "use fewer aliases, or smaller ones")
 
@@ -202,13 +202,13 @@ def need(field, found, key):
     return found[key]
 
 
-def items(field, least=1, most=1 << 20):
+def items(field, min_count=1, max_count=1 << 20):
     """All elements of a list."""
     if not isinstance(field.node, yaml.SequenceNode):
         reject(field, describe(field), "a list")
-    if not least <= len(field.node.value) <= most:
-        reject(field, describe(field), f"a list of {least} to {most}" if least < most
-               else f"a list of {least}")
+    if not min_count <= len(field.node.value) <= max_count:
+        reject(field, describe(field), f"a list of {min_count} to {max_count}" if min_count < max_count
+               else f"a list of {min_count}")
     return [Field(field.file, f"{field.path}[{i}]", node) for i, node in enumerate(field.node.value)]
 
 
@@ -216,17 +216,17 @@ def number(field, rule=ANY):
     if not is_number(field.node):
         reject(field, describe(field), rule.allowed)
     value = float(field.node.value)
-    inside = rule.least < value < rule.most if rule.without_ends else rule.least <= value <= rule.most
+    inside = rule.min < value < rule.max if rule.without_ends else rule.min <= value <= rule.max
     if not (math.isfinite(value) and inside):
         reject(field, describe(field), rule.allowed)
     return value
 
 
-def whole(field, least, most):
+def whole(field, low, high):
     text = field.node.value if is_number(field.node) else ""
     digits = re.fullmatch(r"\+?0*(\d{1,20})", text)  # more are too large, and too many for int()
-    if not digits or not least <= int(digits[1]) <= most:
-        reject(field, describe(field), f"a whole number from {least} to {most}")
+    if not digits or not low <= int(digits[1]) <= high:
+        reject(field, describe(field), f"a whole number from {low} to {high}")
     return int(digits[1])
 
 
@@ -256,11 +256,11 @@ def numbers(field, count, rule=ANY):
 
 
 def span(field, rule=ANY):
-    """A pair [least, most] with least < most."""
-    least, most = numbers(field, 2, rule)
-    if not least < most:
-        reject(field, f"[{least:g}, {most:g}]", "two numbers, the second above the first")
-    return least, most
+    """A pair [min, max] with min < max."""
+    low, high = numbers(field, 2, rule)
+    if not low < high:
+        reject(field, f"[{low:g}, {high:g}]", "two numbers, the second above the first")
+    return low, high
 
 
 def direction(field):

@@ -249,7 +249,7 @@ def bop_campaign(campaign, text):
 def test_trials_with_too_large_depths_fail_alone(campaign):
     # From 3, 26.5 and 50 m along +x, where 16 bits hold 32.8 m.
     deep = CAMPAIGN.replace("{cone: {axis: [1, 0, 0], half_angle_deg: 25, radius_m: [3, 4]}}",
-                            "{grid: {least: [3, 0, 0], most: [50, 0, 0], counts: [3, 1, 1]}}")
+                            "{grid: {min: [3, 0, 0], max: [50, 0, 0], counts: [3, 1, 1]}}")
     deep = deep.replace("0.25", "0.5").replace("outputs: {", "outputs: {npz: true, ply: true, ")
     out = bop_campaign(campaign, deep)
     assert "6 trials, 2 failed" in campaign.run("out", code=1)

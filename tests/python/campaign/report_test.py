@@ -73,7 +73,7 @@ def test_a_report_is_one_file_with_failures_views_and_coverage(campaign):
 
 def test_trials_without_a_look_at_direction_fail_and_are_counted_in_the_charts(campaign):
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
-        "{shell: {radius_m: [3, 5]}}", "{grid: {least: [-4, 0, 0], most: [4, 0, 0], counts: [5, 1, 1]}}"))
+        "{shell: {radius_m: [3, 5]}}", "{grid: {min: [-4, 0, 0], max: [4, 0, 0], counts: [5, 1, 1]}}"))
     campaign.environment["PYTHONWARNINGS"] = "error"
     campaign.run("out", "--workers", "1", code=1)
     index = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()

@@ -39,13 +39,13 @@ shard_trials: 7
 scene: {choice: [a.yaml, b.yaml], weights: [1, 3]}
 sensor: {grid: [VLP-16, camera.yaml]}
 pose:
-  position: {grid: {least: [0, 0, 1], most: [1, 1, 1], counts: [2, 3, 1]}}
+  position: {grid: {min: [0, 0, 1], max: [1, 1, 1], counts: [2, 3, 1]}}
   orientation: uniform
 vary:
   sensor.noise[0].sigma_m: {log_uniform: [1e-3, 1e-1]}
-  sensor.limits.far_m: {normal: {mean: 10, sigma: 1, least: 9, most: 12}}
+  sensor.limits.far_m: {normal: {mean: 10, sigma: 1, min: 9, max: 12}}
   scene.models[rock].scale: {grid: {from: 1, to: 2, count: 5}}
-  scene.models[0].pose: {position: {box: {least: [0, 0, 0], most: [1, 1, 1]}}, orientation: uniform}
+  scene.models[0].pose: {position: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, orientation: uniform}
 outputs:
   npz: {columns: [range, xyz], real: f64, compress: true}
   pcd: {columns: [xyz], every: 4}
@@ -90,7 +90,7 @@ outputs:
     ("trials: 10", "trials: 10\nvary:\n  noise[0]: 1", ["'noise[0]'", "sensor.noise[0].sigma_m"]),
     ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {log_uniform: [0, 1]}}", ["above 0"]),
     ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 0}}}", ["above 0"]),
-    ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 1, least: 9}}}",
+    ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 1, min: 9}}}",
      ["more than 8 sigma"]),
     ("trials: 10", "trials: 10\noutputs: {}", ["no output is selected"]),
     ("trials: 10", "trials: 10\noutputs: {bop: {images: [rgb]}}", ["'rgb'", "depth, gray"]),
