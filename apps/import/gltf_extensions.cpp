@@ -7,6 +7,7 @@
 #include <import/gltf_file.hpp>
 #include <import/scene_walk.hpp>
 
+#include <glidar/core/text.hpp>
 #include <glidar/io/model/texture_search.hpp>
 
 #include <nlohmann/json.hpp>
@@ -27,9 +28,7 @@ constexpr const char* kKtxExtension = "KHR_texture_basisu";
 constexpr const char* kDecodedName = ".glidar-decoded-draco";  // name of a virtual file
 
 bool is_gltf(const std::filesystem::path& model, FileContent& file) {
-  std::string extension = model.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(model.extension().string());
   return extension == ".gltf" || extension == ".glb" || file.head(4) == "glTF";
 }
 

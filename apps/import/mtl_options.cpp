@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/text.hpp>
+
 #include <import/mtl_options.hpp>
 
 #include <assimp/material.h>
@@ -14,12 +16,6 @@
 
 namespace glidar::import {
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool is_space(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
@@ -151,14 +147,14 @@ void MtlOptions::refine(const std::string& material, unsigned type,
 MtlOptions read_mtl_options(ModelFiles& files) {
   MtlOptions options;
   for (const std::string& path : files.paths()) {
-    if (!lower(path).ends_with(".mtl")) continue;
+    if (!lower_case(path).ends_with(".mtl")) continue;
     const auto content = files.content(path);
     if (content == nullptr) continue;
     std::istringstream file{std::string(content->whole())};
     std::string material;
     for (std::string line; std::getline(file, line);) {
       std::string_view text = line;
-      const std::string keyword = lower(next_word(text));
+      const std::string keyword = lower_case(next_word(text));
       if (keyword == "newmtl") material = trimmed(text);
       if (!names_map(keyword)) continue;
       MtlTexture texture;

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/outputs.hpp>
+#include <glidar/core/elapsed_time.hpp>
 #include <glidar/explain/trace_text.hpp>
 #include <glidar/simulate/explain.hpp>
 
@@ -236,8 +237,7 @@ void MeasurementThread::measure_now(const MeasureRequest& request) {
   prepare(request, *snapshot);
   const auto start = std::chrono::steady_clock::now();
   snapshot->simulator->simulate(snapshot->motion, {.normal = true}, snapshot->frame);
-  snapshot->seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  snapshot->seconds = seconds_since(start);
   const std::lock_guard lock(mutex_);
   results_.snapshot = snapshot;
 }

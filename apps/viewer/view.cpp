@@ -6,6 +6,7 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/viewer/screen.hpp>
+#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/pictures/png_image.hpp>
@@ -52,10 +53,6 @@ struct ViewFlags {
   bool prints_state = false;
   WindowSize size;
 };
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Frames per second, averaged over about the last second of activity.
 class FrameRateMeter {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 
+#include <glidar/core/text.hpp>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -19,12 +21,6 @@ std::string sentence(const ErrorParts& parts) {
   if (!parts.allowed.empty()) text += "; allowed: " + parts.allowed;
   if (!parts.remedy.empty()) text += "; " + parts.remedy;
   return text;
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return result;
 }
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and transpositions of
@@ -102,12 +98,12 @@ void require_number(bool holds, const char* where, double found, const char* all
 std::string closest_match(std::string_view word, std::span<const std::string> candidates) {
   constexpr std::size_t kMaxWord_bytes = 100;  // the time is the product of both lengths
   if (word.size() > kMaxWord_bytes) return "";
-  const std::string wanted = lower(word);
+  const std::string wanted = lower_case(word);
   std::string best;
   std::size_t min = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : candidates) {
     if (wanted.empty()) break;
-    const std::optional<std::size_t> difference = dissimilarity(wanted, lower(candidate));
+    const std::optional<std::size_t> difference = dissimilarity(wanted, lower_case(candidate));
     if (!difference || *difference >= min) continue;
     min = *difference;
     best = candidate;

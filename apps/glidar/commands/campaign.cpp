@@ -93,8 +93,8 @@ void keep_absolute_folders() {
   ::setenv("PYTHONSAFEPATH", "1", 1);  // as -P, for glidar-campaign and its workers too
 }
 
-std::vector<std::string> joined(std::vector<std::string> first,
-                                const std::vector<std::string>& rest) {
+std::vector<std::string> concatenated(std::vector<std::string> first,
+                                      const std::vector<std::string>& rest) {
   first.insert(first.end(), rest.begin(), rest.end());
   return first;
 }
@@ -104,13 +104,13 @@ int run_campaign(const std::vector<std::string>& arguments) {
   const std::vector<fs::path> folders = program_folders();
   keep_absolute_folders();
   if (const fs::path program = beside_this_program(); !program.empty()) {
-    become(program, joined({program.string()}, arguments));
+    become(program, concatenated({program.string()}, arguments));
   }
   for (const fs::path& program : find_programs(kName, folders)) {
-    become(program, joined({program.string()}, arguments));
+    become(program, concatenated({program.string()}, arguments));
   }
   for (const fs::path& python : find_programs("python3", folders)) {
-    become(python, joined({"python3", "-P", "-c", kPythonCode, missing().what()}, arguments));
+    become(python, concatenated({"python3", "-P", "-c", kPythonCode, missing().what()}, arguments));
   }
   throw missing();
 }

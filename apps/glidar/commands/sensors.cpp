@@ -6,6 +6,7 @@
 #include <apps/glidar/run/exit_code.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
@@ -20,7 +21,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -268,8 +268,7 @@ int list_surfaces(const SensorsFlags& flags) {
 
 /// The image of the pattern is always a PNG.
 std::string png_name(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string suffix = lower_case(std::filesystem::path(path).extension().string());
   if (suffix != ".png") refuse_value(path, "a name that ends in .png", "clouds: glidar render");
   return path;
 }

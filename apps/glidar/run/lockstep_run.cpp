@@ -5,6 +5,7 @@
 #include <apps/glidar/run/curve_keys.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/reply_size.hpp>
+#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
 
 #include <fmt/format.h>
@@ -126,8 +127,7 @@ LockstepRun::Step LockstepRun::advance(Job& job) {
   const std::size_t count = std::min(frames_at_once(job), all.size() - first);
   const auto begin = std::chrono::steady_clock::now();
   measure_some(job, all.subspan(first, count));
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  frame_s_[job.measure.sensor] = taken.count() / static_cast<double>(count);
+  frame_s_[job.measure.sensor] = seconds_since(begin) / static_cast<double>(count);
   if (first + count < all.size()) return Step::goes_on;
   server_.reply(job.to, job.replies);
   return Step::answered;

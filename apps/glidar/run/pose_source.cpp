@@ -3,6 +3,7 @@
 #include <apps/glidar/run/pose_source.hpp>
 
 #include <apps/glidar/run/placement.hpp>
+#include <glidar/core/elapsed_time.hpp>
 
 #include <fmt/format.h>
 
@@ -16,10 +17,6 @@ using Clock = std::chrono::steady_clock;
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
-}
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// How often the wait for a pose checks its time limit.

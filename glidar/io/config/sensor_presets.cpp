@@ -4,11 +4,11 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/files/data_folder.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
 namespace glidar {
@@ -16,13 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool is_yaml(const fs::path& path) {
-  const std::string ending = lower(path.extension().string());
+  const std::string ending = lower_case(path.extension().string());
   return ending == ".yaml" || ending == ".yml";
 }
 
@@ -66,12 +61,12 @@ fs::path find_sensor_file(const std::string& name_or_path) {
   const std::vector<fs::path> files = preset_files();
   std::vector<std::string> names;
   for (const fs::path& file : files) {
-    names.push_back(lower(file.stem().string()));
-    if (names.back() == lower(name_or_path)) return file;
+    names.push_back(lower_case(file.stem().string()));
+    if (names.back() == lower_case(name_or_path)) return file;
   }
   std::error_code error;
   if (fs::is_regular_file(path, error)) return path;
-  const std::string nearest = closest_match(lower(name_or_path), names);
+  const std::string nearest = closest_match(lower_case(name_or_path), names);
   const auto at = std::find(names.begin(), names.end(), nearest);
   throw Error(
       {.where = "sensor",

@@ -3,6 +3,7 @@
 #include <glidar/io/config/yaml_reader.hpp>
 
 #include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/yaml_budget.hpp>
 #include <glidar/io/files/text_file.hpp>
 
@@ -26,12 +27,6 @@ constexpr std::uintmax_t kMaxYamlFile_mib =
 std::string position(const std::string& file, const YAML::Mark& mark) {
   if (mark.is_null()) return file;
   return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 /// The advice for a syntax error: a tab in the indentation is the one most people cannot see.
@@ -179,7 +174,7 @@ void require_map(const YamlField& field, const std::vector<std::string>& known) 
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     YamlField at_key = entry.value;
     at_key.mark = entry.key_mark;
-    reject(at_key, "unknown key '" + shown(entry.key) + "'", joined(known),
+    reject(at_key, "unknown key '" + shown(entry.key) + "'", comma_separated(known),
            suggestion(entry.key, known));
   }
 }
@@ -263,7 +258,8 @@ std::size_t one_of(const YamlField& field, const std::vector<std::string>& words
   const std::string word = field.node.IsScalar() ? field.node.Scalar() : "";
   const auto at = std::find(words.begin(), words.end(), word);
   if (at == words.end()) {
-    reject(field, content_text(field), joined(words), word.empty() ? "" : suggestion(word, words));
+    reject(field, content_text(field), comma_separated(words),
+           word.empty() ? "" : suggestion(word, words));
   }
   return static_cast<std::size_t>(at - words.begin());
 }

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/formats/cloud_picture_file.hpp>
 #include <glidar/io/formats/csv_file.hpp>
 #include <glidar/io/formats/depth_png_file.hpp>
@@ -22,8 +23,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 
 namespace glidar {
@@ -138,12 +137,6 @@ std::vector<std::string> suffixes() {
   std::vector<std::string> all;
   for (const Format& format : formats()) all.push_back(format.info.suffix);
   return all;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 std::filesystem::path without_separators(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/model/builtin_asteroid.hpp>
 #include <glidar/io/model/point_mesh.hpp>
 
@@ -175,12 +176,6 @@ std::vector<std::string> size_keys(const Builtin& builtin) {
                .remedy = std::move(remedy)});
 }
 
-std::string joined(std::span<const std::string> words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (;;) {
@@ -220,7 +215,7 @@ void set_size(std::string_view name, const Builtin& builtin, std::string_view pa
   if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
     const std::string nearest = closest_match(key, keys);
     refuse(name, "'" + excerpt(key) + "' is not a size of this model",
-           keys.empty() ? "no sizes; 'scale' applies to any model" : joined(keys),
+           keys.empty() ? "no sizes; 'scale' applies to any model" : comma_separated(keys),
            nearest.empty() ? "" : "did you mean '" + nearest + "'?");
   }
   if (equals == std::string_view::npos) {
@@ -266,7 +261,7 @@ Model make_builtin_model(std::string_view name) {
   const auto known = std::find(names.begin(), names.end(), parts.front());
   if (known == names.end()) {
     const std::string nearest = closest_match(parts.front(), names);
-    refuse(name, "no built-in model of this name", joined(names),
+    refuse(name, "no built-in model of this name", comma_separated(names),
            nearest.empty() ? "" : "did you mean 'builtin:" + nearest + "'?");
   }
   const Builtin& builtin = kBuiltins.at(static_cast<std::size_t>(known - names.begin()));

@@ -3,6 +3,7 @@
 #include <glidar/io/model/import_process.hpp>
 #include <glidar/io/model/import_program.hpp>
 
+#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 
@@ -35,10 +36,6 @@ constexpr double kQuietSeconds = 0.5;    // shorter loads report no progress
 constexpr int kSliceMilliseconds = 100;  // between checks of the time limit
 constexpr int kAnswerFd = 3;
 constexpr int kProgressFd = 4;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 [[noreturn]] void cannot_start(const std::string& program, int error) {
   throw Error({.where = program,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/texture_search.hpp>
 
+#include <glidar/core/text.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -28,12 +30,6 @@ std::string trimmed(std::string_view text) {
   while (!text.empty() && dull(text.front())) text.remove_prefix(1);
   while (!text.empty() && dull(text.back())) text.remove_suffix(1);
   return std::string(text);
-}
-
-std::string lower_text(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 int hex_digit(char c) {
@@ -76,11 +72,11 @@ std::vector<std::string> spellings(const std::string& name) {
 std::optional<fs::path> any_case(const fs::path& place, const std::string& base) {
   std::error_code error;
   std::optional<fs::path> best;
-  const std::string wanted = lower_text(base);
+  const std::string wanted = lower_case(base);
   for (fs::directory_iterator entry(place, error), end; !error && entry != end;
        entry.increment(error)) {
     const fs::path& path = entry->path();
-    if (lower_text(path.filename().string()) == wanted && (!best || path < *best)) best = path;
+    if (lower_case(path.filename().string()) == wanted && (!best || path < *best)) best = path;
   }
   return best;
 }
