@@ -60,7 +60,7 @@ WORDS = [
     (r"\blikewise\b", "name what is the same"),
 ]
 RULES = [(re.compile(pattern, re.IGNORECASE), advice) for pattern, advice in WORDS]
-IDENTIFIER = re.compile(r"`[^`]*`|--[\w-]+|\w*_\w+|\b\w+\(\)|\b[\w.-]+\.(?:md|py|cpp|hpp|yaml)\b")
+IDENTIFIER = re.compile(r"`[^`]*`|(?<=\")\w+(?=\")|--[\w-]+|\w*_\w+|\b\w+\(\)|\b[\w.-]+\.(?:md|py|cpp|hpp|yaml)\b")
 CPP = re.compile(
     r'//[^\n]*|/\*.*?\*/|R"(?P<mark>[^()\\\s]{0,16})\(.*?\)(?P=mark)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL
 )

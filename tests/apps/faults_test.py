@@ -31,7 +31,7 @@ class FaultTest(CliTest):
         super().setUp()
         self.out = Path(self.folder, "out")
         self.out.mkdir()
-        self.faults = Faults(Path(self.folder, "faults"), self.out)
+        self.faults = Faults(Path(self.folder, "fault_injection"), self.out)
 
     def empty(self):
         shutil.rmtree(self.out)
@@ -53,7 +53,7 @@ class FaultTest(CliTest):
         return self.faults.calls
 
     def each_fault(self, command, check, calls=CALLS):
-        """Runs the command with each fault in turn, and check(call, error, the run) after each."""
+        """Runs the command with each injected error in turn, and check(call, error, the run) after each."""
         for call in calls:
             for error, at in itertools.product(ERRORS, range(1, self.count(command, call) + 1)):
                 self.empty()

@@ -26,7 +26,7 @@ sensors:
   - name: camera
     sensor: {optics: {type: pinhole, width: 40, height: 30, fov_deg: 40}, rate_hz: 20, noise: [{type: range_gaussian, sigma_m: 0.01}]}
     pose: {position: [0.1, 0, 0], euler_deg: {roll: -90, yaw: -90}}
-  - name: twin
+  - name: camera_2
     sensor: {optics: {type: pinhole, width: 40, height: 30, fov_deg: 40}, rate_hz: 20, noise: [{type: range_gaussian, sigma_m: 0.01}]}
     pose: {position: [0.1, 0, 0], euler_deg: {roll: -90, yaw: -90}}
 rig_pose: {position: [0, 0, 0]}
@@ -48,20 +48,20 @@ class Files(RigTest):
     def test_each_sensor_writes_its_own_at_its_own_rate(self):
         self.succeed("render", "rig.yaml", "--duration", "0.1", "-o", "s.pcd", "--no-sidecar")
         self.assertEqual(self.files(), ["box.obj", "rig.yaml", "s_camera_000000.pcd", "s_camera_000001.pcd",
-                                        "s_lidar_000000.pcd", "s_twin_000000.pcd", "s_twin_000001.pcd"])
+                                        "s_camera_2_000000.pcd", "s_camera_2_000001.pcd", "s_lidar_000000.pcd"])
 
     def test_a_sensor_measures_the_same_alone(self):
         self.succeed("render", "rig.yaml", "-o", "all.pcd", "--no-sidecar")
-        for name in ("lidar", "camera", "twin"):
+        for name in ("lidar", "camera", "camera_2"):
             self.succeed("render", "rig.yaml", "--sensor-name", name, "-o", "one.pcd", "--no-sidecar")
             self.assertEqual(self.bytes_of("one.pcd"), self.bytes_of(f"all_{name}.pcd"))
 
     def test_sensors_of_the_same_kind_and_pose_have_different_noise(self):
         self.succeed("render", "rig.yaml", "-o", "all.npz", "--columns", "range,true_range")
-        camera, twin = (np.load(os.path.join(self.folder, f"all_{name}.npz")) for name in ("camera", "twin"))
-        np.testing.assert_array_equal(camera["true_range"], twin["true_range"])
+        camera, camera_2 = (np.load(os.path.join(self.folder, f"all_{name}.npz")) for name in ("camera", "camera_2"))
+        np.testing.assert_array_equal(camera["true_range"], camera_2["true_range"])
         hit = np.isfinite(camera["range"])
-        self.assertGreater((camera["range"][hit] != twin["range"][hit]).mean(), 0.99)
+        self.assertGreater((camera["range"][hit] != camera_2["range"][hit]).mean(), 0.99)
 
     def test_a_sensor_moves_with_the_rig(self):
         self.succeed("render", "rig.yaml", "--duration", "0.1", "-o", "s.npz")
@@ -75,7 +75,7 @@ class Files(RigTest):
 
     def test_explain_knows_which_sensor_it_was(self):
         self.succeed("render", "rig.yaml", "-o", "s.pcd")
-        told = self.succeed("explain", "s_twin.pcd", "--row", "15", "--col", "20").stdout
+        told = self.succeed("explain", "s_camera_2.pcd", "--row", "15", "--col", "20").stdout
         self.assertIn("1200", told)
         self.assertIn("range_gaussian", told)
 
@@ -89,8 +89,8 @@ class Files(RigTest):
         self.assertIn("a camera has no rings", error)
 
     def test_invalid_combinations_are_refused(self):
-        for arguments, words in ((("--sensor-name", "radar"), "allowed: lidar, camera, twin"),
-                                 (("--sensor", "VLP-16"), "--sensor-name NAME chooses one of lidar, camera, twin")):
+        for arguments, words in ((("--sensor-name", "radar"), "allowed: lidar, camera, camera_2"),
+                                 (("--sensor", "VLP-16"), "--sensor-name NAME chooses one of lidar, camera, camera_2")):
             self.assertIn(words, self.refused("render", "rig.yaml", *arguments, "-o", "x.pcd"))
         self.assertIn("a rig of sensors", self.refused("render", "box.obj", "--sensor-name", "a", "-o", "x.pcd"))
 
@@ -147,9 +147,9 @@ class Topics(RigTest):
     def test_serve_late_and_returning_subscribers(self):
         program = self.stream("--subscribers", "0", "--rate", "20")
         for _ in range(3):
-            subscriber = self.subscriber(topic=topic("twin"))
+            subscriber = self.subscriber(topic=topic("camera_2"))
             subscriber.shake()
-            self.assertTrue(subscriber.receive().startswith(topic("twin")))
+            self.assertTrue(subscriber.receive().startswith(topic("camera_2")))
             subscriber.close()
         program.terminate()
         self.finished(program, 143)
@@ -176,7 +176,7 @@ class Topics(RigTest):
         self.write("rig.yaml", RIG.replace(rock, ""))
         simulator = self.simulator()
         program = self.stream("--pose-source", tcp(self.physics), "--pose-queue", "10", "--subscribers", "2")
-        subscribers = {name: self.subscriber(topic=topic(name)) for name in ("lidar", "twin")}
+        subscribers = {name: self.subscriber(topic=topic(name)) for name in ("lidar", "camera_2")}
         for subscriber in subscribers.values():
             subscriber.shake()
         simulator.shake()
@@ -201,7 +201,7 @@ class Requests(RigTest):
             socket = server.connect()
             socket.send(struct.pack("<4s2HQ", b"GLDR", 1, 0, 3))
             told = json.loads(socket.recv_multipart()[1])
-            self.assertEqual([sensor["name"] for sensor in told["sensors"]], ["lidar", "camera", "twin"])
+            self.assertEqual([sensor["name"] for sensor in told["sensors"]], ["lidar", "camera", "camera_2"])
             np.testing.assert_allclose(told["sensors"][1]["rig_from_sensor"][:3], [0.1, 0, 0])
             rock = body((6, 0, 0))
             for index, sensor in enumerate(told["sensors"]):
@@ -209,7 +209,7 @@ class Requests(RigTest):
                 _, cloud = CLIENT["clouds"](socket.recv_multipart())[0]
                 self.assertEqual(cloud["xyz"].shape[:2], (sensor["rows"], sensor["cols"]))
             self.write("still.yaml", "\n".join(line for line in RIG.splitlines() if "motion" not in line))
-            self.succeed("render", "still.yaml", "--sensor-name", "twin", "-o", "x.npz")
+            self.succeed("render", "still.yaml", "--sensor-name", "camera_2", "-o", "x.npz")
             with np.load(os.path.join(self.folder, "x.npz")) as written:
                 np.testing.assert_array_equal(cloud["xyz"].reshape(written["xyz"].shape), written["xyz"])
             socket.send(self.request(3, [(0, 1, 0, [body((0, 0, 0)), rock])]))

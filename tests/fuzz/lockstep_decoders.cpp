@@ -28,7 +28,7 @@ bool try_lockstep_decoders(std::span<const std::byte> bytes) {
   try {
     std::uint64_t id = 0;
     const lockstep::Request request = lockstep::decode_request(bytes, id);
-    demand(lockstep::encode(request).size() == bytes.size(), "every byte is told");
+    demand(lockstep::encode(request).size() == bytes.size(), "every byte is decoded");
     const auto* measure = std::get_if<lockstep::Measure>(&request);
     if (measure == nullptr) return true;
     demand(!measure->columns.empty() && !measure->moments.empty(), "there is something to do");

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // glidar_sandbox_probe MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
-// Stands in for glidar-import, of which a hostile model has taken control: it enters the same
-// sandbox, tries to do harm, and answers with what came of each attempt: "NAME: 0" when it
-// succeeded, else the name of the error. The first line of MODEL is a file outside the model's
+// Replaces glidar-import as if a hostile model had taken control of it: it enters the same sandbox,
+// attempts forbidden actions, and prints the result of each attempt: "NAME: 0" when it succeeded,
+// else the name of the error. The first line of MODEL is a file outside the model's
 // folder, the second a TCP port of this machine on which a test listens.
 
 #include <import/process_limits.hpp>

@@ -52,7 +52,7 @@ class Markdown(unittest.TestCase):
 
 class Sources(unittest.TestCase):
     def test_comments_and_strings_of_cpp_are_read(self):
-        text = '// told\nint told = 1; /* it\n lies */ auto a = "matt";\nauto b = R"(\nhair)";\n'
+        text = '// told\nint told = 1; /* it\n lies */ auto a = "matt wall", b = "lamp";\nauto c = R"(\nhair)";\n'
         self.assertEqual([one.split(";")[0] for one in complaints(text, "a.cpp")],
                          ["a.cpp:1: 'told'", "a.cpp:3: 'lies'", "a.cpp:3: 'matt'", "a.cpp:5: 'hair'"])
 

@@ -217,7 +217,7 @@ ssize_t writev(int descriptor, const iovec* pieces, int count) {
   return fails("write", descriptor) ? fail() : real(descriptor, pieces, count);
 }
 
-// Tests of faults need no disk to wait for: where calls are counted, syncs are not made.
+// While calls are counted, syncs are skipped, so that tests do not wait for the disk.
 int fsync(int descriptor) {
   static const auto real = next<int (*)(int)>("fsync");
   if (fails("sync", descriptor)) return fail();

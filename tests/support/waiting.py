@@ -34,7 +34,7 @@ def pauses(what):
 
 
 def let_time_pass(seconds):
-    """For tests of what must not happen meanwhile, or that act at any time while work goes on: tests that cannot fail
+    """For tests of what must not happen meanwhile, or that act at any time during other work: tests that cannot fail
     because a machine is slow."""
     time.sleep(seconds)
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Built-in models as if they came from files, and the sources asked for.
+/// Built-in models as if they came from files, and the requested sources.
 struct Loader {
   std::vector<std::string> asked;
   std::vector<ModelOptions> options;
@@ -361,7 +361,7 @@ TEST(SceneFile, ExampleLoads) {
             (std::vector<std::string>{"unlabelled", "asteroid", "calibration target"}));
   ASSERT_TRUE(file.sensors.size() == 1 && file.world_from_rig);
   EXPECT_EQ(file.sensors[0].sensor.name, "Woods 2016 camera");
-  // The whole scene lies in the cone of the camera's 20 degrees.
+  // The whole scene is in the cone of the camera's 20 degrees.
   const Eigen::AlignedBox3d box = bounds(file.scene);
   const Eigen::Vector3d centre = file.world_from_rig->inverse() * box.center();
   EXPECT_LT((centre.head<2>().norm() + 0.5 * box.diagonal().norm()) / centre.z(),

@@ -209,7 +209,7 @@ TEST(ExactUnit, FindsTheNumberOfTheFileAgain) {
   EXPECT_TRUE(std::signbit(find_exact_in(-0.0, 1e-3).value()));
 }
 
-/// About a tenth of all numbers are no product; then the error says so and nothing is rounded.
+/// About a tenth of all numbers are no product; then there is an error and nothing is rounded.
 TEST(ExactUnit, NumberThatIsNoProductIsRefusedNotRounded) {
   constexpr double kRadian = std::numbers::pi / 180.0;
   std::mt19937_64 random(1);

@@ -20,7 +20,7 @@ Sensor with(Sensor sensor, const SensorOptions& options) {
   return sensor;
 }
 
-/// What the error says when one option alone is given.
+/// The error when only one option is given.
 template <class Value, class Given>
 std::string error_with(const std::string& name, Value SensorOptions::*option, Given value) {
   SensorOptions options;

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// What a data sheet says of a sensor; fields of view in degrees, edge to edge.
-struct Sheet {
+/// Values of a sensor's data sheet; fields of view in degrees, edge to edge.
+struct PublishedValues {
   const char* name;
   std::uint32_t rows;
   std::uint32_t cols;
@@ -29,8 +29,8 @@ struct Sheet {
   double upright_deg;
 };
 
-// Written down from the makers' sheets apart from the sensor files.
-constexpr std::array kSheets = std::to_array<Sheet>({
+// Copied from the manufacturers' data sheets, independently of the sensor files.
+constexpr std::array kPublished = std::to_array<PublishedValues>({
     {"VLP-16", 16, 1809, 289'352, 360, 30},
     {"Puck-Hi-Res", 16, 1809, 289'352, 360, 20},
     {"HDL-32E", 32, 2171, 694'444, 360, 41.34},
@@ -60,7 +60,8 @@ constexpr std::array kSheets = std::to_array<Sheet>({
     {"Azure-Kinect-NFOV-2x2", 288, 320, 2'764'800, 75, 65},
     {"Azure-Kinect-WFOV", 1024, 1024, 15'728'640, 120, 120},
     {"Azure-Kinect-WFOV-2x2", 512, 512, 7'864'320, 120, 120},
-    {"D415", 360, 640, 6'912'000, 72, 44},  // the calibration's; the sheet's 65 x 40 is part of it
+    {"D415", 360, 640, 6'912'000, 72,
+     44},  // the calibration's; the data sheet's 65 x 40 is part of it
     {"D435", 480, 848, 12'211'200, 87, 58},
     {"ZED", 720, 1280, 27'648'000, 84.9, 54.4},
     {"flash-128", 128, 128, 327'680, 15, 15},
@@ -101,37 +102,37 @@ Eigen::Vector2d field_of_view_deg(const Sensor& sensor, const FrameInterval& win
 
 TEST(Presets, AreAllTested) {
   std::set<std::string> tested;
-  for (const Sheet& sheet : kSheets) tested.insert(sheet.name);
+  for (const PublishedValues& published : kPublished) tested.insert(published.name);
   for (const auto& file : preset_files())
     EXPECT_TRUE(tested.contains(file.stem().string())) << file;
   EXPECT_EQ(preset_files().size(), tested.size());
 }
 
-class Preset : public ::testing::TestWithParam<Sheet> {};
+class Preset : public ::testing::TestWithParam<PublishedValues> {};
 
 TEST_P(Preset, HasThePointsOfItsSheet) {
-  const Sheet& sheet = GetParam();
-  const Sensor sensor = preset(sheet.name);
+  const PublishedValues& published = GetParam();
+  const Sensor sensor = preset(published.name);
   const Beams beams = make_beams(sensor);
   validate(beams);
-  EXPECT_EQ(beams.rows, sheet.rows);
-  EXPECT_EQ(beams.cols, sheet.cols);
+  EXPECT_EQ(beams.rows, published.rows);
+  EXPECT_EQ(beams.cols, published.cols);
   const double points_per_s = static_cast<double>(beams.size()) * sensor.rate_hz;
   // a clock that does not divide a turn gives one column more or less
-  EXPECT_NEAR(points_per_s, sheet.points_per_s, 1.01 * sheet.rows * sensor.rate_hz);
+  EXPECT_NEAR(points_per_s, published.points_per_s, 1.01 * published.rows * sensor.rate_hz);
 }
 
 TEST_P(Preset, HasTheFieldOfViewOfItsSheet) {
-  const Sheet& sheet = GetParam();
-  const Sensor sensor = preset(sheet.name);
+  const PublishedValues& published = GetParam();
+  const Sensor sensor = preset(published.name);
   const bool livox = std::holds_alternative<Prism>(sensor.optics);
   const FrameInterval window = livox ? FrameInterval{0, 1'000'000'000} : frame_interval(sensor, 0);
   const Eigen::Vector2d found_deg = field_of_view_deg(sensor, window);
-  // Sheets are rounded, as-built units deviate by 2 degrees (Ouster's); the cameras' numbers are
-  // calibrations of single units: the D435's gives 89.1 x 58.2, the narrow Azure Kinect's 73.1
+  // Data sheets are rounded, as-built units deviate by 2 degrees (Ouster's); the cameras' numbers
+  // are calibrations of single units: the D435's gives 89.1 x 58.2, the narrow Azure Kinect's 73.1
   // x 65.7.
-  EXPECT_NEAR(found_deg.x(), sheet.across_deg, sensor.optics.index() == 0 ? 2.3 : 1.2);
-  EXPECT_NEAR(found_deg.y(), sheet.upright_deg, 2.3);
+  EXPECT_NEAR(found_deg.x(), published.across_deg, sensor.optics.index() == 0 ? 2.3 : 1.2);
+  EXPECT_NEAR(found_deg.y(), published.upright_deg, 2.3);
 }
 
 TEST_P(Preset, TellsOneReturnOfABeamUnlessMoreAreChosen) {
@@ -146,23 +147,23 @@ TEST_P(Preset, TellsOneReturnOfABeamUnlessMoreAreChosen) {
 }
 
 TEST_P(Preset, TellsTheSourceOfEveryNumber) {
-  const Datasheet sheet = load_datasheet(find_sensor_file(GetParam().name));
-  EXPECT_GT(sheet.entries.size(), 4U);
-  for (const DatasheetEntry& entry : sheet.entries) {
+  const Datasheet datasheet = load_datasheet(find_sensor_file(GetParam().name));
+  EXPECT_GT(datasheet.entries.size(), 4U);
+  for (const DatasheetEntry& entry : datasheet.entries) {
     const bool is_number = entry.value.find_first_of("0123456789") != std::string::npos;
     EXPECT_TRUE(entry.key == "name" || !is_number || !entry.source.empty()) << entry.key;
   }
 }
 
-std::string sheet_name(const ::testing::TestParamInfo<Sheet>& sheet) {
-  std::string name = sheet.param.name;
+std::string preset_name(const ::testing::TestParamInfo<PublishedValues>& published) {
+  std::string name = published.param.name;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Preset, ::testing::ValuesIn(kSheets), sheet_name);
+INSTANTIATE_TEST_SUITE_P(All, Preset, ::testing::ValuesIn(kPublished), preset_name);
 
-/// Beams as their sheets tell them: full widths at half maximum, across and up; TiM781: in all.
+/// Beams of the data sheets: full widths at half maximum, across and up; TiM781: in all.
 struct Beam {
   const char* name;
   double divergence_mrad[2];
@@ -221,18 +222,18 @@ TEST(Presets, UnknownNamesAreToldTheNearest) {
 }
 
 TEST(Presets, NumbersFromMemoryAreMarked) {
-  const Datasheet sheet = load_datasheet(find_sensor_file("D435"));
+  const Datasheet datasheet = load_datasheet(find_sensor_file("D435"));
   std::map<std::string, bool> verified;
-  for (const DatasheetEntry& entry : sheet.entries) verified[entry.key] = entry.verified;
+  for (const DatasheetEntry& entry : datasheet.entries) verified[entry.key] = entry.verified;
   EXPECT_FALSE(verified.at("limits.near_m"));  // by "limits"
   EXPECT_TRUE(verified.at("optics.fx"));
   EXPECT_TRUE(verified.at("name"));
 }
 
 TEST(Presets, SourcesStandBesideTheirNumbers) {
-  const Datasheet sheet = load_datasheet(find_sensor_file("OS1-64"));
+  const Datasheet datasheet = load_datasheet(find_sensor_file("OS1-64"));
   std::map<std::string, std::string> source;
-  for (const DatasheetEntry& entry : sheet.entries) source[entry.key] = entry.source;
+  for (const DatasheetEntry& entry : datasheet.entries) source[entry.key] = entry.source;
   EXPECT_TRUE(source.at("rate_hz").starts_with("10 with 512"));
   EXPECT_EQ(source.at("wavelength_nm"), "data sheet, revision 6");
   EXPECT_TRUE(source.at("lidar_equation.reference_range_m").ends_with("every second time"));
@@ -243,15 +244,15 @@ TEST(Presets, SourcesStandBesideTheirNumbers) {
 }
 
 TEST(Presets, CountTheValuesThatTheManufacturerBacks) {
-  const Datasheet sheet{.name = "a",
-                        .sensor = {},
-                        .entries = {{"name", "A 1", "", true},
-                                    {"optics.type", "pinhole", "data sheet", true},
-                                    {"optics.fx", "400", "factory calibration", true},
-                                    {"rate_hz", "30", "data sheet", true},
-                                    {"limits.far_m", "9", "a survey", false}}};
-  EXPECT_EQ(count_values(sheet).backed, 2U);
-  EXPECT_EQ(count_values(sheet).total, 3U);  // a name and a type are no values
+  const Datasheet datasheet{.name = "a",
+                            .sensor = {},
+                            .entries = {{"name", "A 1", "", true},
+                                        {"optics.type", "pinhole", "data sheet", true},
+                                        {"optics.fx", "400", "factory calibration", true},
+                                        {"rate_hz", "30", "data sheet", true},
+                                        {"limits.far_m", "9", "a survey", false}}};
+  EXPECT_EQ(count_values(datasheet).backed, 2U);
+  EXPECT_EQ(count_values(datasheet).total, 3U);  // a name and a type are no values
 }
 
 TEST(Presets, DoNotCallAThirdPartysNumberTheManufacturers) {

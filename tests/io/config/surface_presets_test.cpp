@@ -58,8 +58,8 @@ TEST(Surfaces, TellTheirSource) {
   EXPECT_FALSE(find_surface("mli", "").verified);
 }
 
-/// Light sent into all directions over light received, square on: the matt part and a narrow lobe
-/// of mirrored light, which turns by twice the angle of the facet.
+/// Light sent into all directions over light received, at normal incidence: the diffuse part and a
+/// narrow lobe of mirrored light, which turns by twice the angle of the facet.
 double energy_of(const Glossy& form) {
   const double width_rad = 2.0 * form.width_rad;
   double lobe = 0.0;
@@ -68,7 +68,7 @@ double energy_of(const Glossy& form) {
     const double angle = (k + 0.5) / kSteps * 0.5 * std::numbers::pi;
     lobe += std::exp(-0.5 * std::pow(angle / width_rad, 2)) * std::sin(angle) * std::cos(angle);
   }
-  // over a matt surface's radiance, 1 / pi: 2 pi / pi times the integral
+  // over a diffuse surface's radiance, 1 / pi: 2 pi / pi times the integral
   return form.diffuse_fraction + form.lobe_gain * 2.0 * lobe * 0.5 * std::numbers::pi / kSteps;
 }
 
