@@ -8,7 +8,6 @@
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/file_sink.hpp>
-#include <glidar/io/formats/needed_columns.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
 #include <glidar/io/pictures/colour_scale.hpp>
 

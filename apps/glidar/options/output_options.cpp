@@ -6,7 +6,6 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/formats/needed_columns.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -91,14 +90,6 @@ const std::vector<std::string>& default_columns() {
   static const std::vector<std::string> kColumns = {"xyz",    "intensity", "range",
                                                     "normal", "instance",  "class"};
   return kColumns;
-}
-
-std::string suffixes_with_columns() {
-  std::string text;
-  for (const FileFormat& format : file_formats()) {
-    if (format.takes_more) text += (text.empty() ? "" : " ") + format.suffix;
-  }
-  return text;
 }
 
 void add_output_options(CLI::App& command, OutputFlags& flags) {

@@ -34,9 +34,6 @@ void hide_standard_output(CLI::App& command);
 /// The columns of a cloud unless --columns or --layout gives others.
 const std::vector<std::string>& default_columns();
 
-/// The formats that take columns: ".pcd .ply .npz .csv".
-std::string suffixes_with_columns();
-
 /// The meanings of suffixes, columns, layouts and axes, for the end of --help.
 std::string output_names_text();
 

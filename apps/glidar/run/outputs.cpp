@@ -6,7 +6,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/formats/needed_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -152,12 +151,6 @@ void commit_all(const std::vector<Output>& outputs) {
   }
 }
 
-std::string suffix_list() {
-  std::string text;
-  for (const FileFormat& format : file_formats()) text += " " + format.suffix;
-  return text;
-}
-
 }  // namespace
 
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
@@ -190,7 +183,7 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
   if (!has_outputs(flags)) {
     throw Error({.where = "--output",
                  .found = "there is no -o, so nothing would be written",
-                 .allowed = "files by suffix:" + suffix_list(),
+                 .allowed = "files by suffix: " + all_suffixes(),
                  .remedy = "for example: glidar render " + input + " -o cloud.pcd -o picture.png"});
   }
   check_standard_output(flags);

@@ -183,8 +183,7 @@ void warn_extrapolation(const PreparedScene& prepared, const Report& report) {
 
 void check_target(const RenderFlags& flags) {
   for (const std::string& path : flags.output.paths) {
-    if (flags.quantized_framebuffer || format_of(flags.output, path).suffix != ".framebuffer.png")
-      continue;
+    if (flags.quantized_framebuffer || !format_of(flags.output, path).reads_framebuffer) continue;
     throw Error({.where = "--output, " + path,
                  .found = "the float framebuffer, which has no such image",
                  .allowed = "this output with --quantized-framebuffer",

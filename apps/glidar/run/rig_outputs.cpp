@@ -9,15 +9,12 @@
 namespace glidar::app {
 namespace {
 
-[[noreturn]] void refuse_output(const std::string& path, const FileFormat& format,
-                                const std::string& reasons) {
-  throw Error(
-      {.where = "--output, " + path,
-       .found = "fits none of the sensors on the rig: " + reasons,
-       .allowed = "an output that fits at least one of them",
-       .remedy = format.suffix == ".depth.png"
-                     ? "write .npy or .depth.tiff, which hold any depth, or a cloud such as .pcd"
-                     : "choose another --colour-by"});
+[[noreturn]] void refuse_output(const std::string& path, const std::string& reasons,
+                                const std::string& remedy) {
+  throw Error({.where = "--output, " + path,
+               .found = "fits none of the sensors on the rig: " + reasons,
+               .allowed = "an output that fits at least one of them",
+               .remedy = remedy});
 }
 
 /// Adds a path to the outputs of the sensors that it fits.
@@ -25,18 +22,20 @@ void distribute(const std::string& path, const OutputFlags& flags, const Prepare
                 std::vector<OutputFlags>& outputs, Console& console) {
   const FileFormat& format = format_of(flags, path);
   std::string reasons;
+  std::string remedy;
   std::size_t fitting = 0;
   for (std::size_t i = 0; i < prepared.sensors.size(); ++i) {
     const ActiveSensor& active = prepared.sensors[i];
-    const std::string reason = misfit(format, flags.sink.picture, active.sensor, active.beams);
-    if (reason.empty()) {
+    const Misfit misfit = find_misfit(format, flags.sink.picture, active.sensor, active.beams);
+    if (misfit.reason.empty()) {
       outputs[i].paths.push_back(path);
       ++fitting;
       continue;
     }
-    reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", active.name, reason);
+    reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", active.name, misfit.reason);
+    remedy = misfit.remedy;
   }
-  if (fitting == 0) refuse_output(path, format, reasons);
+  if (fitting == 0) refuse_output(path, reasons, remedy);
   if (!reasons.empty()) console.info(fmt::format("{} is not written for {}", path, reasons));
 }
 

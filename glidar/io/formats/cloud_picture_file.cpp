@@ -262,18 +262,49 @@ void write_picture(const Picture& picture, const std::string& description, Atomi
             file);
 }
 
-}  // namespace
-
+/// The columns that write_bird_eye and write_perspective need.
 std::vector<std::string> cloud_picture_columns() {
   return {"xyz", "range", "intensity", "ring", "class", "instance"};
 }
 
+/// Writes a picture of the cloud from above, x to the right and y up, with axes, coloured by
+/// options.picture; the highest point is visible. The cloud is rotated so that z is up.
+/// Throws Error when a camera's cloud is to be coloured by ring.
 void write_bird_eye(const CloudFile& job, AtomicFile& file) {
   write_picture(draw_bird_eye(job), "the cloud from above", file);
 }
 
+/// The same in perspective, with a grid on the ground; the nearest point is visible. Also throws
+/// Error when the eye is at the target.
 void write_perspective(const CloudFile& job, AtomicFile& file) {
   write_picture(draw_view(job), "the cloud in perspective", file);
+}
+
+Misfit cloud_picture_misfit(const CloudPictureOptions& picture, const Sensor& sensor,
+                            const Beams& /*beams*/) {
+  const bool is_camera = std::holds_alternative<Pinhole>(sensor.optics);
+  if (!is_camera || picture.colour_by != ColourBy::ring) return {};
+  return {"a camera has no rings to colour by", "choose another --colour-by"};
+}
+
+}  // namespace
+
+Format bird_eye_format() {
+  return {.info = {.suffix = ".bev.png",
+                   .description = "picture of the cloud from above",
+                   .columns = cloud_picture_columns()},
+          .content = Content::per_beam,
+          .write = write_bird_eye,
+          .misfit = cloud_picture_misfit};
+}
+
+Format perspective_format() {
+  return {.info = {.suffix = ".view.png",
+                   .description = "picture of the cloud in perspective",
+                   .columns = cloud_picture_columns()},
+          .content = Content::per_beam,
+          .write = write_perspective,
+          .misfit = cloud_picture_misfit};
 }
 
 }  // namespace glidar

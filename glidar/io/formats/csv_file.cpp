@@ -4,10 +4,26 @@
 #include <glidar/io/formats/point_rows.hpp>
 
 namespace glidar {
+namespace {
 
+/// Writes a line of field names, then a line per point, with the shortest digits that represent
+/// each number exactly.
 void write_csv(const CloudFile& job, AtomicFile& file) {
   file.write(joined_names(job.fields, ',') + "\n");
   write_text_rows(job.fields, job.cloud.size(), ',', file, job.options.progress);
+}
+
+}  // namespace
+
+Format csv_format() {
+  return {.info = {.suffix = ".csv",
+                   .description = "text table",
+                   .columns = {"xyz"},
+                   .takes_more = true},
+          .content = Content::points,
+          .fields = native_fields,
+          .write = write_csv,
+          .is_text = [](const FileSinkOptions& /*options*/) { return true; }};
 }
 
 }  // namespace glidar

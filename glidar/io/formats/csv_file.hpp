@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 namespace glidar {
 
-/// Writes a line of field names, then a line per point, with the shortest digits that represent
-/// each number exactly.
-void write_csv(const CloudFile& job, AtomicFile& file);
+/// Text tables: a line of field names, then a line per point.
+Format csv_format();
 
 }  // namespace glidar

@@ -49,8 +49,8 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
   }
 }
 
-}  // namespace
-
+/// Writes a 16-bit grey image: depth times options.depth_png_units_per_m, rounded, at least 1; 0:
+/// no return. Throws Error when a depth is behind the sensor or above 65535 units.
 void write_depth_png(const CloudFile& job, AtomicFile& file) {
   const auto& depths_m = std::get<std::vector<double>>(find_column(job.cloud, "depth")->values);
   const double units_per_m = job.options.depth_png_units_per_m;
@@ -64,6 +64,29 @@ void write_depth_png(const CloudFile& job, AtomicFile& file) {
   write_png({PngKind::grey16, job.cloud.cols, job.cloud.rows, std::as_bytes(std::span(grey)),
              fmt::format("depth, {:.17g} units per metre, 0: no return", units_per_m)},
             file);
+}
+
+bool looks_back(const Beams& beams) {
+  return std::any_of(beams.directions.begin(), beams.directions.end(),
+                     [&](const auto& direction) { return direction.dot(beams.boresight) < 0.0; });
+}
+
+Misfit depth_png_misfit(const CloudPictureOptions& /*picture*/, const Sensor& sensor,
+                        const Beams& beams) {
+  if (std::holds_alternative<Pinhole>(sensor.optics) || !looks_back(beams)) return {};
+  return {"it has beams that point back, where depths are negative",
+          "write .npy or .depth.tiff, which hold any depth, or a cloud such as .pcd"};
+}
+
+}  // namespace
+
+Format depth_png_format() {
+  return {
+      .info = {.suffix = ".depth.png", .description = "16-bit depth image", .columns = {"depth"}},
+      .content = Content::image,
+      .write = write_depth_png,
+      .pixels = "depth times units_per_m as 16-bit grey; 0: no return",
+      .misfit = depth_png_misfit};
 }
 
 }  // namespace glidar

@@ -3,6 +3,7 @@
 #include <glidar/io/formats/depth_tiff_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/formats/npy_file.hpp>
 
 #include <fmt/format.h>
 #include <tiffio.h>
@@ -100,8 +101,7 @@ bool set_tags(TIFF* tiff, const CloudFile& job) {
          TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, job.pixels.c_str()) == 1;
 }
 
-}  // namespace
-
+/// Writes depth in metres as TIFF with one 32-bit float per pixel, NaN for no return.
 void write_depth_tiff(const CloudFile& job, AtomicFile& file) {
   const auto& depths_m = std::get<std::vector<double>>(find_column(job.cloud, "depth")->values);
   std::vector<float> pixels(depths_m.size());
@@ -121,6 +121,18 @@ void write_depth_tiff(const CloudFile& job, AtomicFile& file) {
                  "write .npy, which has the same numbers"});
   }
   file.write(std::string_view(memory.bytes.data(), memory.bytes.size()));
+}
+
+}  // namespace
+
+Format depth_tiff_format() {
+  return {.info = {.suffix = ".depth.tiff",
+                   .description = "32-bit depth image, metres",
+                   .columns = {"depth"}},
+          .content = Content::image,
+          .fields = depth_fields,
+          .write = write_depth_tiff,
+          .pixels = "depth in metres as 32-bit float; NaN: no return"};
 }
 
 }  // namespace glidar

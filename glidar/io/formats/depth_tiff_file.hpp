@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 namespace glidar {
 
-/// Writes depth in metres as TIFF with one 32-bit float per pixel, NaN for no return.
-void write_depth_tiff(const CloudFile& job, AtomicFile& file);
+/// Depth as TIFF with 32-bit floats.
+Format depth_tiff_format();
 
 }  // namespace glidar

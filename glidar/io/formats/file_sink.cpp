@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/file_sink.hpp>
-#include <glidar/io/formats/kitti_file.hpp>
-#include <glidar/io/formats/sidecar_file.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/format_table.hpp>
+#include <glidar/io/formats/kitti_file.hpp>
+#include <glidar/io/formats/sidecar_file.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
 
 #include <fcntl.h>
@@ -124,8 +124,7 @@ class FormatSink : public FileSink {
     std::vector<std::filesystem::path> all = {target_.path};
     if (target_.descriptor >= 0) return all;
     if (has_sidecar()) all.push_back(sidecar_path());
-    if (format_.stage_extra_files != nullptr && !format_.info.is_folder)
-      all.push_back(labels_path(target_.path));
+    if (format_.extra_path != nullptr) all.push_back(format_.extra_path(target_.path));
     return all;
   }
 
@@ -152,6 +151,10 @@ class FormatSink : public FileSink {
     return target_.path.string() + ".json";
   }
 
+  [[nodiscard]] std::vector<PointField> fields_of(const PointCloud& cloud) const {
+    return format_.fields != nullptr ? format_.fields(cloud) : std::vector<PointField>();
+  }
+
   void stage_points(const PointCloud& cloud, const Frame& frame) {
     const bool dense =
         format_.content == Content::kitti || (format_.content == Content::points && options_.dense);
@@ -166,7 +169,7 @@ class FormatSink : public FileSink {
 
   void deliver(const PointCloud& cloud, const Frame& frame) {
     if (options_.layout.empty() || !format_.info.takes_more) {
-      const std::vector<PointField> fields = format_.fields(cloud);
+      const std::vector<PointField> fields = fields_of(cloud);
       store({cloud, frame, options_, context_, fields, {}, format_.pixels});
       tell(
           rounding_warning(fields, "write .npz, .csv or .ply, which store distant points exactly"));
@@ -219,34 +222,12 @@ void check(const FileSinkOptions& options) {
                "a finite number above 0", "1000 for millimetres"});
 }
 
-bool looks_back(const Beams& beams) {
-  return std::any_of(beams.directions.begin(), beams.directions.end(),
-                     [&](const auto& direction) { return direction.dot(beams.boresight) < 0.0; });
-}
-
 }  // namespace
 
 std::span<const std::string> colour_by_names() {
   static const std::vector<std::string> kSinkNames = {"height", "range", "intensity",
                                                       "ring",   "class", "instance"};
   return kSinkNames;
-}
-
-bool is_text(const FileFormat& format, const FileSinkOptions& options) {
-  if (format.suffix == ".pcd") return options.pcd == PcdEncoding::ascii;
-  if (format.suffix == ".ply") return options.ply_ascii;
-  return format.suffix == ".csv" || format.suffix == ".transform";
-}
-
-std::string misfit(const FileFormat& format, const CloudPictureOptions& picture,
-                   const Sensor& sensor, const Beams& beams) {
-  const bool is_camera = std::holds_alternative<Pinhole>(sensor.optics);
-  const bool shows_cloud = format.suffix == ".bev.png" || format.suffix == ".view.png";
-  if (shows_cloud && is_camera && picture.colour_by == ColourBy::ring) {
-    return "a camera has no rings to colour by";
-  }
-  if (format.suffix != ".depth.png" || is_camera) return "";
-  return looks_back(beams) ? "it has beams that point back, where depths are negative" : "";
 }
 
 void FileSink::write(const PointCloud& cloud, const Frame& frame) {

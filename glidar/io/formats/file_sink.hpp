@@ -70,9 +70,13 @@ struct SidecarContext {
 struct FileFormat {
   std::string suffix;       ///< ".pcd", ".depth.png" ... ; the longest match selects the format
   std::string description;  ///< for --help
-  std::vector<std::string> columns;  ///< cloud columns it needs at least
+  std::vector<std::string> columns;  ///< cloud columns that it requires
   bool takes_more = false;           ///< also stores all other columns of the cloud
   bool is_folder = false;            ///< the path is a folder, to which every frame adds its files
+  /// Columns that it reads for some sensors and scenes (KITTI: the range to calibrate intensities,
+  /// instance and class for labels).
+  std::vector<std::string> optional_columns = {};
+  bool reads_framebuffer = false;  ///< requires Frame::framebuffer
 };
 
 /// All formats, for help and errors.
@@ -86,13 +90,26 @@ std::filesystem::path output_path(const std::filesystem::path& path);
 /// suffixes and the nearest one.
 const FileFormat& format_for(const std::filesystem::path& path);
 
+/// The suffixes of all formats, with spaces between.
+std::string all_suffixes();
+
+/// The suffixes of formats that store any column: ".pcd .ply .npz .csv".
+std::string suffixes_with_columns();
+
+/// All columns that a format may read.
+std::vector<std::string> needed_columns(const FileFormat& format);
+
 /// True for formats that are plain text with these options and thus readable on a terminal.
 bool is_text(const FileFormat& format, const FileSinkOptions& options);
 
-/// Why a sensor of a rig has no output of this format, as the end of a sentence ("the depths of
-/// its beams behind it ..."); empty: it has. A depth image requires a sensor that looks ahead, a
-/// picture coloured by ring one with rings.
-std::string misfit(const FileFormat& format, const CloudPictureOptions& picture,
+/// Why a sensor of a rig has no output of a format.
+struct Misfit {
+  std::string reason = {};  ///< end of a sentence: "a camera has no rings ..."; empty: it has
+  std::string remedy = {};
+};
+
+/// A depth image requires a sensor that looks ahead, a picture coloured by ring one with rings.
+Misfit find_misfit(const FileFormat& format, const CloudPictureOptions& picture,
                    const Sensor& sensor, const Beams& beams);
 
 /// Writes files in two steps, so that the files of several sinks appear together or not at all.

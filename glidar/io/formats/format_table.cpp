@@ -21,122 +21,41 @@
 #include <glidar/io/formats/woods2016_png_file.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <string>
 
 namespace glidar {
-namespace {
-
-/// For formats that do not store points.
-std::vector<PointField> no_fields(const PointCloud& /*cloud*/) {
-  return {};
-}
-
-/// Image formats.
-std::vector<Format> image_formats() {
-  return {
-      {{".depth.tiff", "32-bit depth image, metres", {"depth"}, false},
-       Content::image,
-       depth_fields,
-       write_depth_tiff,
-       nullptr,
-       "depth in metres as 32-bit float; NaN: no return"},
-      {{".rgb.png", "surface colour, lit at the sensor", {"colour", "incidence"}, false},
-       Content::image,
-       no_fields,
-       write_rgb_png,
-       nullptr,
-       "surface colour times cosine of incidence times 255 as 8-bit RGB; black: no surface"},
-      {{".normal.png", "16-bit normals", {"normal"}, false},
-       Content::image,
-       no_fields,
-       write_normal_png,
-       nullptr,
-       "unit normal n in frame_id as 16-bit RGB v: n = 2 v / 65535 - 1; 0 0 0: no surface"},
-      {{".instance.png", "16-bit instance ids", {"instance"}, false},
-       Content::image,
-       no_fields,
-       write_instance_png,
-       nullptr,
-       "id of the instance as 16-bit grey; 0: no surface"},
-      {{".class.png", "class ids", {"class"}, false},
-       Content::image,
-       no_fields,
-       write_class_png,
-       nullptr,
-       "id of the class as grey; 0: unlabelled, or no surface"},
-  };
-}
-
-std::vector<Format> with_images(std::vector<Format> formats) {
-  for (const Format& format : image_formats()) formats.push_back(format);
-  return formats;
-}
-
-}  // namespace
 
 const std::vector<Format>& formats() {
-  static const std::vector<Format> kFormats = with_images({
-      {{".pcd", "Point Cloud Library", {"xyz"}, true}, Content::points, pcd_fields, write_pcd},
-      {{".ply", "Stanford polygon file", {"xyz"}, true}, Content::points, ply_fields, write_ply},
-      {{".npz", "NumPy archive of all columns", {"xyz"}, true},
-       Content::points,
-       native_fields,
-       write_npz},
-      {{".csv", "text table", {"xyz"}, true}, Content::points, native_fields, write_csv},
-      {{".bin", "KITTI Velodyne, with .label", {"xyz", "intensity"}, false},
-       Content::kitti,
-       kitti_fields,
-       write_kitti,
-       stage_labels_beside},
-      {{".kitti", "folder: velodyne calib label_2 labels", {"xyz", "intensity"}, false, true},
-       Content::kitti,
-       kitti_fields,
-       nullptr,
-       stage_kitti_folder},
-      {{".npy", "NumPy depth image, metres", {"depth"}, false},
-       Content::image,
-       depth_fields,
-       write_depth_npy,
-       nullptr,
-       "depth in metres as 32-bit float; NaN: no return"},
-      {{".depth.png", "16-bit depth image", {"depth"}, false},
-       Content::image,
-       no_fields,
-       write_depth_png,
-       nullptr,
-       "depth times units_per_m as 16-bit grey; 0: no return"},
-      {{".framebuffer.png", "8-bit RGBA image of --quantized-framebuffer", {}, false},
-       Content::per_beam,
-       no_fields,
-       write_woods2016_png},
-      {{".png", "preview picture", {"depth", "intensity"}, false},
-       Content::per_beam,
-       no_fields,
-       write_preview},
-      {{".transform", "4x4 pose of the first object", {}, false},
-       Content::per_beam,
-       no_fields,
-       write_transform},
-      {{".bev.png", "picture of the cloud from above", cloud_picture_columns(), false},
-       Content::per_beam,
-       no_fields,
-       write_bird_eye},
-      {{".view.png", "picture of the cloud in perspective", cloud_picture_columns(), false},
-       Content::per_beam,
-       no_fields,
-       write_perspective},
-  });
+  // clang-format off
+  static const std::vector<Format> kFormats = {
+      pcd_format(),
+      ply_format(),
+      npz_format(),
+      csv_format(),
+      kitti_format(),
+      kitti_folder_format(),
+      npy_format(),
+      depth_png_format(),
+      woods2016_png_format(),
+      preview_format(),
+      transform_format(),
+      bird_eye_format(),
+      perspective_format(),
+      depth_tiff_format(),
+      rgb_png_format(),
+      normal_png_format(),
+      instance_png_format(),
+      class_png_format(),
+  };
+  // clang-format on
   return kFormats;
 }
 
 namespace {
 
-std::vector<std::string> suffixes() {
-  std::vector<std::string> all;
-  for (const Format& format : formats()) all.push_back(format.info.suffix);
-  return all;
+const Format& entry_of(const FileFormat& format) {
+  return find_format("name" + format.suffix);
 }
 
 std::filesystem::path without_separators(const std::filesystem::path& path) {
@@ -160,26 +79,57 @@ const Format& find_format(const std::filesystem::path& given) {
   }
   if (best != nullptr) return *best;
   const std::string suffix = lower_case(path.extension().string());
-  const std::vector<std::string> all = suffixes();
+  std::vector<std::string> all;
+  for (const Format& format : formats()) all.push_back(format.info.suffix);
   const std::string nearest = suffix.empty() ? "" : closest_match(suffix, all);
   throw Error({given.string(),
                suffix.empty() ? "the name has no suffix that selects a format"
                               : fmt::format("no format has the suffix {}", excerpt(suffix)),
-               fmt::format("{}", fmt::join(all, " ")),
-               nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
+               all_suffixes(), nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
 }
 
 std::span<const FileFormat> file_formats() {
-  static const std::vector<FileFormat> kTold = [] {
+  static const std::vector<FileFormat> kInfos = [] {
     std::vector<FileFormat> infos;
     for (const Format& format : formats()) infos.push_back(format.info);
     return infos;
   }();
-  return kTold;
+  return kInfos;
 }
 
 const FileFormat& format_for(const std::filesystem::path& path) {
   return find_format(path).info;
+}
+
+std::string all_suffixes() {
+  std::string text;
+  for (const Format& format : formats()) text += (text.empty() ? "" : " ") + format.info.suffix;
+  return text;
+}
+
+std::string suffixes_with_columns() {
+  std::string text;
+  for (const Format& format : formats()) {
+    if (format.info.takes_more) text += (text.empty() ? "" : " ") + format.info.suffix;
+  }
+  return text;
+}
+
+std::vector<std::string> needed_columns(const FileFormat& format) {
+  std::vector<std::string> columns = format.columns;
+  columns.insert(columns.end(), format.optional_columns.begin(), format.optional_columns.end());
+  return columns;
+}
+
+bool is_text(const FileFormat& format, const FileSinkOptions& options) {
+  const Format& entry = entry_of(format);
+  return entry.is_text != nullptr && entry.is_text(options);
+}
+
+Misfit find_misfit(const FileFormat& format, const CloudPictureOptions& picture,
+                   const Sensor& sensor, const Beams& beams) {
+  const Format& entry = entry_of(format);
+  return entry.misfit != nullptr ? entry.misfit(picture, sensor, beams) : Misfit{};
 }
 
 }  // namespace glidar

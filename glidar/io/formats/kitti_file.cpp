@@ -97,4 +97,16 @@ void stage_kitti_labels(const CloudFile& job, const std::filesystem::path& path,
   labels.finish();
 }
 
+Format kitti_format() {
+  return {.info = {.suffix = ".bin",
+                   .description = "KITTI Velodyne, with .label",
+                   .columns = {"xyz", "intensity"},
+                   .optional_columns = {"range", "instance", "class"}},
+          .content = Content::kitti,
+          .fields = kitti_fields,
+          .write = write_kitti,
+          .stage_extra_files = stage_labels_beside,
+          .extra_path = labels_path};
+}
+
 }  // namespace glidar

@@ -5,8 +5,7 @@
 // Private to glidar/io: point files of KITTI's 3D object benchmark (Geiger et al. 2012; formats in
 // the readme of its object development kit) and label files of SemanticKITTI (Behley et al. 2019).
 
-#include <glidar/io/files/staged_files.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 #include <filesystem>
 #include <vector>
@@ -44,5 +43,7 @@ std::filesystem::path labels_path(const std::filesystem::path& path);
 /// stage_kitti_labels for the OUT.label of OUT.bin.
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files);
+
+Format kitti_format();
 
 }  // namespace glidar

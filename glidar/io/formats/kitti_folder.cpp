@@ -209,4 +209,15 @@ void stage_kitti_folder(const CloudFile& job, const std::filesystem::path& folde
            kitti_labels(context.scene, context.sensor, job.frame), files);
 }
 
+Format kitti_folder_format() {
+  return {.info = {.suffix = ".kitti",
+                   .description = "folder: velodyne calib label_2 labels",
+                   .columns = {"xyz", "intensity"},
+                   .is_folder = true,
+                   .optional_columns = {"range", "instance", "class"}},
+          .content = Content::kitti,
+          .fields = kitti_fields,
+          .stage_extra_files = stage_kitti_folder};
+}
+
 }  // namespace glidar

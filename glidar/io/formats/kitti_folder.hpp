@@ -5,8 +5,7 @@
 // Private to glidar/io: folders of KITTI's 3D object benchmark (Geiger et al. 2012; formats in the
 // readme of its object development kit).
 
-#include <glidar/io/files/staged_files.hpp>
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 #include <filesystem>
 #include <string>
@@ -26,5 +25,7 @@ std::string kitti_calibration(const Sensor& sensor);
 /// The text of a file in label_2/: a line for each visible instance, with its box in the
 /// camera's frame; DontCare for those without a class.
 std::string kitti_labels(const Scene& scene, const Sensor& sensor, const Frame& frame);
+
+Format kitti_folder_format();
 
 }  // namespace glidar

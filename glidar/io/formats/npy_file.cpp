@@ -38,4 +38,13 @@ void write_depth_npy(const CloudFile& job, AtomicFile& file) {
   write_binary_rows(job.fields, job.cloud.size(), file);
 }
 
+Format npy_format() {
+  return {
+      .info = {.suffix = ".npy", .description = "NumPy depth image, metres", .columns = {"depth"}},
+      .content = Content::image,
+      .fields = depth_fields,
+      .write = write_depth_npy,
+      .pixels = "depth in metres as 32-bit float; NaN: no return"};
+}
+
 }  // namespace glidar

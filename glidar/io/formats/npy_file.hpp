@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 #include <cstddef>
 #include <span>
@@ -21,5 +21,7 @@ std::vector<PointField> depth_fields(const PointCloud& cloud);
 
 /// Writes a NumPy array rows x cols of float32 depth in metres, NaN for no return.
 void write_depth_npy(const CloudFile& job, AtomicFile& file);
+
+Format npy_format();
 
 }  // namespace glidar

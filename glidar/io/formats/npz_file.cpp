@@ -175,8 +175,8 @@ std::span<const double> numbers(const RowMajor4d& matrix) {
   return {matrix.data(), 16};
 }
 
-}  // namespace
-
+/// Writes an uncompressed NumPy archive: every column as (rows, cols) or (rows, cols, components),
+/// poses 4x4 (world_from_sensor, world_from_cloud, world_from_instance (k, 4, 4)), stamp_ns, seed.
 void write_npz(const CloudFile& job, AtomicFile& file) {
   const Frame& frame = job.frame;
   const RowMajor4d world_from_sensor = frame.world_from_sensor.matrix();
@@ -196,6 +196,18 @@ void write_npz(const CloudFile& job, AtomicFile& file) {
   arrays.push_back(array_of("stamp_ns", {}, std::span(&frame.stamp_ns, 1)));
   arrays.push_back(array_of("seed", {}, std::span(&frame.seed, 1)));
   write_archive(arrays, file);
+}
+
+}  // namespace
+
+Format npz_format() {
+  return {.info = {.suffix = ".npz",
+                   .description = "NumPy archive of all columns",
+                   .columns = {"xyz"},
+                   .takes_more = true},
+          .content = Content::points,
+          .fields = native_fields,
+          .write = write_npz};
 }
 
 }  // namespace glidar

@@ -91,8 +91,8 @@ void write_compressed(std::span<const PointField> fields, std::size_t count, Ato
   file.write(std::span<const std::byte>(packed).first(packed_size));
 }
 
-}  // namespace
-
+/// Fields of a PCD file: real numbers as float, as PCL's point types require; colour is PCL's
+/// packed `rgb`.
 std::vector<PointField> pcd_fields(const PointCloud& cloud) {
   std::vector<PointField> fields;
   for (const Column& column : cloud.columns) {
@@ -109,6 +109,8 @@ std::vector<PointField> pcd_fields(const PointCloud& cloud) {
   return fields;
 }
 
+/// Writes a Point Cloud Library file, format 0.7: https://pcl.readthedocs.io (The PCD file format).
+/// The viewpoint is the sensor's pose in the cloud's frame.
 void write_pcd(const CloudFile& job, AtomicFile& file) {
   const std::span<const PointField> fields = job.fields;
   file.write(header(job, fields));
@@ -120,6 +122,20 @@ void write_pcd(const CloudFile& job, AtomicFile& file) {
     case PcdEncoding::binary_compressed:
       return write_compressed(fields, job.cloud.size(), file);
   }
+}
+
+}  // namespace
+
+Format pcd_format() {
+  return {
+      .info = {.suffix = ".pcd",
+               .description = "Point Cloud Library",
+               .columns = {"xyz"},
+               .takes_more = true},
+      .content = Content::points,
+      .fields = pcd_fields,
+      .write = write_pcd,
+      .is_text = [](const FileSinkOptions& options) { return options.pcd == PcdEncoding::ascii; }};
 }
 
 }  // namespace glidar

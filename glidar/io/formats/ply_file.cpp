@@ -56,8 +56,9 @@ std::string ply_header(const CloudFile& job, std::span<const PointField> fields)
   return text + "end_header\n";
 }
 
-}  // namespace
-
+/// Fields of a PLY file: x y z are float unless that moves a point by more than 0.1 mm, then
+/// double. Other columns keep their types, except 64-bit integers, which become double; normals are
+/// nx ny nz, colour is uchar red green blue.
 std::vector<PointField> ply_fields(const PointCloud& cloud) {
   std::vector<PointField> fields;
   for (const Column& column : cloud.columns) {
@@ -78,6 +79,8 @@ std::vector<PointField> ply_fields(const PointCloud& cloud) {
   return fields;
 }
 
+/// Writes a Stanford polygon file, little-endian or ascii, vertices only. The size of an organised
+/// cloud is stored as in PCL: `obj_info num_cols`.
 void write_ply(const CloudFile& job, AtomicFile& file) {
   const std::span<const PointField> fields = job.fields;
   file.write(ply_header(job, fields));
@@ -86,6 +89,19 @@ void write_ply(const CloudFile& job, AtomicFile& file) {
   } else {
     write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
   }
+}
+
+}  // namespace
+
+Format ply_format() {
+  return {.info = {.suffix = ".ply",
+                   .description = "Stanford polygon file",
+                   .columns = {"xyz"},
+                   .takes_more = true},
+          .content = Content::points,
+          .fields = ply_fields,
+          .write = write_ply,
+          .is_text = [](const FileSinkOptions& options) { return options.ply_ascii; }};
 }
 
 }  // namespace glidar

@@ -192,8 +192,7 @@ std::vector<Panel> panels_of(const Measured& measured) {
   return panels;
 }
 
-}  // namespace
-
+/// Writes a preview: coloured depth and grey intensity, each with its colour scale.
 void write_preview(const CloudFile& job, AtomicFile& file) {
   const Measured measured = measured_of(job);
   const std::vector<Panel> panels = panels_of(measured);
@@ -219,6 +218,16 @@ void write_preview(const CloudFile& job, AtomicFile& file) {
              static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
              measured.distance_title + " and intensity"},
             file);
+}
+
+}  // namespace
+
+Format preview_format() {
+  return {.info = {.suffix = ".png",
+                   .description = "preview picture",
+                   .columns = {"depth", "intensity"}},
+          .content = Content::per_beam,
+          .write = write_preview};
 }
 
 }  // namespace glidar

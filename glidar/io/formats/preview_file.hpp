@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 namespace glidar {
 
-/// Writes a preview: coloured depth and grey intensity, each with its colour scale.
-void write_preview(const CloudFile& job, AtomicFile& file);
+/// Previews of depth and intensity.
+Format preview_format();
 
 }  // namespace glidar

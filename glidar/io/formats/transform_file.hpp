@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 namespace glidar {
 
-/// Writes cloud_from_object of the first instance without its scale, 4x4, one row per line, 17
-/// digits. Throws Error when the frame has no instance.
-void write_transform(const CloudFile& job, AtomicFile& file);
+/// The pose of the first object as text.
+Format transform_format();
 
 }  // namespace glidar

@@ -46,8 +46,8 @@ std::vector<Grey> greys_of(const std::vector<std::uint32_t>& ids) {
   return greys;
 }
 
-}  // namespace
-
+/// 8-bit RGB: the surface's colour times the cosine of incidence, as lit by a light at the sensor
+/// without attenuation.
 void write_rgb_png(const CloudFile& job, AtomicFile& file) {
   const auto& colours = field_values<float>(job, "colour");
   const auto& incidences = field_values<float>(job, "incidence");
@@ -59,6 +59,7 @@ void write_rgb_png(const CloudFile& job, AtomicFile& file) {
   write_pixels(job, PngKind::rgb8, pixels, file);
 }
 
+/// 16-bit RGB: the triangle's unit normal in the cloud's frame, n = 2 v / 65535 - 1.
 void write_normal_png(const CloudFile& job, AtomicFile& file) {
   const auto& normals = field_values<float>(job, "normal");
   std::vector<std::uint16_t> pixels(normals.size());
@@ -68,6 +69,7 @@ void write_normal_png(const CloudFile& job, AtomicFile& file) {
   write_pixels(job, PngKind::rgb16, pixels, file);
 }
 
+/// 16-bit grey: ids of instances.
 void write_instance_png(const CloudFile& job, AtomicFile& file) {
   const auto& ids = field_values<std::uint32_t>(job, "instance");
   for (const std::uint32_t id : ids) {
@@ -82,6 +84,7 @@ void write_instance_png(const CloudFile& job, AtomicFile& file) {
   write_pixels(job, PngKind::grey16, greys_of<std::uint16_t>(ids), file);
 }
 
+/// 8-bit grey, for scenes with more than 256 classes 16-bit grey: ids of classes.
 void write_class_png(const CloudFile& job, AtomicFile& file) {
   constexpr std::size_t kMaxSmall = 256;
   const auto& ids = field_values<std::uint32_t>(job, "class");
@@ -95,6 +98,42 @@ void write_class_png(const CloudFile& job, AtomicFile& file) {
                  "up to 65536 classes, which fit 16 bits", "write a cloud with the column class"});
   }
   write_pixels(job, PngKind::grey16, greys_of<std::uint16_t>(ids), file);
+}
+
+}  // namespace
+
+Format rgb_png_format() {
+  return {.info = {.suffix = ".rgb.png",
+                   .description = "surface colour, lit at the sensor",
+                   .columns = {"colour", "incidence"}},
+          .content = Content::image,
+          .write = write_rgb_png,
+          .pixels =
+              "surface colour times cosine of incidence times 255 as 8-bit RGB; black: no surface"};
+}
+
+Format normal_png_format() {
+  return {.info = {.suffix = ".normal.png", .description = "16-bit normals", .columns = {"normal"}},
+          .content = Content::image,
+          .write = write_normal_png,
+          .pixels =
+              "unit normal n in frame_id as 16-bit RGB v: n = 2 v / 65535 - 1; 0 0 0: no surface"};
+}
+
+Format instance_png_format() {
+  return {.info = {.suffix = ".instance.png",
+                   .description = "16-bit instance ids",
+                   .columns = {"instance"}},
+          .content = Content::image,
+          .write = write_instance_png,
+          .pixels = "id of the instance as 16-bit grey; 0: no surface"};
+}
+
+Format class_png_format() {
+  return {.info = {.suffix = ".class.png", .description = "class ids", .columns = {"class"}},
+          .content = Content::image,
+          .write = write_class_png,
+          .pixels = "id of the class as grey; 0: unlabelled, or no surface"};
 }
 
 }  // namespace glidar

@@ -10,7 +10,10 @@
 #include <span>
 
 namespace glidar {
+namespace {
 
+/// Writes the frame's Woods2016Framebuffer byte by byte as 8-bit RGBA; the file's description
+/// contains its clipping planes. Throws Error when the frame was not read from such a framebuffer.
 void write_woods2016_png(const CloudFile& job, AtomicFile& file) {
   const Woods2016Framebuffer& framebuffer = job.frame.framebuffer;
   if (framebuffer.rgba.empty()) {
@@ -24,6 +27,17 @@ void write_woods2016_png(const CloudFile& job, AtomicFile& file) {
                          "(f - n) / 65536, n = {:.17g} m, f = {:.17g} m",
                          framebuffer.near_m, framebuffer.far_m)},
             file);
+}
+
+}  // namespace
+
+Format woods2016_png_format() {
+  return {.info = {.suffix = ".framebuffer.png",
+                   .description = "8-bit RGBA image of --quantized-framebuffer",
+                   .columns = {},
+                   .reads_framebuffer = true},
+          .content = Content::per_beam,
+          .write = write_woods2016_png};
 }
 
 }  // namespace glidar
