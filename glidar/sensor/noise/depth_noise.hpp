@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/field.hpp>
+#include <glidar/sensor/noise/step_traits.hpp>
 
 namespace glidar {
 
@@ -19,6 +20,7 @@ struct DisparityQuantization {
   static constexpr TypeInfo kType = {"disparity_quantization",
                                      "z = K / (n + offset), n integer; levels are z²/K apart",
                                      "structured light, K = f b / step"};
+  static constexpr StepTraits kTraits = {.reads_depth = true};
   double k_m = 0.0;
   double offset_steps = 0.0;
 };
@@ -32,6 +34,7 @@ struct KinectV1 {
   static constexpr TypeInfo kType = {
       "kinect_v1", "normal error of K/z, shared over window x window pixels, then rounded",
       "OpenNI's table; noise of real frames"};
+  static constexpr StepTraits kTraits = {.reads_depth = true};
   double k_m = 9.0 / 0.02605;
   double offset_steps = 0.40787;
   double sigma_steps = 0.44;
@@ -43,6 +46,7 @@ struct KinectV1 {
 struct Khoshelham {
   static constexpr TypeInfo kType = {"khoshelham", "σ_z = 1.425e-3 z²",
                                      "Khoshelham and Elberink, Sensors 12 (2012)"};
+  static constexpr StepTraits kTraits = {.reads_depth = true};
   double sigma_per_m = 1.425e-3;
 };
 
@@ -53,6 +57,7 @@ struct NguyenAxial {
   static constexpr TypeInfo kType = {
       "nguyen_axial", "σ_z = a + b (z - c)², beyond 60° + grazing_coefficient/√z θ²/(π/2 - θ)²",
       "Nguyen, Izadi, Lovell, 3DIMPVT 2012"};
+  static constexpr StepTraits kTraits = {.reads_depth = true, .reads_incidence = true};
   double a_m = 0.0012;
   double b_per_m = 0.0019;
   double c_m = 0.4;
@@ -65,6 +70,7 @@ struct NguyenLateral {
   static constexpr TypeInfo kType = {
       "nguyen_lateral", "depth of the point σ_L x pixels away, σ_L = a + b θ/(π/2 - θ)",
       "Nguyen, Izadi, Lovell, 3DIMPVT 2012"};
+  static constexpr StepTraits kTraits = {.reads_depth = true, .reads_incidence = true};
   double a_px = 0.8;
   double b_px = 0.035;
 };
@@ -75,6 +81,7 @@ struct IclKinect {
   static constexpr TypeInfo kType = {
       "icl_kinect", "depth of the point N(0, lateral) away, K/z + N(0, σ), rounded",
       "Barron and Malik 2013; Handa et al. 2014"};
+  static constexpr StepTraits kTraits = {.reads_depth = true};
   double k_m = 351.30;
   double lateral_px = 0.5;
   double sigma_steps = 1.0 / 6.0;
@@ -86,6 +93,7 @@ struct Stereo {
   static constexpr TypeInfo kType = {"stereo",
                                      "f b / z + σ x, rounded to steps if set; σ_z = z² σ / (f b)",
                                      "propagation of the disparity error"};
+  static constexpr StepTraits kTraits = {.reads_depth = true};
   double focal_px = 0.0;
   double baseline_m = 0.0;
   double sigma_px = 0.0;

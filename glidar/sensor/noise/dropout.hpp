@@ -4,6 +4,7 @@
 
 #include <glidar/core/field.hpp>
 #include <glidar/math/lookup_table.hpp>
+#include <glidar/sensor/noise/step_traits.hpp>
 
 namespace glidar {
 
@@ -16,6 +17,7 @@ struct Dropout {
   static constexpr TypeInfo kType = {"dropout",
                                      "lost with probability 1 - (1-p)(1-p(R))(1-p(θ)): `dropped`",
                                      "independent losses"};
+  static constexpr StepTraits kTraits = {.reads_incidence = true};
   double probability = 0.0;
   LookupTable by_range_m{};
   LookupTable by_incidence_rad{};
@@ -27,6 +29,7 @@ struct Crosstalk {
   static constexpr TypeInfo kType = {
       "crosstalk", "range uniform between near and the range of another beam of the column",
       "echo of a pulse that another channel fired"};
+  static constexpr StepTraits kTraits = {.adds_returns = true};
   double probability = 0.0;
   double near_m = 0.0;
 };
@@ -41,6 +44,7 @@ struct FalseAlarms {
       "first arrival of a Poisson process in the gate, if before the echo; a data sheet's "
       "probability P per beam is the rate -ln(1 - P) c / (2 (far - near))",
       "waiting times of a Poisson process are exponential"};
+  static constexpr StepTraits kTraits = {.adds_returns = true};
   double rate_hz = 0.0;
   double near_m = 0.0;
   double far_m = 0.0;

@@ -18,23 +18,19 @@ namespace {
 constexpr std::size_t kGrain = 8 * kSampleBatch;
 
 template <class Step>
-constexpr bool kPerturbsBeams =
-    std::is_same_v<Step, PointingJitter> || std::is_same_v<Step, EncoderError>;
+constexpr StepTraits traits_of() {
+  if constexpr (requires { Step::kTraits; }) {
+    return Step::kTraits;
+  } else {
+    return {};
+  }
+}
 
+/// Steps with pointing noise: they change the beams before these are cast.
 template <class Step>
-constexpr bool kUsesDepth =
-    std::is_same_v<Step, DisparityQuantization> || std::is_same_v<Step, KinectV1> ||
-    std::is_same_v<Step, Khoshelham> || std::is_same_v<Step, NguyenAxial> ||
-    std::is_same_v<Step, NguyenLateral> || std::is_same_v<Step, IclKinect> ||
-    std::is_same_v<Step, Stereo>;
-
-template <class Step>
-constexpr bool kUsesIncidence =
-    std::is_same_v<Step, NguyenAxial> || std::is_same_v<Step, NguyenLateral> ||
-    std::is_same_v<Step, Dropout>;
-
-template <class Step>
-constexpr bool kMakesReturns = std::is_same_v<Step, Crosstalk> || std::is_same_v<Step, FalseAlarms>;
+constexpr bool kPerturbsBeams = requires(const Step& step, const RngKey& key, Beams& beams) {
+  perturb(step, key, 0, 0, beams);
+};
 
 /// Steps that read other beams too: the whole frame is prepared before any of it changes.
 template <class Step>
@@ -43,22 +39,30 @@ constexpr bool kReadsNeighbours = requires(const Step& step, const NoiseView& vi
   prepare(step, view, batch);
 };
 
+StepTraits traits(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return traits_of<std::decay_t<decltype(s)>>(); }, step);
+}
+
 bool perturbs_beams(const NoiseStep& step) {
   return std::visit([](const auto& s) { return kPerturbsBeams<std::decay_t<decltype(s)>>; }, step);
 }
 
-bool uses_depth(const NoiseStep& step) {
-  return std::visit([](const auto& s) { return kUsesDepth<std::decay_t<decltype(s)>>; }, step);
+bool reads_depth(const NoiseStep& step) {
+  return traits(step).reads_depth;
+}
+
+bool reads_incidence(const NoiseStep& step) {
+  return traits(step).reads_incidence;
+}
+
+bool adds_returns(const NoiseStep& step) {
+  return traits(step).adds_returns;
 }
 
 bool reads_neighbours(const NoiseStep& step) {
   if (const auto* waves = std::get_if<ContinuousWave>(&step)) return has_multipath(*waves);
   return std::visit([](const auto& s) { return kReadsNeighbours<std::decay_t<decltype(s)>>; },
                     step);
-}
-
-bool makes_returns(const NoiseStep& step) {
-  return std::visit([](const auto& s) { return kMakesReturns<std::decay_t<decltype(s)>>; }, step);
 }
 
 GLIDAR_SIMD void widen(const float* from, std::size_t count, double* to) {
@@ -227,7 +231,7 @@ std::vector<NoisePlan::Run> runs_of(const std::vector<NoiseStep>& steps) {
     runs.push_back({.begin = begin,
                     .end = end,
                     .reads_neighbours = reads_neighbours(*first),
-                    .reads_depth = std::any_of(first, last, uses_depth)});
+                    .reads_depth = std::any_of(first, last, reads_depth)});
   }
   return runs;
 }
@@ -244,11 +248,7 @@ Purpose rng_purpose(std::size_t step) {
 
 void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fields) {
   fields.noise_scale = fields.noise_scale || !noise.empty();
-  fields.incidence =
-      fields.incidence || std::any_of(noise.begin(), noise.end(), [](const NoiseStep& step) {
-        return std::visit([](const auto& s) { return kUsesIncidence<std::decay_t<decltype(s)>>; },
-                          step);
-      });
+  fields.incidence = fields.incidence || std::any_of(noise.begin(), noise.end(), reads_incidence);
 }
 
 NoisePlan plan_noise(std::vector<NoiseStep> steps, double frame_s) {
@@ -260,7 +260,7 @@ NoisePlan plan_noise(std::vector<NoiseStep> steps, double frame_s) {
   plan.perturbs_directions = any(perturbs_beams);
   plan.changes_returns = any([](const NoiseStep& step) { return !perturbs_beams(step); });
   plan.reads_neighbours = any(reads_neighbours);
-  plan.adds_returns = any(makes_returns);
+  plan.adds_returns = any(adds_returns);
   return plan;
 }
 
