@@ -66,11 +66,8 @@ void cast_beams(std::span<const Simulation> frames, const MeasureTile& measure) 
   const Simulation& s = frames.front();
   const auto measure_one = [&](BeamRange tile) { measure(s, tile); };
   const FunctionRef<void(BeamRange)> on_tile_done(measure_one);
-  Hits& hits = s.frame.ground_truth;
   if (s.sensor.pulse_model) return cast_pulses(s, {0, s.fired->firings()}, on_tile_done);
-  const CastRequest request = beam_request(s, on_tile_done);
-  if (!s.is_moving) return s.renderer.cast(request, hits);
-  cast_moving(timed_scene(s), request, s.workspace.moving_cast, hits);
+  cast(s, beam_request(s, on_tile_done), s.frame.ground_truth);
 }
 
 /// Range and status of a tile of beams from the ground truth.
