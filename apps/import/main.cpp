@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
-// Reads one model and writes one frame (glidar/io/model/mesh_blob.hpp) to descriptor 3: the model,
+// Reads one model and writes one block (glidar/io/model/mesh_blob.hpp) to descriptor 3: the model,
 // or the error. It reads the model in a sandbox (sandbox.hpp). Progress in percent goes to
 // descriptor 4, one byte each. The GLIDAR library starts it; it is not for direct use.
 

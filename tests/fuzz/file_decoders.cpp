@@ -49,12 +49,12 @@ void read_recording(const fs::path& file) {
   }
 }
 
-/// Puts the right checksum into a frame: a fuzzer would not find it, and stay outside what it
+/// Puts the right checksum into a block: a fuzzer would not find it, and stay outside what it
 /// guards.
 void put_checksum(const fs::path& file) {
   std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
-  FrameHead head;
+  BlockHead head;
   if (bytes.size() < sizeof head) return;
   std::memcpy(&head, bytes.data(), sizeof head);
   ContentHash hash;
@@ -65,17 +65,17 @@ void put_checksum(const fs::path& file) {
   stream.write(reinterpret_cast<const char*>(&head), sizeof head);
 }
 
-/// One frame: a model, a failure or a file of the cache.
-void read_frame(const fs::path& file) {
+/// One block: a model, a failure or a file of the cache.
+void read_block(const fs::path& file) {
   put_checksum(file);
   const UniqueFd fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  FrameReader frame(fd.get());
-  if (frame.kind() == FrameKind::model) {
-    read_model(frame);
-  } else if (frame.kind() == FrameKind::failure) {
-    read_failure(frame);
+  BlockReader block(fd.get());
+  if (block.kind() == BlockKind::model) {
+    read_model(block);
+  } else if (block.kind() == BlockKind::failure) {
+    read_failure(block);
   } else {
-    read_cached_file(frame);
+    read_cached_file(block);
   }
 }
 
@@ -101,7 +101,7 @@ constexpr std::array<FileDecoder, 11> kDecoders = {{
     {"png", "texture.png", [](const fs::path& file) { read_png_texture(file); }},
     {"sidecar", "cloud.pcd.json", read_sidecar_of_cloud},
     {"recording", "stream.jsonl", read_recording},
-    {"mesh_blob", "a.model", read_frame},
+    {"mesh_blob", "a.model", read_block},
     {"pose_text", "pose.txt", read_pose_text},
 }};
 

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/text_file.hpp>
-#include <glidar/io/formats/text_rows.hpp>
+#include <glidar/io/formats/text_row_reader.hpp>
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ TextFileKind file_kind() {
   return {"a trajectory file", kMaxTrajectoryFile_mib, "shorten it, or reduce the number of poses"};
 }
 
-void require_count(const TextRows& rows, std::size_t count, const char* what) {
+void require_count(const TextRowReader& rows, std::size_t count, const char* what) {
   const std::vector<Word>& words = rows.words();
   if (words.size() == count) return;
   const Word& at = words.size() > count ? words[count] : words.back();
@@ -41,7 +41,7 @@ void require_count(const TextRows& rows, std::size_t count, const char* what) {
 }
 
 /// Appends the pose; throws Error at the word of an invalid part.
-void append(const TextRows& rows, const TimedPose& pose, const std::array<Word, 3>& parts,
+void append(const TextRowReader& rows, const TimedPose& pose, const std::array<Word, 3>& parts,
             std::vector<TimedPose>& poses) {
   const auto error = find_error(poses.empty() ? nullptr : &poses.back(), pose);
   if (error)
@@ -49,7 +49,7 @@ void append(const TextRows& rows, const TimedPose& pose, const std::array<Word, 
   poses.push_back(pose);
 }
 
-void read_quaternion_row(const TextRows& rows, const Columns& columns,
+void read_quaternion_row(const TextRowReader& rows, const Columns& columns,
                          std::vector<TimedPose>& poses) {
   require_count(rows, kTum, "");
   const auto word = [&](std::size_t name) { return rows.words()[columns[name]]; };
@@ -60,7 +60,7 @@ void read_quaternion_row(const TextRows& rows, const Columns& columns,
 }
 
 /// The header of a CSV file.
-Columns named_columns(const TextRows& rows) {
+Columns named_columns(const TextRowReader& rows) {
   const std::string allowed = "t, x, y, z, qw, qx, qy, qz, each once, in any order";
   const std::vector<std::string> known(kNames.begin(), kNames.end());
   Columns columns{};
@@ -87,7 +87,7 @@ Columns named_columns(const TextRows& rows) {
 /// The times of a KITTI sequence.
 std::vector<std::int64_t> read_times(const std::filesystem::path& path) {
   const std::string content = read_text_file(path, file_kind());
-  TextRows rows(path.string(), content);
+  TextRowReader rows(path.string(), content);
   std::vector<std::int64_t> times;
   while (rows.next()) {
     require_count(rows, 1, ": a time in seconds");
@@ -116,7 +116,7 @@ class KittiClock {
     times_ = read_times(options.times_file);
   }
 
-  [[nodiscard]] std::int64_t time_ns(const TextRows& rows, std::size_t pose) const {
+  [[nodiscard]] std::int64_t time_ns(const TextRowReader& rows, std::size_t pose) const {
     if (times_file_.empty()) {
       return std::llround(static_cast<double>(pose) * 1e9 / rate_hz_);
     }
@@ -137,7 +137,7 @@ class KittiClock {
   std::vector<std::int64_t> times_;
 };
 
-void read_matrix_row(const TextRows& rows, std::int64_t t_ns, std::vector<TimedPose>& poses) {
+void read_matrix_row(const TextRowReader& rows, std::int64_t t_ns, std::vector<TimedPose>& poses) {
   require_count(rows, kKitti, "");
   Eigen::Matrix<double, 3, 4> matrix;
   for (Eigen::Index i = 0; i < 12; ++i) {
@@ -156,7 +156,7 @@ void read_matrix_row(const TextRows& rows, std::int64_t t_ns, std::vector<TimedP
   append(rows, timed, {rows.words()[0], rows.words()[3], rows.words()[0]}, poses);
 }
 
-std::vector<TimedPose> read_kitti(TextRows& rows, const std::string& file,
+std::vector<TimedPose> read_kitti(TextRowReader& rows, const std::string& file,
                                   const TrajectoryFileOptions& options) {
   const KittiClock clock(file, options);
   std::vector<TimedPose> poses;
@@ -167,7 +167,7 @@ std::vector<TimedPose> read_kitti(TextRows& rows, const std::string& file,
   return poses;
 }
 
-std::vector<TimedPose> read_quaternions(TextRows& rows, const std::string& file,
+std::vector<TimedPose> read_quaternions(TextRowReader& rows, const std::string& file,
                                         const TrajectoryFileOptions& options) {
   if (options.rate_hz || !options.times_file.empty()) {
     throw Error({file, "a file that has times of its own", "a rate or times with KITTI files only",
@@ -203,7 +203,7 @@ TimedPoses load_trajectory_file(const std::filesystem::path& path,
         {file, "a rate of " + std::to_string(*options.rate_hz) + " Hz", "from 0.01 to 1e9 Hz", ""});
   }
   const std::string content = read_text_file(path, file_kind());
-  TextRows rows(file, content);
+  TextRowReader rows(file, content);
   if (!rows.next()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
   const std::size_t width = rows.words().size();
   if (!rows.has_commas() && width != kTum && width != kKitti) {

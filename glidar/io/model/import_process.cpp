@@ -185,7 +185,7 @@ Ending end(pid_t child, bool is_killed) {
   return ending;
 }
 
-/// Exit status of the import program when it has no memory left to report this in a frame.
+/// Exit status of the import program when it has no memory left to report this in a block.
 constexpr int kExitNoMemory = 3;
 
 void classify(ImportRun& run, int status) {
@@ -273,9 +273,9 @@ ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
   }
   std::optional<ImportFailure> failure;
   try {
-    FrameReader frame(run.answer.get());
-    if (frame.kind() == FrameKind::model) return read_model(frame);
-    failure = read_failure(frame);
+    BlockReader block(run.answer.get());
+    if (block.kind() == BlockKind::model) return read_model(block);
+    failure = read_failure(block);
   } catch (const Error& error) {
     reject_answer(request.model, error.parts().found);
   }

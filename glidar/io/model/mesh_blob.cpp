@@ -18,14 +18,14 @@ namespace {
 
 struct Out {
   static constexpr bool kReads = false;
-  FrameWriter& frame;
-  void raw(const void* data, std::size_t size) { frame.bytes(data, size); }
+  BlockWriter& block;
+  void raw(const void* data, std::size_t size) { block.bytes(data, size); }
 };
 
 struct In {
   static constexpr bool kReads = true;
-  FrameReader& frame;
-  void raw(void* data, std::size_t size) { frame.bytes(data, size); }
+  BlockReader& block;
+  void raw(void* data, std::size_t size) { block.bytes(data, size); }
 };
 
 template <class T>
@@ -63,7 +63,7 @@ void visit(A& archive, T& text) {
   std::uint64_t size = text.size();
   visit(archive, size);
   if constexpr (A::kReads) {
-    if (size > archive.frame.remaining()) reject_imported_data("a string longer than the data");
+    if (size > archive.block.remaining()) reject_imported_data("a string longer than the data");
     text.resize(size);
   }
   archive.raw(text.data(), size);
@@ -94,7 +94,7 @@ void visit(A& archive, V& values) {
     // A record starts with the length of a string, and needs more memory than bytes: a small limit
     // for them.
     const std::uint64_t each = kPlain<T> ? sizeof(T) : sizeof(std::uint64_t);
-    if (size > archive.frame.remaining() / each || (!kPlain<T> && size > kMaxRecords)) {
+    if (size > archive.block.remaining() / each || (!kPlain<T> && size > kMaxRecords)) {
       reject_imported_data("an array longer than the data");
     }
     values.resize(size);
@@ -173,19 +173,19 @@ void visit(A& archive, T& record) {
 }
 
 template <class... T>
-void write_frame(int fd, FrameKind kind, const T&... values) {
-  FrameWriter frame(fd, kind);
-  Out archive{frame};
+void write_block(int fd, BlockKind kind, const T&... values) {
+  BlockWriter block(fd, kind);
+  Out archive{block};
   (visit(archive, values), ...);
-  frame.finish();
+  block.finish();
 }
 
 template <class... T>
-void read_frame(FrameReader& frame, FrameKind kind, T&... values) {
-  if (frame.kind() != kind) reject_imported_data("a frame of another type");
-  In archive{frame};
+void read_block(BlockReader& block, BlockKind kind, T&... values) {
+  if (block.kind() != kind) reject_imported_data("a block of another type");
+  In archive{block};
   (visit(archive, values), ...);
-  frame.finish();
+  block.finish();
 }
 
 // Checks of a model that the type system does not guarantee.
@@ -272,33 +272,33 @@ void check(const ImportedModel& imported) {
 }  // namespace
 
 void write_model(int fd, const ImportedModel& imported) {
-  write_frame(fd, FrameKind::model, imported);
+  write_block(fd, BlockKind::model, imported);
 }
 
-ImportedModel read_model(FrameReader& frame) {
+ImportedModel read_model(BlockReader& block) {
   ImportedModel imported;
-  read_frame(frame, FrameKind::model, imported);
+  read_block(block, BlockKind::model, imported);
   check(imported);
   return imported;
 }
 
 void write_failure(int fd, const ImportFailure& failure) {
-  write_frame(fd, FrameKind::failure, failure);
+  write_block(fd, BlockKind::failure, failure);
 }
 
-ImportFailure read_failure(FrameReader& frame) {
+ImportFailure read_failure(BlockReader& block) {
   ImportFailure failure;
-  read_frame(frame, FrameKind::failure, failure);
+  read_block(block, BlockKind::failure, failure);
   return failure;
 }
 
 void write_cached_file(int fd, const CacheIndex& index, const ImportedModel& imported) {
-  write_frame(fd, FrameKind::cached_file, index, imported);
+  write_block(fd, BlockKind::cached_file, index, imported);
 }
 
-CachedFile read_cached_file(FrameReader& frame) {
+CachedFile read_cached_file(BlockReader& block) {
   CachedFile cached;
-  read_frame(frame, FrameKind::cached_file, cached.index, cached.imported);
+  read_block(block, BlockKind::cached_file, cached.index, cached.imported);
   check(cached.imported);
   if (cached.imported.libraries.size() != cached.index.states_of_libraries.size())
     reject_imported_data("a cache without the states of its libraries");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/formats/frame_stream.hpp>
+#include <glidar/io/files/checksummed_block.hpp>
 #include <glidar/io/model/imported_model.hpp>
 
 #include <cstdint>
@@ -18,10 +18,10 @@ inline constexpr std::uint64_t kMaxRecords = std::uint64_t{1} << 20U;
 /// declaration; counts as uint64, then the raw elements.
 void write_model(int fd, const ImportedModel& imported);
 
-/// Reads what write_model wrote, from a frame whose header was read already. Checks every size,
+/// Reads what write_model wrote, from a block whose header was read already. Checks every size,
 /// index and number before it returns the model, because a malicious file may have compromised the
 /// writer; throws Error.
-ImportedModel read_model(FrameReader& frame);
+ImportedModel read_model(BlockReader& block);
 
 /// Why the import process returned no model.
 struct ImportFailure {
@@ -30,7 +30,7 @@ struct ImportFailure {
 };
 
 void write_failure(int fd, const ImportFailure& failure);
-ImportFailure read_failure(FrameReader& frame);
+ImportFailure read_failure(BlockReader& block);
 
 /// Dependencies of a cached model other than those in ImportedModel.
 struct CacheIndex {
@@ -41,7 +41,7 @@ struct CacheIndex {
       states_of_libraries;  ///< one per library; a different one invalidates the file
 };
 
-/// A cache file: index, dependencies with their hashes, and model in one frame, whose hash covers
+/// A cache file: index, dependencies with their hashes, and model in one block, whose hash covers
 /// all of them.
 struct CachedFile {
   CacheIndex index;
@@ -50,6 +50,6 @@ struct CachedFile {
 
 void write_cached_file(int fd, const CacheIndex& index, const ImportedModel& imported);
 /// Checks what read_model() checks.
-CachedFile read_cached_file(FrameReader& frame);
+CachedFile read_cached_file(BlockReader& block);
 
 }  // namespace glidar

@@ -93,8 +93,8 @@ std::optional<CachedModel> read_cache(const CacheEntry& entry, const fs::path& c
   const UniqueFd fd = open_entry(entry.folder, entry.name);
   if (!fd) return std::nullopt;
   try {
-    FrameReader frame(fd.get());
-    CachedFile cached = read_cached_file(frame);
+    BlockReader block(fd.get());
+    CachedFile cached = read_cached_file(block);
     if (!holds(cached, entry, canonical_model)) return std::nullopt;
     touch_entry(fd);
     std::string hash = combined_hash(cached.imported.hashes);

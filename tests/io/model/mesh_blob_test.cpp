@@ -59,8 +59,8 @@ ImportedModel from_bytes(const std::string& bytes) {
   const UniqueFd fd = memory_file();
   EXPECT_EQ(::write(fd.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   rewind(fd);
-  FrameReader frame(fd.get());
-  return read_model(frame);
+  BlockReader block(fd.get());
+  return read_model(block);
 }
 
 TEST(MeshBlob, EveryFieldSurvivesARoundTrip) {
@@ -100,7 +100,7 @@ TEST(MeshBlob, AFlippedBitIsAnError) {
   }
 }
 
-// A process led astray writes a sound frame around an unsound model.
+// A process led astray writes a sound block around an unsound model.
 TEST(MeshBlob, InvalidModelsAreRejectedDespiteAValidChecksum) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<void (*)(Model&)> harms = {
@@ -144,22 +144,22 @@ TEST(MeshBlob, InvalidModelsAreRejectedDespiteAValidChecksum) {
 
 TEST(MeshBlob, CountsBeyondTheDataAllocateNoMemory) {
   const UniqueFd fd = memory_file();
-  FrameWriter writer(fd.get(), FrameKind::failure);
+  BlockWriter writer(fd.get(), BlockKind::failure);
   const std::uint64_t absurd = std::numeric_limits<std::uint64_t>::max();
   writer.bytes(&absurd, sizeof absurd);
   writer.finish();
   rewind(fd);
-  FrameReader frame(fd.get());
-  EXPECT_THROW(read_failure(frame), Error);
+  BlockReader block(fd.get());
+  EXPECT_THROW(read_failure(block), Error);
 }
 
 TEST(MeshBlob, FramesOfAnotherTypeAreRejected) {
   const UniqueFd fd = memory_file();
   write_failure(fd.get(), {"found", "remedy"});
   rewind(fd);
-  FrameReader frame(fd.get());
-  EXPECT_EQ(frame.kind(), FrameKind::failure);
-  EXPECT_THROW(read_model(frame), Error);
+  BlockReader block(fd.get());
+  EXPECT_EQ(block.kind(), BlockKind::failure);
+  EXPECT_THROW(read_model(block), Error);
 }
 
 TEST(MeshBlob, AFileCanContainSeveralFrames) {
@@ -167,9 +167,9 @@ TEST(MeshBlob, AFileCanContainSeveralFrames) {
   write_failure(fd.get(), {"first", "a"});
   write_failure(fd.get(), {"second", "b"});
   rewind(fd);
-  FrameReader first(fd.get());
+  BlockReader first(fd.get());
   EXPECT_EQ(read_failure(first).found, "first");
-  FrameReader second(fd.get());
+  BlockReader second(fd.get());
   EXPECT_EQ(read_failure(second).remedy, "b");
 }
 

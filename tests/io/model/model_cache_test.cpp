@@ -140,8 +140,8 @@ TEST_F(ModelCache, AnotherImporterInvalidatesTheEntry) {
 TEST_F(ModelCache, AnUpgradedImporterLibraryInvalidatesTheEntry) {
   load();
   std::FILE* opened = std::fopen(cache_file().c_str(), "rb");
-  FrameReader frame(::fileno(opened));
-  const std::vector<std::string> used = read_cached_file(frame).imported.libraries;
+  BlockReader block(::fileno(opened));
+  const std::vector<std::string> used = read_cached_file(block).imported.libraries;
   std::fclose(opened);
   const auto assimp = std::find_if(used.begin(), used.end(), [](const std::string& path) {
     return path.find("libassimp") != std::string::npos;

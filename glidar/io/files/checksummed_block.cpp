@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/frame_stream.hpp>
+#include <glidar/io/files/checksummed_block.hpp>
 
 #include <glidar/core/error.hpp>
 
@@ -15,7 +15,7 @@ namespace glidar {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x3142'5241'4449'4C47;  // "GLIDARB1" on a little-endian machine
-constexpr std::uint32_t kVersion = 3;  // incremented when the frame's format changes
+constexpr std::uint32_t kVersion = 3;  // incremented when the block's format changes
 constexpr std::size_t kBuffer = std::size_t{1} << 16U;
 
 void write_all(int fd, const void* data, std::size_t size) {
@@ -46,14 +46,14 @@ void reject_imported_data(const std::string& found) {
   throw Error({.where = "imported data", .found = found, .allowed = "", .remedy = ""});
 }
 
-FrameWriter::FrameWriter(int fd, FrameKind kind)
+BlockWriter::BlockWriter(int fd, BlockKind kind)
     : fd_(fd), kind_(kind), head_at_(::lseek(fd, 0, SEEK_CUR)) {
-  const FrameHead empty;
+  const BlockHead empty;
   write_all(fd_, &empty, sizeof empty);
   buffer_.reserve(kBuffer);
 }
 
-void FrameWriter::bytes(const void* data, std::size_t size) {
+void BlockWriter::bytes(const void* data, std::size_t size) {
   size_ += size;
   if (buffer_.size() + size > kBuffer) flush();
   if (size > kBuffer) {
@@ -65,21 +65,21 @@ void FrameWriter::bytes(const void* data, std::size_t size) {
   buffer_.insert(buffer_.end(), first, first + size);
 }
 
-void FrameWriter::flush() {
+void BlockWriter::flush() {
   hash_.add(buffer_.data(), buffer_.size());
   write_all(fd_, buffer_.data(), buffer_.size());
   buffer_.clear();
 }
 
-void FrameWriter::finish() {
+void BlockWriter::finish() {
   flush();
-  const FrameHead head{kMagic, kVersion, static_cast<std::uint32_t>(kind_), size_, hash_.value()};
+  const BlockHead head{kMagic, kVersion, static_cast<std::uint32_t>(kind_), size_, hash_.value()};
   if (::pwrite(fd_, &head, sizeof head, head_at_) != static_cast<ssize_t>(sizeof head)) {
     reject_imported_data(std::string("writing failed: ") + std::strerror(errno));
   }
 }
 
-FrameReader::FrameReader(int fd) : fd_(fd) {
+BlockReader::BlockReader(int fd) : fd_(fd) {
   read_all(fd_, &head_, sizeof head_);
   if (head_.magic != kMagic || head_.version != kVersion)
     reject_imported_data("it has an unknown header");
@@ -91,7 +91,7 @@ FrameReader::FrameReader(int fd) : fd_(fd) {
   }
 }
 
-void FrameReader::fill() {
+void BlockReader::fill() {
   buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBuffer, head_.size - fetched_)));
   read_all(fd_, buffer_.data(), buffer_.size());
   hash_.add(buffer_.data(), buffer_.size());
@@ -99,7 +99,7 @@ void FrameReader::fill() {
   next_ = 0;
 }
 
-void FrameReader::bytes(void* data, std::size_t size) {
+void BlockReader::bytes(void* data, std::size_t size) {
   if (size > remaining()) reject_imported_data("it claims more data than it has");
   taken_ += size;
   auto* to = static_cast<std::byte*>(data);
@@ -119,7 +119,7 @@ void FrameReader::bytes(void* data, std::size_t size) {
   }
 }
 
-void FrameReader::finish() {
+void BlockReader::finish() {
   if (remaining() != 0) reject_imported_data("it has extra bytes");
   if (hash_.value() != head_.hash) reject_imported_data("its checksum differs");
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/text_rows.hpp>
+#include <glidar/io/formats/text_row_reader.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/text_file.hpp>
@@ -44,13 +44,13 @@ std::optional<std::int64_t> decimal_ns(std::string_view text) {
 
 }  // namespace
 
-TextRows::TextRows(std::string file, std::string_view content)
+TextRowReader::TextRowReader(std::string file, std::string_view content)
     : file_(std::move(file)), rest_(content) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
 }
 
-bool TextRows::next() {
+bool TextRowReader::next() {
   while (!rest_.empty()) {
     const std::size_t end = rest_.find('\n');
     std::string_view row = rest_.substr(0, end);
@@ -64,7 +64,7 @@ bool TextRows::next() {
   return false;
 }
 
-void TextRows::split(std::string_view row) {
+void TextRowReader::split(std::string_view row) {
   words_.clear();
   has_commas_ = row.find(',') != std::string_view::npos;
   std::size_t at = 0;
@@ -80,13 +80,13 @@ void TextRows::split(std::string_view row) {
   }
 }
 
-void TextRows::reject(const Word& word, std::string found, std::string allowed,
-                      std::string remedy) const {
+void TextRowReader::reject(const Word& word, std::string found, std::string allowed,
+                           std::string remedy) const {
   const std::string place = file_ + ":" + std::to_string(line_) + ":" + std::to_string(word.column);
   throw Error({place, std::move(found), std::move(allowed), std::move(remedy)});
 }
 
-double TextRows::number(const Word& word) const {
+double TextRowReader::number(const Word& word) const {
   std::string_view text = word.text;
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0.0;
@@ -96,7 +96,7 @@ double TextRows::number(const Word& word) const {
   reject(word, "'" + shown(word.text) + "'", "a finite number");
 }
 
-std::int64_t TextRows::time_ns(const Word& word) const {
+std::int64_t TextRowReader::time_ns(const Word& word) const {
   constexpr double kMax_s = 9.2e9;
   const double seconds = number(word);
   if (std::abs(seconds) > kMax_s) {

@@ -11,12 +11,12 @@
 
 namespace glidar {
 
-/// The content of a frame.
-enum class FrameKind : std::uint32_t { model = 1, failure = 2, cached_file = 3 };
+/// The content of a block.
+enum class BlockKind : std::uint32_t { model = 1, failure = 2, cached_file = 3 };
 
-/// The header of a frame: a checksummed block of bytes in a file or memory file.
+/// The header of a block of bytes with a checksum, in a file or memory file.
 /// Little-endian machines only (all that GLIDAR supports), checked by `magic`.
-struct FrameHead {
+struct BlockHead {
   std::uint64_t magic = 0;
   std::uint32_t version = 0;
   std::uint32_t kind = 0;
@@ -27,11 +27,11 @@ struct FrameHead {
 /// Throws Error for malformed data of the import process or the model cache.
 [[noreturn]] void reject_imported_data(const std::string& found);
 
-/// Writes one frame at the file's position. finish() completes the header.
+/// Writes one block at the file's position. finish() completes the header.
 /// Throws Error when the file cannot be written.
-class FrameWriter {
+class BlockWriter {
  public:
-  FrameWriter(int fd, FrameKind kind);
+  BlockWriter(int fd, BlockKind kind);
   void bytes(const void* data, std::size_t size);
   void finish();
 
@@ -39,32 +39,32 @@ class FrameWriter {
   void flush();
 
   int fd_;
-  FrameKind kind_;
+  BlockKind kind_;
   std::int64_t head_at_;
   std::uint64_t size_ = 0;
   ContentHash hash_;
   std::vector<std::byte> buffer_;
 };
 
-/// Reads one frame at the file's position. Trusts nothing: throws Error when the header is not that
-/// of a frame of this version, when it claims more bytes than the file has, when more is requested
+/// Reads one block at the file's position. Trusts nothing: throws Error when the header is not that
+/// of a block of this version, when it claims more bytes than the file has, when more is requested
 /// than remains, and when the hash differs.
-class FrameReader {
+class BlockReader {
  public:
-  explicit FrameReader(int fd);
-  [[nodiscard]] FrameKind kind() const { return static_cast<FrameKind>(head_.kind); }
+  explicit BlockReader(int fd);
+  [[nodiscard]] BlockKind kind() const { return static_cast<BlockKind>(head_.kind); }
   /// Bytes not yet read: bounds every count before memory is allocated for it.
   [[nodiscard]] std::uint64_t remaining() const { return head_.size - taken_; }
   void bytes(void* data, std::size_t size);
   /// Checks that everything was read, and the hash; moves the file's position to the end of the
-  /// frame.
+  /// block.
   void finish();
 
  private:
   void fill();
 
   int fd_;
-  FrameHead head_;
+  BlockHead head_;
   std::uint64_t taken_ = 0;    ///< returned to the caller
   std::uint64_t fetched_ = 0;  ///< read from the file
   ContentHash hash_;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/io: rows of numbers in a text file, with what an error needs to point at them.
+// Private to glidar/io: reads rows of numbers from a text file; errors contain line and column.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,10 +19,10 @@ struct Word {
 };
 
 /// The rows of a text, without blank lines and comments ('#' to the end of the line).
-class TextRows {
+class TextRowReader {
  public:
   /// `content` must outlive the rows.
-  TextRows(std::string file, std::string_view content);
+  TextRowReader(std::string file, std::string_view content);
 
   /// Reads the next row; false at the end.
   bool next();
