@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/options/option_group.hpp>
 
-#include <apps/glidar/options/option_error.hpp>
+#include <apps/glidar/options/option_values.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <utility>
 
 namespace glidar::app {
@@ -78,11 +77,6 @@ OptionNames options_under(const CLI::App& command, const std::string& heading) {
     if (option->get_group() == heading) names.push_back(option->get_name());
   }
   return names;
-}
-
-bool any_given(const CLI::App& command, const OptionNames& options) {
-  return std::any_of(options.begin(), options.end(),
-                     [&](const std::string& name) { return command.count(name) > 0; });
 }
 
 }  // namespace glidar::app

@@ -54,7 +54,4 @@ void require_option(CLI::App& command, const OptionNames& options, const std::st
 /// The options under a heading of --help.
 OptionNames options_under(const CLI::App& command, const std::string& heading);
 
-/// Whether the command line has one of these options.
-bool any_given(const CLI::App& command, const OptionNames& options);
-
 }  // namespace glidar::app

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/options/option_values.hpp>
 
-#include <glidar/core/error.hpp>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -16,6 +16,8 @@
 
 namespace glidar::app {
 
+class OptionGroup;
+
 /// --fisher: the Fisher information of the sensor's pose.
 struct FisherFlags {
   bool is_requested = false;
@@ -42,6 +44,11 @@ struct RenderFlags {
 
 /// The renderer as sidecars name it.
 std::string renderer_name(const RenderFlags& flags);
+
+/// --renderer --threads --graphics-device.
+void add_run_options(CLI::App& command, RendererOptions& options, const std::string& heading);
+
+void add_threads_option(const OptionGroup& group, RendererOptions& options);
 
 /// Adds MODEL and all options of `render`.
 void add_render_options(CLI::App& command, RenderFlags& flags);

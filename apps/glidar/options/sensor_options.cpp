@@ -38,9 +38,9 @@ void add_camera_options(const OptionGroup& group, SensorFlags& flags) {
 }
 
 void add_scan_options(const OptionGroup& group, SensorFlags& flags) {
-  group.add("--near", "M", "Least depth (LiDAR: range) that is reported [0]", flags.near_m,
+  group.add("--near", "M", "Minimum reported depth (LiDAR: range), m [0]", flags.near_m,
             number(0.0, kFinite, "metres, 0 or above"));
-  group.add("--far", "M", "Greatest depth (LiDAR: range) that is reported [inf]", flags.far_m,
+  group.add("--far", "M", "Maximum reported depth (LiDAR: range), m [inf]", flags.far_m,
             number(kAboveZero, INFINITY, "metres above 0, or inf"));
   group.add("--rate", "HZ", "Frames per second; of a spinning sensor: revolutions", flags.rate_hz,
             parse_number);

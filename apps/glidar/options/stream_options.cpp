@@ -4,12 +4,12 @@
 
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
-#include <apps/glidar/options/run_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -174,10 +174,12 @@ void check(const CLI::App& command, const StreamFlags& flags) {
       throw Error({"--port and --output", "neither is given, so no cloud would be sent or written",
                    "", "for example: glidar stream " + flags.render.input + " --port 5555"});
     }
-    if (any_given(command, options_under(command, kOutputHeading)) ||
-        any_given(command, {"--format"})) {
+    OptionNames names = options_under(command, kOutputHeading);
+    names.emplace_back("--format");
+    const auto is_given = [&](const std::string& name) { return command.count(name) > 0; };
+    if (std::any_of(names.begin(), names.end(), is_given)) {
       throw Error({"--output", "not given, but options of output files are", "",
-                   "leave these out: clouds on a port have the fields x, y, z and intensity"});
+                   "leave these out: clouds on a port have x, y, z and intensity"});
     }
   }
   check_ports(flags);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/outputs.hpp>
 
-#include <apps/glidar/options/option_error.hpp>
+#include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/stream_run.hpp>
 
-#include <apps/glidar/options/option_error.hpp>
+#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
