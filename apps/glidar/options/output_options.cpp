@@ -27,7 +27,7 @@ std::vector<std::string> parse_columns(const std::string& text) {
   for (const std::string& name : parse_list(text)) {
     if (!contains(columns, name)) columns.push_back(name);
   }
-  fields_needed_by(columns);  // throws Error for an unknown name
+  hit_columns_for(columns);  // throws Error for an unknown name
   return columns;
 }
 
@@ -78,9 +78,9 @@ void add_picture_options(const OptionGroup& group, CloudPictureOptions& picture)
               picture.width = size[0];
               picture.height = size[1];
             });
-  group.add("--view-eye", "X,Y,Z", "Camera of .view.png, m, axes of the cloud [sees all points]",
+  group.add("--view-eye", "X,Y,Z", "Camera of .view.png, m, axes of the cloud [shows all points]",
             picture.eye_m, parse_position);
-  group.add("--view-target", "X,Y,Z", "Point that this camera looks at, m [sees all points]",
+  group.add("--view-target", "X,Y,Z", "Point that this camera looks at, m [shows all points]",
             picture.target_m, parse_position);
 }
 

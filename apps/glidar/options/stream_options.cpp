@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint16_t kMaxPort = 65534;  // the next port is for handshakes
 constexpr int kMaxQueue = 1'000'000;
 constexpr double kMax_s = 3.2e9;  // a century
-constexpr const char* kPaceHeading = "Pace and end";
+constexpr const char* kTimingHeading = "Timing";
 
 /// Seconds of a limit that is above 0.
 std::function<double(const std::string&)> positive_seconds() {
@@ -47,11 +47,11 @@ void add_end_options(const OptionGroup& group, const char* frames_help, StreamFl
 }
 
 /// Replaces options of `render` whose meaning is different for streams.
-void add_pace_options(CLI::App& command, StreamFlags& flags) {
+void add_timing_options(CLI::App& command, StreamFlags& flags) {
   for (const char* name : {"--range-sigma", "--fisher", "--rate", "--duration"}) {
     command.remove_option(command.get_option(name));
   }
-  const OptionGroup group(command, kPaceHeading);
+  const OptionGroup group(command, kTimingHeading);
   group.add("--rate", "HZ", "Frames per second; 0 or max: as fast as possible [sensor's]",
             [&flags](const std::string& text) {
               const double rate_hz = parse_frame_rate(text);
@@ -136,7 +136,7 @@ void check_ports(const StreamFlags& flags) {
 void add_stream_options(CLI::App& command, StreamFlags& flags) {
   add_render_options(command, flags.render);
   hide_standard_output(command);
-  add_pace_options(command, flags);
+  add_timing_options(command, flags);
   add_publishing_options(command, flags);
   add_pose_source_options(command, flags);
   add_lockstep_options(command, flags);
@@ -147,15 +147,16 @@ void add_replay_options(CLI::App& command, StreamFlags& flags) {
   add_output_options(command, flags.render.output);
   add_legacy_output_option(command, flags.render.output);
   hide_standard_output(command);
-  const OptionGroup pace(command, kPaceHeading);
-  pace.add("--rate", "HZ", "Frames per second at most; 0 or max: no limit [max]",
-           flags.replay_rate_hz, [](const std::string& text) {
-             constexpr double kMax_hz = 1e9;
-             const double rate_hz = parse_frame_rate(text);
-             require_number(rate_hz >= 0.0 && rate_hz <= kMax_hz, "", rate_hz, "0 to 1e9, or max");
-             return rate_hz;
-           });
-  add_end_options(pace, "End after N frames, of all sensors together [all]", flags);
+  const OptionGroup timing(command, kTimingHeading);
+  timing.add("--rate", "HZ", "Frames per second at most; 0 or max: no limit [max]",
+             flags.replay_rate_hz, [](const std::string& text) {
+               constexpr double kMax_hz = 1e9;
+               const double rate_hz = parse_frame_rate(text);
+               require_number(rate_hz >= 0.0 && rate_hz <= kMax_hz, "", rate_hz,
+                              "0 to 1e9, or max");
+               return rate_hz;
+             });
+  add_end_options(timing, "End after N frames, of all sensors together [all]", flags);
   add_publishing_options(command, flags);
   add_limit_option(command, flags);
   const OptionGroup run(command, "Run");
