@@ -149,7 +149,7 @@ void register_renderer(const Stage& stage, const std::string& kind, unsigned thr
     const auto renderer = make_renderer(stage.scene, {.kind = kind, .threads = threads});
     const CastRequest request{.beams = stage.beams,
                               .world_from_sensor = stage.world_from_sensor,
-                              .fields = {.normal = true}};
+                              .hit_columns = {.normal = true}};
     Hits hits;
     renderer->cast(request, hits);  // builds trees and allocates memory
     for (auto _ : state) renderer->cast(request, hits);

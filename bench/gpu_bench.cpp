@@ -96,8 +96,9 @@ void print_transfer() {
 /// and reading.
 void print_breakdown(const Model& model, std::uint32_t side) {
   const Beams beams = make_beams(pinhole_from_fov(side, side, kFov_rad));
-  const CastRequest request{
-      .beams = beams, .world_from_sensor = model.world_from_sensor, .fields = {.normal = true}};
+  const CastRequest request{.beams = beams,
+                            .world_from_sensor = model.world_from_sensor,
+                            .hit_columns = {.normal = true}};
   const auto renderer = make_renderer(model.scene, options("opengl"));
   Hits hits;
   const double cast_s = median_seconds([&] { renderer->cast(request, hits); });

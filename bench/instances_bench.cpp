@@ -44,7 +44,7 @@ struct Stage {
     renderer.cast({.beams = beams,
                    .world_from_sensor = world_from_sensor,
                    .world_from_instance = poses,
-                   .fields = {.normal = true}},
+                   .hit_columns = {.normal = true}},
                   hits);
   }
 };

@@ -76,8 +76,8 @@ void add_renderer(const Stage& stage, const std::shared_ptr<Beams>& beams, const
   const auto hits = std::make_shared<Hits>();
   const auto renderer = std::shared_ptr(make_renderer(stage.scene, {.kind = kind, .threads = 1}));
   const auto cast = [&stage, beams, hits, renderer] {
-    renderer->cast({.beams = *beams, .world_from_sensor = stage.pose, .fields = {.normal = true}},
-                   *hits);
+    renderer->cast(
+        {.beams = *beams, .world_from_sensor = stage.pose, .hit_columns = {.normal = true}}, *hits);
   };
   benchmark::RegisterBenchmark(name.c_str(), [cast](benchmark::State& state) {
     cast();  // trees and tables are built, memory is touched

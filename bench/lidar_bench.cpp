@@ -91,7 +91,7 @@ void cast(const Stage& stage, int times, Renderer& renderer, Hits& hits) {
     renderer.cast({.beams = stage.beams,
                    .world_from_sensor = Pose::Identity(),
                    .world_from_instance = {},
-                   .fields = {.normal = true}},
+                   .hit_columns = {.normal = true}},
                   hits);
   }
 }
@@ -117,7 +117,7 @@ void register_sub_cast(const Stage& stage, unsigned threads, const std::string& 
       renderer->cast({.beams = rays,
                       .world_from_sensor = Pose::Identity(),
                       .world_from_instance = {},
-                      .fields = {.shading = true, .diffuse = true}},
+                      .hit_columns = {.shading = true, .diffuse = true}},
                      hits);
     }
     count_rays(stage, state);

@@ -44,7 +44,8 @@ class ManyViews {
         beams_(make_beams(pinhole_from_fov(side, side, kFov_rad))),
         hits_(kViews) {
     for (const Pose& pose : poses_around(model, 1, kViews)) {
-      requests_.push_back({.beams = beams_, .world_from_sensor = pose, .fields = {.normal = true}});
+      requests_.push_back(
+          {.beams = beams_, .world_from_sensor = pose, .hit_columns = {.normal = true}});
     }
     for (Hits& hits : hits_) all_.push_back(&hits);
   }

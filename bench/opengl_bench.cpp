@@ -35,7 +35,7 @@ void register_cast(const std::string& name, const Model& model, const char* kind
     for (auto _ : state) {
       renderer->cast({.beams = beams,
                       .world_from_sensor = model.world_from_sensor,
-                      .fields = {.normal = true}},
+                      .hit_columns = {.normal = true}},
                      hits);
     }
   });

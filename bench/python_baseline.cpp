@@ -56,15 +56,15 @@ int main(int argc, char** argv) {
   glidar::Simulator simulator(scene, sensor, {.threads = 1});
   const std::vector<std::string> columns = {"xyz",    "intensity", "range",
                                             "normal", "instance",  "class"};
-  const glidar::HitFieldMask fields = glidar::fields_needed_by(columns);
+  const glidar::HitColumnMask hit_columns = glidar::hit_columns_for(columns);
   const std::vector<glidar::Motion> all = motions(scene);
   std::vector<glidar::Frame> frames(kFrames);
   for (std::string word; std::cin >> word;) {
     const double start_s = processor_s();
     if (word == "frame") {
-      simulator.simulate(all.front(), fields, frames.front());
+      simulator.simulate(all.front(), hit_columns, frames.front());
     } else {
-      simulator.simulate_batch(all, fields, frames);
+      simulator.simulate_batch(all, hit_columns, frames);
     }
     std::printf("%.9f\n", processor_s() - start_s);
     std::fflush(stdout);

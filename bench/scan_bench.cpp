@@ -190,8 +190,9 @@ void add_renderer(const Stage& stage, const std::shared_ptr<Beams>& beams, const
   const auto hits = std::make_shared<Hits>();
   const auto renderer = std::shared_ptr(make_renderer(stage.scene, {.kind = kind, .threads = 1}));
   add(name, beams->size(), [&stage, beams, hits, renderer] {
-    renderer->cast({.beams = *beams, .world_from_sensor = stage.pose(), .fields = {.normal = true}},
-                   *hits);
+    renderer->cast(
+        {.beams = *beams, .world_from_sensor = stage.pose(), .hit_columns = {.normal = true}},
+        *hits);
   });
 }
 

@@ -134,7 +134,7 @@ void show_bands(const char* path) {
   const glidar::CastRequest request{
       .beams = beams,
       .world_from_sensor = glidar::look_at({5.5, 1.5, 1.5}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}),
-      .fields = {.depth = true}};
+      .hit_columns = {.depth = true}};
   glidar::Hits truth;
   glidar::Hits drawn;
   glidar::make_renderer(scene, {.kind = "rays"})->cast(request, truth);

@@ -265,7 +265,7 @@ void MeasurementThread::save_now(const MeasureRequest& request, const OutputFlag
   const std::vector<Output> outputs =
       plan_outputs(flags, request.flags->input, context, console_.report());
   refuse_overwrite_of_inputs(snapshot.prepared->files, outputs);
-  snapshot.simulator->simulate(snapshot.motion, fields_for_outputs(outputs), snapshot.frame);
+  snapshot.simulator->simulate(snapshot.motion, hit_columns_for_outputs(outputs), snapshot.frame);
   write_outputs(outputs, snapshot.frame, *snapshot.beams, snapshot.prepared->scene,
                 console_.report());
   add_message(written_text(outputs));

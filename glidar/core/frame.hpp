@@ -88,7 +88,7 @@ struct Frame {
   };
   Deskewed deskewed;
   /// Poses of the sensor and of the object hit at each beam's firing time. Empty unless requested
-  /// (HitFieldMask::poses).
+  /// (HitColumnMask::poses).
   struct BeamPoses {
     std::vector<PoseVector> world_from_sensor;  ///< N
     std::vector<PoseVector> world_from_object;  ///< N, without scale; NaN for a miss

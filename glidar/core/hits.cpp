@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-HitFieldMask operator|(const HitFieldMask& a, const HitFieldMask& b) {
+HitColumnMask operator|(const HitColumnMask& a, const HitColumnMask& b) {
   return {.depth = a.depth || b.depth,
           .normal = a.normal || b.normal,
           .shading_normal = a.shading_normal || b.shading_normal,
@@ -24,43 +24,44 @@ HitFieldMask operator|(const HitFieldMask& a, const HitFieldMask& b) {
           .poses = a.poses || b.poses};
 }
 
-void resize(Hits& hits, std::size_t size, const HitFieldMask& fields) {
+void resize(Hits& hits, std::size_t size, const HitColumnMask& hit_columns) {
   const auto size_if = [size](bool requested) { return requested ? size : std::size_t{0}; };
   hits.range_m.resize(size);
   hits.instance.resize(size);
   hits.primitive.resize(size);
-  hits.depth_m.resize(size_if(fields.depth));
-  hits.normal.resize(size_if(fields.normal));
-  hits.shading_normal.resize(size_if(fields.shading_normal));
-  hits.cos_incidence.resize(size_if(fields.incidence));
-  hits.cos_shading.resize(size_if(fields.shading));
-  hits.barycentrics.resize(size_if(fields.barycentrics));
-  hits.colour.resize(size_if(fields.colour));
-  hits.diffuse.resize(size_if(fields.diffuse));
-  hits.reflectance.resize(size_if(fields.reflectance));
-  hits.object_point_m.resize(size_if(fields.object_point));
-  hits.noise_scale.resize(size_if(fields.noise_scale));
+  hits.depth_m.resize(size_if(hit_columns.depth));
+  hits.normal.resize(size_if(hit_columns.normal));
+  hits.shading_normal.resize(size_if(hit_columns.shading_normal));
+  hits.cos_incidence.resize(size_if(hit_columns.incidence));
+  hits.cos_shading.resize(size_if(hit_columns.shading));
+  hits.barycentrics.resize(size_if(hit_columns.barycentrics));
+  hits.colour.resize(size_if(hit_columns.colour));
+  hits.diffuse.resize(size_if(hit_columns.diffuse));
+  hits.reflectance.resize(size_if(hit_columns.reflectance));
+  hits.object_point_m.resize(size_if(hit_columns.object_point));
+  hits.noise_scale.resize(size_if(hit_columns.noise_scale));
 }
 
-void copy_hit(const Hits& from, std::size_t source, const HitFieldMask& fields, Hits& to,
+void copy_hit(const Hits& from, std::size_t source, const HitColumnMask& hit_columns, Hits& to,
               std::size_t target) {
   to.range_m[target] = from.range_m[source];
   to.instance[target] = from.instance[source];
   to.primitive[target] = from.primitive[source];
-  if (fields.depth) to.depth_m[target] = from.depth_m[source];
-  if (fields.normal) to.normal[target] = from.normal[source];
-  if (fields.shading_normal) to.shading_normal[target] = from.shading_normal[source];
-  if (fields.incidence) to.cos_incidence[target] = from.cos_incidence[source];
-  if (fields.shading) to.cos_shading[target] = from.cos_shading[source];
-  if (fields.barycentrics) to.barycentrics[target] = from.barycentrics[source];
-  if (fields.colour) to.colour[target] = from.colour[source];
-  if (fields.diffuse) to.diffuse[target] = from.diffuse[source];
-  if (fields.reflectance) to.reflectance[target] = from.reflectance[source];
-  if (fields.object_point) to.object_point_m[target] = from.object_point_m[source];
-  if (fields.noise_scale) to.noise_scale[target] = from.noise_scale[source];
+  if (hit_columns.depth) to.depth_m[target] = from.depth_m[source];
+  if (hit_columns.normal) to.normal[target] = from.normal[source];
+  if (hit_columns.shading_normal) to.shading_normal[target] = from.shading_normal[source];
+  if (hit_columns.incidence) to.cos_incidence[target] = from.cos_incidence[source];
+  if (hit_columns.shading) to.cos_shading[target] = from.cos_shading[source];
+  if (hit_columns.barycentrics) to.barycentrics[target] = from.barycentrics[source];
+  if (hit_columns.colour) to.colour[target] = from.colour[source];
+  if (hit_columns.diffuse) to.diffuse[target] = from.diffuse[source];
+  if (hit_columns.reflectance) to.reflectance[target] = from.reflectance[source];
+  if (hit_columns.object_point) to.object_point_m[target] = from.object_point_m[source];
+  if (hit_columns.noise_scale) to.noise_scale[target] = from.noise_scale[source];
 }
 
-void write_misses(const HitFieldMask& fields, std::size_t first, std::size_t count, Hits& hits) {
+void write_misses(const HitColumnMask& hit_columns, std::size_t first, std::size_t count,
+                  Hits& hits) {
   const auto fill = [first, count](bool requested, auto& column, const auto& value) {
     if (requested) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
   };
@@ -73,17 +74,17 @@ void write_misses(const HitFieldMask& fields, std::size_t first, std::size_t cou
   fill(true, hits.range_m, kNaN);
   fill(true, hits.instance, kInvalidId);
   fill(true, hits.primitive, kInvalidId);
-  fill(fields.depth, hits.depth_m, kNaN);
-  fill_vectors(fields.normal, hits.normal, kNaNf);
-  fill_vectors(fields.shading_normal, hits.shading_normal, kNaNf);
-  fill(fields.incidence, hits.cos_incidence, kNaNf);
-  fill(fields.shading, hits.cos_shading, kNaNf);
-  fill_vectors(fields.barycentrics, hits.barycentrics, kNaNf);
-  fill_vectors(fields.object_point, hits.object_point_m, kNaN);
-  fill_vectors(fields.colour, hits.colour, 0.0F);
-  fill(fields.diffuse, hits.diffuse, 0.0F);
-  fill(fields.reflectance, hits.reflectance, Reflectance{});
-  fill(fields.noise_scale, hits.noise_scale, 1.0F);
+  fill(hit_columns.depth, hits.depth_m, kNaN);
+  fill_vectors(hit_columns.normal, hits.normal, kNaNf);
+  fill_vectors(hit_columns.shading_normal, hits.shading_normal, kNaNf);
+  fill(hit_columns.incidence, hits.cos_incidence, kNaNf);
+  fill(hit_columns.shading, hits.cos_shading, kNaNf);
+  fill_vectors(hit_columns.barycentrics, hits.barycentrics, kNaNf);
+  fill_vectors(hit_columns.object_point, hits.object_point_m, kNaN);
+  fill_vectors(hit_columns.colour, hits.colour, 0.0F);
+  fill(hit_columns.diffuse, hits.diffuse, 0.0F);
+  fill(hit_columns.reflectance, hits.reflectance, Reflectance{});
+  fill(hit_columns.noise_scale, hits.noise_scale, 1.0F);
 }
 
 }  // namespace glidar

@@ -13,7 +13,7 @@ namespace glidar {
 inline constexpr std::uint32_t kInvalidId = std::numeric_limits<std::uint32_t>::max();
 
 /// The optional columns of Hits that a cast fills. Only these are computed.
-struct HitFieldMask {
+struct HitColumnMask {
   bool depth = false;
   bool normal = false;
   bool shading_normal = false;
@@ -28,21 +28,21 @@ struct HitFieldMask {
   bool poses = false;  ///< Frame::beam_poses, which is not a column of Hits
 };
 
-inline constexpr HitFieldMask kAllHitFields = {.depth = true,
-                                               .normal = true,
-                                               .shading_normal = true,
-                                               .incidence = true,
-                                               .shading = true,
-                                               .barycentrics = true,
-                                               .colour = true,
-                                               .diffuse = true,
-                                               .reflectance = true,
-                                               .object_point = true,
-                                               .noise_scale = true,
-                                               .poses = true};
+inline constexpr HitColumnMask kAllHitColumns = {.depth = true,
+                                                 .normal = true,
+                                                 .shading_normal = true,
+                                                 .incidence = true,
+                                                 .shading = true,
+                                                 .barycentrics = true,
+                                                 .colour = true,
+                                                 .diffuse = true,
+                                                 .reflectance = true,
+                                                 .object_point = true,
+                                                 .noise_scale = true,
+                                                 .poses = true};
 
 /// The columns of either mask.
-HitFieldMask operator|(const HitFieldMask& a, const HitFieldMask& b);
+HitColumnMask operator|(const HitColumnMask& a, const HitColumnMask& b);
 
 /// Phong coefficients of a surface (2016 paper, equation 5): luminances after textures, and the
 /// exponent. All zero for a miss.
@@ -80,13 +80,14 @@ struct Hits {
 
 /// Resizes every requested column to `size` entries (contents unspecified) and clears the others.
 /// Keeps capacity, so a second call of the same size allocates nothing.
-void resize(Hits& hits, std::size_t size, const HitFieldMask& fields);
+void resize(Hits& hits, std::size_t size, const HitColumnMask& hit_columns);
 
 /// Writes misses to the beams [first, first + count).
-void write_misses(const HitFieldMask& fields, std::size_t first, std::size_t count, Hits& hits);
+void write_misses(const HitColumnMask& hit_columns, std::size_t first, std::size_t count,
+                  Hits& hits);
 
 /// Copies all requested columns of one hit.
-void copy_hit(const Hits& from, std::size_t source, const HitFieldMask& fields, Hits& to,
+void copy_hit(const Hits& from, std::size_t source, const HitColumnMask& hit_columns, Hits& to,
               std::size_t target);
 
 }  // namespace glidar

@@ -27,7 +27,7 @@ using Fill = void (*)(const Source&, Column&);
 struct ColumnKind {
   std::string name;
   std::vector<std::string> components;
-  HitFieldMask needs;
+  HitColumnMask needs;
   Fill fill;
 };
 
@@ -321,7 +321,7 @@ const ColumnKind& kind_named(std::string_view name) {
 }
 
 /// True if the frame has the hit columns that the cloud column requires.
-bool has(const Frame& frame, const HitFieldMask& needs) {
+bool has(const Frame& frame, const HitColumnMask& needs) {
   const Hits& hits = frame.ground_truth;
   const std::size_t size = frame.range_m.size();
   const auto kept = [size](bool needed, std::size_t found) { return !needed || found == size; };
@@ -345,10 +345,10 @@ std::span<const std::string> cloud_column_names() {
   return names;
 }
 
-HitFieldMask fields_needed_by(std::span<const std::string> column_names) {
-  HitFieldMask fields;
-  for (const std::string& name : column_names) fields = fields | kind_named(name).needs;
-  return fields;
+HitColumnMask hit_columns_for(std::span<const std::string> column_names) {
+  HitColumnMask hit_columns;
+  for (const std::string& name : column_names) hit_columns = hit_columns | kind_named(name).needs;
+  return hit_columns;
 }
 
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
@@ -372,7 +372,7 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
           {.where = "cloud column '" + kind.name + "'",
            .found = "the frame was cast without it",
            .allowed = "",
-           .remedy = "measure with this column: fields_needed_by() in C++, columns= in Python"});
+           .remedy = "measure with this column: hit_columns_for() in C++, columns= in Python"});
     }
     cloud.columns[c].name = kind.name;
     cloud.columns[c].components = kind.components;

@@ -43,7 +43,7 @@ struct PointCloud {
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns require. Throws Error for an unknown name.
-HitFieldMask fields_needed_by(std::span<const std::string> column_names);
+HitColumnMask hit_columns_for(std::span<const std::string> column_names);
 
 /// Fills `cloud` with the named columns of a frame, reusing its memory.
 ///  xyz           f64 x3, metres in `target_frame`, from the measured range; NaN unless a hit

@@ -62,7 +62,7 @@ bool recast_lanes(const HitWriter& w, std::uint32_t lanes, const BeamBlock& beam
     if ((exact.mask >> lane & 1U) == 0) {
       changed = true;
       block.mask &= ~(1U << lane);
-      write_misses(w.request.fields, block.beam[lane], 1, w.hits);
+      write_misses(w.request.hit_columns, block.beam[lane], 1, w.hits);
       continue;
     }
     changed = changed || block.instance[lane] != exact.instance[lane] ||
@@ -112,7 +112,7 @@ void finish(const HitWriter& w, PixelBatch& batch) {
   if (block.mask == 0) return;
   if (w.overlaps.has_any()) resolve_overlaps(w, batch);
   if (block.mask == 0) return;
-  w.resolver.write(w.request.beams, w.request.fields, block, batch.exact, w.hits);
+  w.resolver.write(w.request.beams, w.request.hit_columns, block, batch.exact, w.hits);
 }
 
 /// Sets instance and primitive of the hits from the triangle ids.
@@ -120,7 +120,7 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
   batch.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << batch.used) - 1);
   batch.certain = 0;
   batch.contested = 0;
-  const bool with_corners = needs_corners(w.request.fields);
+  const bool with_corners = needs_corners(w.request.hit_columns);
   for (unsigned lane = 0; lane < batch.used; ++lane) {
     batch.certain |= static_cast<std::uint32_t>((batch.triangle_id[lane] & kCertainFlag) != 0)
                      << lane;
@@ -138,10 +138,11 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
 void advance(const HitWriter& w, PixelBatchQueue& queue) {
   decode_triangles(w, queue.filling());
   PixelBatch& previous = queue.previous();
-  HitFieldMask fields = w.request.fields;
+  HitColumnMask hit_columns = w.request.hit_columns;
   // To find its uncertain lanes.
-  fields.barycentrics = fields.barycentrics || (previous.block.mask & ~previous.certain) != 0;
-  w.resolver.prefetch_corners(previous.block, fields);
+  hit_columns.barycentrics =
+      hit_columns.barycentrics || (previous.block.mask & ~previous.certain) != 0;
+  w.resolver.prefetch_corners(previous.block, hit_columns);
   ++queue.started;
   finish(w, queue.filling());
 }
@@ -187,7 +188,8 @@ void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchQueue& queue) 
     const std::uint32_t end = std::min(begin + kColumnsPerStep, w.written.cols);
     const std::uint32_t count = list_filled(triangle_ids, begin, end, cols);
     // Misses are written in long runs, and hits over them.
-    if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);
+    if (count < end - begin)
+      write_misses(w.request.hit_columns, first + begin, end - begin, w.hits);
     PixelBatch* batch = &queue.filling();
     for (std::uint32_t i = 0; i < count; ++i) {
       collect(w, drawn_row, drawn_col + cols[i], triangle_ids[cols[i]], *batch);
@@ -209,7 +211,7 @@ void write_cast_hits(const HitWriter& w, const BeamRange& beams) {
   batch.block.mask = 0;
   for (auto hit = first; hit != w.cast_hits.end() && hit->beam < beams.end; ++hit) {
     if (hit->primitive.instance == kInvalidId) {
-      write_misses(w.request.fields, hit->beam, 1, w.hits);
+      write_misses(w.request.hit_columns, hit->beam, 1, w.hits);
       continue;
     }
     const unsigned lane = batch.used++;

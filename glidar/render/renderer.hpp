@@ -26,7 +26,7 @@ struct CastRequest {
   Pose world_from_sensor = Pose::Identity();
   /// One per instance; empty: the scene's own poses.
   std::span<const Pose> world_from_instance = {};
-  HitFieldMask fields = {};
+  HitColumnMask hit_columns = {};
   bool cull_back_faces = false;
   /// One per instance; 0: not part of this cast; empty: all are.
   std::span<const std::uint8_t> instance_enabled = {};

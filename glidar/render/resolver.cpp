@@ -77,8 +77,8 @@ GLIDAR_SIMD void orient_to_sensor(const Eigen::Matrix3d& sensor_from_object,
   }
 }
 
-bool needs_normals(const HitFieldMask& fields) {
-  return fields.shading_normal || fields.shading;
+bool needs_normals(const HitColumnMask& hit_columns) {
+  return hit_columns.shading_normal || hit_columns.shading;
 }
 
 }  // namespace
@@ -88,9 +88,9 @@ bool has_mask(const Scene& scene, const Instance& instance) {
                      [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
 }
 
-bool needs_corners(const HitFieldMask& fields) {
-  return fields.barycentrics || fields.shading_normal || fields.shading ||
-         SurfaceColours::needed(fields);
+bool needs_corners(const HitColumnMask& hit_columns) {
+  return hit_columns.barycentrics || hit_columns.shading_normal || hit_columns.shading ||
+         SurfaceColours::needed(hit_columns);
 }
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
@@ -186,9 +186,9 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
   }
 }
 
-void Resolver::prefetch_corners(const HitBlock& block, const HitFieldMask& fields) const {
-  if (!needs_corners(fields)) return;
-  const bool with_normals = needs_normals(fields);
+void Resolver::prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const {
+  if (!needs_corners(hit_columns)) return;
+  const bool with_normals = needs_normals(hit_columns);
   for_lanes(block.mask, [&](unsigned i) {
     const InstanceData& of = instances_[block.instance[i]];
     for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
@@ -244,30 +244,31 @@ void Resolver::write_ranges(const HitBlock& block, const ExactHits& exact, Hits&
   });
 }
 
-void Resolver::write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
+void Resolver::write(const Beams& beams, const HitColumnMask& hit_columns, const HitBlock& block,
                      const ExactHits& exact, Hits& hits) const {
   write_ranges(block, exact, hits);
-  const bool has_more = fields.incidence || fields.depth || fields.object_point;
+  const bool has_more = hit_columns.incidence || hit_columns.depth || hit_columns.object_point;
   for_lanes(has_more ? block.mask : 0, [&](unsigned i) {
     const std::size_t beam = block.beam[i];
-    if (fields.incidence) hits.cos_incidence[beam] = static_cast<float>(std::abs(exact.cosine[i]));
-    if (fields.depth) hits.depth_m[beam] = depth_m(beams, beam, hits.range_m[beam]);
-    if (!fields.object_point) return;
+    if (hit_columns.incidence)
+      hits.cos_incidence[beam] = static_cast<float>(std::abs(exact.cosine[i]));
+    if (hit_columns.depth) hits.depth_m[beam] = depth_m(beams, beam, hits.range_m[beam]);
+    if (!hit_columns.object_point) return;
     const Eigen::Vector3d point =
         mesh(block.instance[i]).origin_m +
         (exact.origin.get(i) + exact.distance[i] * exact.direction.get(i));
     hits.object_point_m[beam] =
         point.cwiseQuotient(scene_.sources[scene_.instances[block.instance[i]].mesh].stretch);
   });
-  if (fields.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
-  if (needs_corners(fields)) write_surface(fields, block, exact, hits);
+  if (hit_columns.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
+  if (needs_corners(hit_columns)) write_surface(hit_columns, block, exact, hits);
 }
 
-void Resolver::write_batch(const Beams& beams, const HitFieldMask& fields, HitBatch& batch,
+void Resolver::write_batch(const Beams& beams, const HitColumnMask& hit_columns, HitBatch& batch,
                            Hits& hits) const {
   if (batch.block.mask == 0) return;
   intersect(batch.beams, batch.block, batch.exact);
-  write(beams, fields, batch.block, batch.exact, hits);
+  write(beams, hit_columns, batch.block, batch.exact, hits);
 }
 
 void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& front,
@@ -300,32 +301,33 @@ void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners
   }
 }
 
-void Resolver::write_shading(const HitFieldMask& fields, const HitBlock& block,
+void Resolver::write_shading(const HitColumnMask& hit_columns, const HitBlock& block,
                              const ExactHits& exact, const Weights& weights, Hits& hits) const {
   Lanes3<double> smooth;
   blend_normals(weights.normals, weights.w1, weights.w2, exact.normal, smooth);
   apply_normal_maps(block, weights.w1, weights.w2, smooth);
-  if (fields.shading) {
+  if (hit_columns.shading) {
     Lanes<float> cosine;
     cosines(exact, smooth, cosine);
     for_lanes(block.mask, [&](unsigned i) { hits.cos_shading[block.beam[i]] = cosine[i]; });
   }
-  if (fields.shading_normal) write_directions(block, smooth, exact.cosine, hits.shading_normal);
+  if (hit_columns.shading_normal)
+    write_directions(block, smooth, exact.cosine, hits.shading_normal);
 }
 
-void Resolver::write_surface(const HitFieldMask& fields, const HitBlock& block,
+void Resolver::write_surface(const HitColumnMask& hit_columns, const HitBlock& block,
                              const ExactHits& exact, Hits& hits) const {
-  const bool with_normals = needs_normals(fields);
+  const bool with_normals = needs_normals(hit_columns);
   Corners corners;
   Lanes<float> w1;
   Lanes<float> w2;
   gather(block, with_normals, corners);
   interpolate_weights(exact, corners.position_m, w1, w2);
-  if (fields.barycentrics) {
+  if (hit_columns.barycentrics) {
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
-  if (with_normals) write_shading(fields, block, exact, {w1, w2, corners.normal}, hits);
-  if (SurfaceColours::needed(fields)) colours_.write(fields, block, w1, w2, hits);
+  if (with_normals) write_shading(hit_columns, block, exact, {w1, w2, corners.normal}, hits);
+  if (SurfaceColours::needed(hit_columns)) colours_.write(hit_columns, block, w1, w2, hits);
 }
 
 SurfacePoint Resolver::surface_point_at(const HitBlock& block, unsigned lane,

@@ -19,8 +19,8 @@ namespace glidar {
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
 
-/// True when some of the fields depend on the position of a hit within its triangle.
-bool needs_corners(const HitFieldMask& fields);
+/// True when some of the columns depend on the position of a hit within its triangle.
+bool needs_corners(const HitColumnMask& hit_columns);
 
 /// The sensor in the frame of an instance: object units, relative to the mesh's origin.
 struct InstanceView {
@@ -134,19 +134,19 @@ class Resolver {
     __builtin_prefetch(instances_[block.instance[lane]].triangles + primitive);
   }
 
-  /// Prefetches the corners of a block's triangles if the fields need them.
-  void prefetch_corners(const HitBlock& block, const HitFieldMask& fields) const;
+  /// Prefetches the corners of a block's triangles if the columns need them.
+  void prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const;
 
   /// Computes distance and incidence of a block with at least one hit. Lanes without a hit get the
   /// ids of one that has.
   void intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exact) const;
 
   /// Writes the columns of an intersected block.
-  void write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
+  void write(const Beams& beams, const HitColumnMask& hit_columns, const HitBlock& block,
              const ExactHits& exact, Hits& hits) const;
 
   /// Intersects and writes the hits of a batch, if there are any.
-  void write_batch(const Beams& beams, const HitFieldMask& fields, HitBatch& batch,
+  void write_batch(const Beams& beams, const HitColumnMask& hit_columns, HitBatch& batch,
                    Hits& hits) const;
 
  private:
@@ -164,10 +164,10 @@ class Resolver {
     const Lanes<float>& w2;
     const CornerBlock& normals;
   };
-  void write_shading(const HitFieldMask& fields, const HitBlock& block, const ExactHits& exact,
-                     const Weights& weights, Hits& hits) const;
-  void write_surface(const HitFieldMask& fields, const HitBlock& block, const ExactHits& exact,
-                     Hits& hits) const;
+  void write_shading(const HitColumnMask& hit_columns, const HitBlock& block,
+                     const ExactHits& exact, const Weights& weights, Hits& hits) const;
+  void write_surface(const HitColumnMask& hit_columns, const HitBlock& block,
+                     const ExactHits& exact, Hits& hits) const;
   [[nodiscard]] SurfacePoint surface_point_at(const HitBlock& block, unsigned lane,
                                               const Lanes<float>& w1, const Lanes<float>& w2) const;
   void apply_normal_maps(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,

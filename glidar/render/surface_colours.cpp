@@ -98,7 +98,7 @@ const SurfaceColours::Slot& SurfaceColours::slot_of(std::uint32_t instance,
   return slots.all[slots.of_triangle == nullptr ? 0 : slots.of_triangle[primitive]];
 }
 
-void SurfaceColours::write(const HitFieldMask& fields, const HitBlock& block,
+void SurfaceColours::write(const HitColumnMask& hit_columns, const HitBlock& block,
                            const Lanes<float>& w1, const Lanes<float>& w2, Hits& hits) const {
   std::array<const Slot*, kLanes> slots{};
   for_lanes(block.mask,
@@ -109,28 +109,28 @@ void SurfaceColours::write(const HitFieldMask& fields, const HitBlock& block,
     for (unsigned i = 0; i < kLanes; ++i) {
       lanes |= static_cast<std::uint32_t>(slots[i] == slot) << i;
     }
-    write(fields, {*slot, lanes, block, w1, w2}, hits);
+    write(hit_columns, {*slot, lanes, block, w1, w2}, hits);
     rest &= ~lanes;
   }
 }
 
-void SurfaceColours::write(const HitFieldMask& fields, const Group& group, Hits& hits) const {
+void SurfaceColours::write(const HitColumnMask& hit_columns, const Group& group, Hits& hits) const {
   const Slot& slot = group.slot;
-  if (fields.noise_scale) write_noise_scale(group, hits);
+  if (hit_columns.noise_scale) write_noise_scale(group, hits);
   if (slot.has_tint || slot.material->specular_texture.used()) {
-    return write_tinted(fields, group, hits);
+    return write_tinted(hit_columns, group, hits);
   }
   for_lanes(group.lanes, [&](unsigned i) {
     const std::size_t beam = group.block.beam[i];
-    if (fields.diffuse) hits.diffuse[beam] = slot.plain.diffuse;
-    if (fields.colour) hits.colour[beam] = slot.material->diffuse;
-    if (fields.reflectance) hits.reflectance[beam] = slot.plain;
+    if (hit_columns.diffuse) hits.diffuse[beam] = slot.plain.diffuse;
+    if (hit_columns.colour) hits.colour[beam] = slot.material->diffuse;
+    if (hit_columns.reflectance) hits.reflectance[beam] = slot.plain;
   });
 }
 
-void SurfaceColours::write_tinted(const HitFieldMask& fields, const Group& group,
+void SurfaceColours::write_tinted(const HitColumnMask& hit_columns, const Group& group,
                                   Hits& hits) const {
-  if (!fields.diffuse && !fields.colour && !fields.reflectance) return;
+  if (!hit_columns.diffuse && !hit_columns.colour && !hit_columns.reflectance) return;
   const Material& material = *group.slot.material;
   Lanes3<float> tint;
   fill(Eigen::Vector3f::Ones(), tint);
@@ -138,15 +138,15 @@ void SurfaceColours::write_tinted(const HitFieldMask& fields, const Group& group
   multiply_by_vertex_colours(group, tint);
   Lanes<float> diffuse;
   luminances(material.diffuse, tint, diffuse);
-  if (fields.diffuse) {
+  if (hit_columns.diffuse) {
     for_lanes(group.lanes, [&](unsigned i) { hits.diffuse[group.block.beam[i]] = diffuse[i]; });
   }
-  if (fields.colour) {
+  if (hit_columns.colour) {
     for_lanes(group.lanes, [&](unsigned i) {
       hits.colour[group.block.beam[i]] = material.diffuse.cwiseProduct(tint.get(i));
     });
   }
-  if (!fields.reflectance) return;
+  if (!hit_columns.reflectance) return;
   Lanes3<float> gloss;
   fill(Eigen::Vector3f::Ones(), gloss);
   multiply_by_texture(group, material.specular_texture, gloss);

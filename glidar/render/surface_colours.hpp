@@ -20,14 +20,15 @@ class SurfaceColours {
   /// The scene must outlive this.
   explicit SurfaceColours(const Scene& scene);
 
-  /// True when some of the fields are written by write().
-  static bool needed(const HitFieldMask& fields) {
-    return fields.diffuse || fields.colour || fields.reflectance || fields.noise_scale;
+  /// True when some of the columns are written by write().
+  static bool needed(const HitColumnMask& hit_columns) {
+    return hit_columns.diffuse || hit_columns.colour || hit_columns.reflectance ||
+           hit_columns.noise_scale;
   }
 
   /// Writes the columns for the hits of a block; w1 and w2 are the barycentric weights of corners 1
   /// and 2.
-  void write(const HitFieldMask& fields, const HitBlock& block, const Lanes<float>& w1,
+  void write(const HitColumnMask& hit_columns, const HitBlock& block, const Lanes<float>& w1,
              const Lanes<float>& w2, Hits& hits) const;
 
  private:
@@ -53,8 +54,8 @@ class SurfaceColours {
   };
 
   [[nodiscard]] const Slot& slot_of(std::uint32_t instance, std::uint32_t primitive) const;
-  void write(const HitFieldMask& fields, const Group& group, Hits& hits) const;
-  void write_tinted(const HitFieldMask& fields, const Group& group, Hits& hits) const;
+  void write(const HitColumnMask& hit_columns, const Group& group, Hits& hits) const;
+  void write_tinted(const HitColumnMask& hit_columns, const Group& group, Hits& hits) const;
   void write_noise_scale(const Group& group, Hits& hits) const;
   static std::array<const Triangle*, kLanes> triangles_of(const Group& group);
   void multiply_by_texture(const Group& group, const TextureUse& use, Lanes3<float>& rgb) const;

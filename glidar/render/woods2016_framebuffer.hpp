@@ -26,8 +26,8 @@ class Woods2016Camera {
   Woods2016Camera& operator=(const Woods2016Camera&) = delete;
   virtual ~Woods2016Camera() = default;
 
-  /// Draws a pinhole's image; hit fields, on_tile_done and progress are ignored. The depth planes
-  /// enclose the visible surfaces tightly, unless others are given.
+  /// Draws a pinhole's image; hit columns, on_tile_done and progress are ignored. The depth
+  /// planes enclose the visible surfaces tightly, unless others are given.
   virtual void draw(const CastRequest& request, const PhongHeadlight& light,
                     const std::optional<Woods2016DepthPlanes>& planes,
                     Woods2016Framebuffer& framebuffer) = 0;

@@ -76,7 +76,7 @@ PointTrace begin_trace(const Simulation& s, std::size_t entry) {
 PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelector& pick,
                    Frame& frame, const ProgressCallback& progress) {
   const std::shared_ptr<const Beams> beams = simulator.beams(frame.number);
-  Simulation s = simulator.prepare(*beams, motion, kAllHitFields, frame, progress);
+  Simulation s = simulator.prepare(*beams, motion, kAllHitColumns, frame, progress);
   s.noise_steps = 0;
   simulate({&s, 1});
   if (s.fired != &s.beams) s.workspace.fired.directions = frame.true_directions;

@@ -118,18 +118,18 @@ void rotate_to_firing_time(const CastRequest& request, const MovingCastWorkspace
     if (hits.instance[i] == kInvalidId) continue;
     const Eigen::Matrix3d back = memory.start_from_sensor[i].linear().transpose();
     const auto rotate = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
-    if (request.fields.normal) rotate(hits.normal[i]);
-    if (request.fields.shading_normal) rotate(hits.shading_normal[i]);
-    if (request.fields.depth) hits.depth_m[i] = depth_m(request.beams, i, hits.range_m[i]);
+    if (request.hit_columns.normal) rotate(hits.normal[i]);
+    if (request.hit_columns.shading_normal) rotate(hits.shading_normal[i]);
+    if (request.hit_columns.depth) hits.depth_m[i] = depth_m(request.beams, i, hits.range_m[i]);
   }
 }
 
 /// Keeps the nearer of two hits; at the same range that of the body cast first.
-void merge(const Hits& from, const HitFieldMask& fields, BeamRange range, Hits& to) {
+void merge(const Hits& from, const HitColumnMask& hit_columns, BeamRange range, Hits& to) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     if (from.instance[i] == kInvalidId) continue;
     if (to.instance[i] == kInvalidId || from.range_m[i] < to.range_m[i])
-      copy_hit(from, i, fields, to, i);
+      copy_hit(from, i, hit_columns, to, i);
   }
 }
 
@@ -191,7 +191,7 @@ void cast_body(const MovingCast& cast, const Body& body, const BodyIndex& body_i
   cast.timed.renderer.cast({.beams = memory.beams,
                             .world_from_sensor = request.world_from_sensor,
                             .world_from_instance = request.world_from_instance,
-                            .fields = request.fields,
+                            .hit_columns = request.hit_columns,
                             .cull_back_faces = request.cull_back_faces,
                             .instance_enabled = memory.instance_enabled,
                             .progress = subrange(request.progress, part(body_index.number),
@@ -199,7 +199,7 @@ void cast_body(const MovingCast& cast, const Body& body, const BodyIndex& body_i
                            hits);
   cast.parallel_for([&](BeamRange range) {
     rotate_to_firing_time(request, memory, range, hits);
-    if (!is_first) merge(hits, request.fields, range, cast.hits);
+    if (!is_first) merge(hits, request.hit_columns, range, cast.hits);
   });
 }
 

@@ -32,14 +32,14 @@ PulseModel pulse_model(const Sensor& sensor, const Scene& scene) {
   return model;
 }
 
-HitFieldMask required_fields(const Sensor& sensor) {
-  HitFieldMask fields;
-  fields.shading = true;
-  fields.diffuse = sensor.lidar_equation.has_value();
-  fields.reflectance = !sensor.lidar_equation;
-  fields.normal = sensor.projector_origin_m.has_value();
-  add_required_fields(sensor.noise, fields);
-  return fields;
+HitColumnMask required_hit_columns(const Sensor& sensor) {
+  HitColumnMask hit_columns;
+  hit_columns.shading = true;
+  hit_columns.diffuse = sensor.lidar_equation.has_value();
+  hit_columns.reflectance = !sensor.lidar_equation;
+  hit_columns.normal = sensor.projector_origin_m.has_value();
+  add_required_hit_columns(sensor.noise, hit_columns);
+  return hit_columns;
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ bool needs_waveform(const Sensor& sensor, const Scene& scene) {
 PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
   PreparedSensor prepared{.sensor = sensor,
                           .noise = plan_noise(sensor.noise, 1.0 / sensor.rate_hz),
-                          .required_fields = required_fields(sensor),
+                          .required_hit_columns = required_hit_columns(sensor),
                           .pulse_model = {}};
   if (needs_waveform(sensor, scene)) prepared.pulse_model = pulse_model(sensor, scene);
   return prepared;

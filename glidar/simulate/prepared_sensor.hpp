@@ -29,7 +29,7 @@ struct PulseModel {
 struct PreparedSensor {
   const Sensor& sensor;
   NoisePlan noise;
-  HitFieldMask required_fields;           ///< ground truth that signal, occlusion and noise read
+  HitColumnMask required_hit_columns;     ///< ground truth that signal, occlusion and noise read
   std::optional<PulseModel> pulse_model;  ///< set when needs_waveform()
 };
 

@@ -12,7 +12,7 @@ namespace {
 // For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
 constexpr std::size_t kSubRaysPerBlock = std::size_t{1} << 14U;
 
-constexpr HitFieldMask kSignalFields = {.shading = true, .diffuse = true};
+constexpr HitColumnMask kSignalFields = {.shading = true, .diffuse = true};
 
 /// Casts the sub-rays that hit a mirror once more.
 void cast_mirrored(const Simulation& s) {
@@ -39,15 +39,15 @@ void cast_mirrored(const Simulation& s) {
 void cast_block(const Simulation& s, BeamRange block) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
   const PulseModel& model = *s.sensor.pulse_model;
-  HitFieldMask fields = s.fields | kSignalFields;
-  fields.shading_normal = fields.shading_normal || model.has_mirrors;
-  fields.normal = fields.normal || model.sub_rays.size() > 1;
+  HitColumnMask hit_columns = s.hit_columns | kSignalFields;
+  hit_columns.shading_normal = hit_columns.shading_normal || model.has_mirrors;
+  hit_columns.normal = hit_columns.normal || model.sub_rays.size() > 1;
   memory.first_pulse = block.begin;
   expand_beams(model.sub_rays, *s.fired, block, s.renderer.thread_pool(), memory.beams);
   const auto fraction = [&](std::size_t pulse) {
     return static_cast<double>(pulse) / static_cast<double>(s.fired->firings());
   };
-  CastRequest request = cast_request(s, memory.beams, fields);
+  CastRequest request = cast_request(s, memory.beams, hit_columns);
   request.progress = subrange(s.progress, fraction(block.begin), fraction(block.end));
   cast(s, request, memory.hits);
   memory.mirrored_from.clear();
@@ -62,7 +62,7 @@ std::size_t first_sub_ray(const Simulation& s, std::size_t pulse) {
 }
 
 void cast_pulses(const Simulation& s, BeamRange pulses, FunctionRef<void(BeamRange)> on_tile_done) {
-  resize(s.frame.ground_truth, s.fired->size(), s.fields);
+  resize(s.frame.ground_truth, s.fired->size(), s.hit_columns);
   s.frame.return_source.resize(s.fired->size());
   ThreadPool& threads = s.renderer.thread_pool();
   const std::size_t sub_rays = kSubRaysPerBlock * threads.threads();

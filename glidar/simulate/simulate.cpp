@@ -35,7 +35,7 @@ void start_frame(const Simulation& s) {
 }
 
 CastRequest beam_request(const Simulation& s, FunctionRef<void(BeamRange)> on_tile_done) {
-  CastRequest request = cast_request(s, *s.fired, s.fields);
+  CastRequest request = cast_request(s, *s.fired, s.hit_columns);
   request.on_tile_done = on_tile_done;
   request.progress = s.progress;
   return request;
@@ -102,7 +102,7 @@ void simulate(std::span<Simulation> frames) {
     if (s.replace_returns) s.replace_returns({sensor, s.beams, *s.fired, threads}, s.frame);
     if (sensor.projector_origin_m) occlude_from_projector(s, *sensor.projector_origin_m);
     if (s.is_moving) deskew(timed_scene(s), s.beams, *s.fired, s.frame.deskewed);
-    record_beam_poses(s.motion, s.beams, s.fields.poses, threads, s.frame);
+    record_beam_poses(s.motion, s.beams, s.hit_columns.poses, threads, s.frame);
     apply_noise(s.sensor.noise, s.beams, threads, s.workspace.noise, s.frame, s.noise_steps);
     if (s.fired != &s.beams) s.frame.true_directions.swap(s.workspace.fired.directions);
   }

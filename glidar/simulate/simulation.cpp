@@ -8,11 +8,12 @@ TimedScene timed_scene(const Simulation& s) {
   return {s.renderer, s.scene, s.motion, s.frame.stamp_ns};
 }
 
-CastRequest cast_request(const Simulation& s, const Beams& beams, const HitFieldMask& fields) {
+CastRequest cast_request(const Simulation& s, const Beams& beams,
+                         const HitColumnMask& hit_columns) {
   return {.beams = beams,
           .world_from_sensor = s.frame.world_from_sensor,
           .world_from_instance = s.frame.world_from_instance,
-          .fields = fields,
+          .hit_columns = hit_columns,
           .cull_back_faces = s.sensor.sensor.cull_back_faces};
 }
 

@@ -38,7 +38,7 @@ struct Simulation {
   Renderer& renderer;
   const Beams& beams;  ///< as the sensor reports them
   const Motion& motion;
-  HitFieldMask fields;  ///< ground truth that the frame keeps
+  HitColumnMask hit_columns;  ///< ground truth that the frame keeps
   Workspace& workspace;
   Frame& frame;
   ProgressCallback progress;
@@ -53,7 +53,7 @@ struct Simulation {
 TimedScene timed_scene(const Simulation& s);
 
 /// A cast of beams from the sensor's pose at the frame's start.
-CastRequest cast_request(const Simulation& s, const Beams& beams, const HitFieldMask& fields);
+CastRequest cast_request(const Simulation& s, const Beams& beams, const HitColumnMask& hit_columns);
 
 /// Casts the request, each beam at its own firing time where something moves.
 void cast(const Simulation& s, const CastRequest& request, Hits& hits);

@@ -57,22 +57,22 @@ Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 Simulator::~Simulator() = default;
 
-Frame Simulator::simulate(const Pose& world_from_sensor, const HitFieldMask& fields,
+Frame Simulator::simulate(const Pose& world_from_sensor, const HitColumnMask& hit_columns,
                           std::uint64_t seed) {
   Frame frame;
   frame.seed = seed;
-  simulate(static_motion(state_->scene, world_from_sensor), fields, frame);
+  simulate(static_motion(state_->scene, world_from_sensor), hit_columns, frame);
   return frame;
 }
 
-void Simulator::simulate(const Motion& motion, const HitFieldMask& fields, Frame& frame,
+void Simulator::simulate(const Motion& motion, const HitColumnMask& hit_columns, Frame& frame,
                          const ProgressCallback& progress) {
   const std::shared_ptr<const Beams> beams = state_->beams->beams(frame.number);
-  Simulation simulation = prepare(*beams, motion, fields, frame, progress);
+  Simulation simulation = prepare(*beams, motion, hit_columns, frame, progress);
   glidar::simulate({&simulation, 1});
 }
 
-void Simulator::simulate_batch(std::span<const Motion> motions, const HitFieldMask& fields,
+void Simulator::simulate_batch(std::span<const Motion> motions, const HitColumnMask& hit_columns,
                                std::span<Frame> frames, const ProgressCallback& progress) {
   require_motions(motions.size(), frames.size());
   std::vector<std::shared_ptr<const Beams>> beams;
@@ -80,7 +80,7 @@ void Simulator::simulate_batch(std::span<const Motion> motions, const HitFieldMa
   for (std::size_t i = 0; i < frames.size(); ++i) {
     beams.push_back(state_->beams->beams(frames[i].number));
     Simulation one =
-        prepare(*beams.back(), motions[i], fields, frames[i], progress, together.size());
+        prepare(*beams.back(), motions[i], hit_columns, frames[i], progress, together.size());
     if (takes_one_cast(one)) {
       together.push_back(one);
     } else {
@@ -90,8 +90,9 @@ void Simulator::simulate_batch(std::span<const Motion> motions, const HitFieldMa
   if (!together.empty()) glidar::simulate(together);
 }
 
-Simulation Simulator::prepare(const Beams& beams, const Motion& motion, const HitFieldMask& fields,
-                              Frame& frame, const ProgressCallback& progress, std::size_t slot) {
+Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
+                              const HitColumnMask& hit_columns, Frame& frame,
+                              const ProgressCallback& progress, std::size_t slot) {
   State& state = *state_;
   while (state.workspaces.size() <= slot) state.workspaces.emplace_back();
   return {.scene = state.scene,
@@ -99,7 +100,7 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion, const Hi
           .renderer = state.renderer,
           .beams = beams,
           .motion = motion,
-          .fields = fields | state.sensor.required_fields,
+          .hit_columns = hit_columns | state.sensor.required_hit_columns,
           .workspace = state.workspaces[slot],
           .frame = frame,
           .progress = progress,

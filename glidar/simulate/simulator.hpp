@@ -34,18 +34,18 @@ class Simulator {
   ~Simulator();
 
   /// The first frame of a static scene with the sensor at this pose.
-  Frame simulate(const Pose& world_from_sensor, const HitFieldMask& fields = {},
+  Frame simulate(const Pose& world_from_sensor, const HitColumnMask& hit_columns = {},
                  std::uint64_t seed = 1);
 
-  /// Simulates the frame that stamp_ns, seed, sensor_id and number of `frame` state. `fields` is
-  /// the ground truth to keep beside the range. The frame's memory is reused.
-  void simulate(const Motion& motion, const HitFieldMask& fields, Frame& frame,
+  /// Simulates the frame that stamp_ns, seed, sensor_id and number of `frame` state. `hit_columns`
+  /// is the ground truth to keep beside the range. The frame's memory is reused.
+  void simulate(const Motion& motion, const HitColumnMask& hit_columns, Frame& frame,
                 const ProgressCallback& progress = {});
 
   /// Simulates many frames, for example for Monte Carlo: frames[i] moves as motions[i] and is
   /// bit-identical to that of simulate(). Renderers that draw need less time for many small frames
   /// together than one by one. Throws Error unless there is a motion per frame.
-  void simulate_batch(std::span<const Motion> motions, const HitFieldMask& fields,
+  void simulate_batch(std::span<const Motion> motions, const HitColumnMask& hit_columns,
                       std::span<Frame> frames, const ProgressCallback& progress = {});
 
   /// Replaces the returns of all further frames; empty: none are replaced.
@@ -60,7 +60,7 @@ class Simulator {
   /// Everything that simulate() in simulate.hpp reads and writes for a frame with these beams; all
   /// arguments must outlive it. Frames that are simulated together differ in `slot`.
   [[nodiscard]] Simulation prepare(const Beams& beams, const Motion& motion,
-                                   const HitFieldMask& fields, Frame& frame,
+                                   const HitColumnMask& hit_columns, Frame& frame,
                                    const ProgressCallback& progress, std::size_t slot = 0);
 
  private:

@@ -120,10 +120,10 @@ Status missing_return_status(const Simulation& s, const EchoContribution& surfac
 /// Writes what a sub-ray hit, or a miss.
 void write_ground_truth(const Simulation& s, std::uint32_t source, std::size_t entry) {
   if (source == kInvalidId) {
-    write_misses(s.fields, entry, 1, s.frame.ground_truth);
+    write_misses(s.hit_columns, entry, 1, s.frame.ground_truth);
     return;
   }
-  copy_hit(s.workspace.sub_rays.hits, source, s.fields, s.frame.ground_truth, entry);
+  copy_hit(s.workspace.sub_rays.hits, source, s.hit_columns, s.frame.ground_truth, entry);
 }
 
 /// Random numbers of the receiver for a run of pulses.
@@ -260,7 +260,7 @@ WaveformTrace trace_waveform(const Simulation& s, std::size_t pulse, Frame frame
                          .renderer = s.renderer,
                          .beams = s.beams,
                          .motion = s.motion,
-                         .fields = {},
+                         .hit_columns = {},
                          .workspace = s.workspace,
                          .frame = frame,
                          .progress = s.progress,

@@ -102,7 +102,7 @@ VerifyResult run_case(const VerifyCase& c, const Shape& shape, const VerifySubje
     renderer->cast({.beams = beams,
                     .world_from_sensor = stage.world_from_sensor,
                     .world_from_instance = {},
-                    .fields = {.normal = true},
+                    .hit_columns = {.normal = true},
                     .cull_back_faces = false},
                    hits);
     result.add(compare_cast(exact, stage.world_from_sensor, beams, hits));

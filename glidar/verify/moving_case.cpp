@@ -102,7 +102,7 @@ VerifyResult moving_sensor_and_target(const VerifySubject& subject,
               {.beams = beams,
                .world_from_sensor = pose_at(moving.sensor, kStamp_ns),
                .world_from_instance = poses,
-               .fields = {.normal = true}},
+               .hit_columns = {.normal = true}},
               memory, hits);
   VerifyResult result;
   for (std::size_t i = 0; i < beams.size(); ++i) {

@@ -51,7 +51,8 @@ VerifyResult cast_and_compare(Renderer& renderer, const ExactScene& exact,
                               const Pose& world_from_sensor, const Beams& beams) {
   Hits hits;
   renderer.cast(
-      {.beams = beams, .world_from_sensor = world_from_sensor, .fields = {.normal = true}}, hits);
+      {.beams = beams, .world_from_sensor = world_from_sensor, .hit_columns = {.normal = true}},
+      hits);
   return compare_cast(exact, world_from_sensor, beams, hits);
 }
 

@@ -56,7 +56,7 @@ class Simulator(Immutable):
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
         self._origin = Origin(SceneSource(scene._recipe.copy()), chosen, renderer, threads)
-        self._usual_fields = _core.fields_needed_by(column_list(None))
+        self._default_hit_columns = _core.hit_columns_for(column_list(None))
         self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
 
     __reduce_ex__ = refuse_pickle(
@@ -84,7 +84,7 @@ class Simulator(Immutable):
                 sensor,
                 object_trajectories(objects, 1, self._core.objects),
                 (whole(seed, "seed", MAX_UINT64), whole(frame, "frame", MAX_UINT32), whole(sensor_id, "sensor_id", MAX_UINT32)),
-                self._fields(columns),
+                self._hit_columns(columns),
             ),
             self._origin,
         )
@@ -118,45 +118,45 @@ class Simulator(Immutable):
         together = whole(batch, "batch", MAX_UINT32)
         if together == 0:
             raise Error("batch", "0", "a whole number from 1")
-        return self._iterate(inputs, self._fields(columns), whole(sensor_id, "sensor_id", MAX_UINT32), together)
+        return self._iterate(inputs, self._hit_columns(columns), whole(sensor_id, "sensor_id", MAX_UINT32), together)
 
-    def _iterate(self, inputs: FrameInputs, fields: _core.HitFieldMask, sensor_id: int, batch: int) -> Iterator[Frame]:
+    def _iterate(self, inputs: FrameInputs, hit_columns: _core.HitColumnMask, sensor_id: int, batch: int) -> Iterator[Frame]:
         while True:
             batch_inputs, error = inputs.take(batch)
-            yield from self._frames_of(batch_inputs, fields, sensor_id)
+            yield from self._frames_of(batch_inputs, hit_columns, sensor_id)
             if error is not None:
                 raise error
             if len(batch_inputs.sensors) < batch:
                 return
 
-    def _frames_of(self, batch_inputs: FrameBatch, fields: _core.HitFieldMask, sensor_id: int) -> Iterator[Frame]:
+    def _frames_of(self, batch_inputs: FrameBatch, hit_columns: _core.HitColumnMask, sensor_id: int) -> Iterator[Frame]:
         """The frames of a batch. Each is released here when it is yielded."""
         if not batch_inputs.sensors:
             return
         try:
-            measured = self._measured(batch_inputs, fields, sensor_id)
+            measured = self._measured(batch_inputs, hit_columns, sensor_id)
         except Error as error:
             if len(batch_inputs.sensors) == 1:
                 raise Error(f"frame {batch_inputs.first}, {error.where}", error.found, error.allowed, error.remedy) from error
             for k in range(len(batch_inputs.sensors)):  # find the frame that fails
-                yield from self._frames_of(batch_inputs.sliced(k), fields, sensor_id)
+                yield from self._frames_of(batch_inputs.sliced(k), hit_columns, sensor_id)
             return
         measured.reverse()
         while measured:
             yield Frame(measured.pop(), self._origin)
 
-    def _measured(self, batch_inputs: FrameBatch, fields: _core.HitFieldMask, sensor_id: int) -> list[_core.Frame]:
+    def _measured(self, batch_inputs: FrameBatch, hit_columns: _core.HitColumnMask, sensor_id: int) -> list[_core.Frame]:
         objects = None if batch_inputs.objects is None else _core.joined(batch_inputs.objects)
         keys = (np.array(batch_inputs.seeds, np.uint64), np.array(batch_inputs.numbers, np.uint32), sensor_id)
-        return self._core.simulate(_core.joined(batch_inputs.sensors), objects, keys, fields)
+        return self._core.simulate(_core.joined(batch_inputs.sensors), objects, keys, hit_columns)
 
     def _sensors(self, poses: PoseLike | Sequence[PoseLike] | None) -> _core.Trajectories:
         if poses is None:
             return self._core.usual_motion()
         return trajectories(poses, "pose")
 
-    def _fields(self, columns: str | Iterable[str] | None) -> _core.HitFieldMask:
-        return self._usual_fields if columns is None else _core.fields_needed_by(column_list(columns))
+    def _hit_columns(self, columns: str | Iterable[str] | None) -> _core.HitColumnMask:
+        return self._default_hit_columns if columns is None else _core.hit_columns_for(column_list(columns))
 
     def _measure(
         self,
@@ -176,6 +176,6 @@ class Simulator(Immutable):
                 whole_numbers(numbers, "frame", count, 32),
                 whole(sensor_id, "sensor_id", MAX_UINT32),
             ),
-            self._fields(columns),
+            self._hit_columns(columns),
         )
         return [Frame(core, self._origin) for core in measured]

@@ -57,7 +57,7 @@ struct Batch {
   std::span<const std::uint64_t> seeds;
   std::span<const std::uint32_t> numbers;
   std::uint32_t sensor_id;
-  const HitFieldMask& fields;
+  const HitColumnMask& hit_columns;
 
   [[nodiscard]] std::size_t size() const { return sensors.all.size(); }
 };
@@ -96,7 +96,7 @@ void measure_run(const SimulatorHandle& handle, const Batch& batch, std::size_t 
     motions.push_back(motion_of(handle, batch, first + k));
     frames.push_back(std::move(run[k]->frame));
   }
-  handle.simulator->simulate_batch(motions, batch.fields, frames, watch.progress());
+  handle.simulator->simulate_batch(motions, batch.hit_columns, frames, watch.progress());
   for (std::size_t k = 0; k < run.size(); ++k) {
     run[k]->motion = std::make_shared<const Motion>(std::move(motions[k]));
     run[k]->frame = std::move(frames[k]);
@@ -121,14 +121,14 @@ using Key = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>;
 
 nb::list simulate_all(const SimulatorHandle& handle, const Trajectories& sensors,
                       const std::optional<Trajectories>& objects, const Keys& keys,
-                      const HitFieldMask& fields) {
+                      const HitColumnMask& hit_columns) {
   const auto& [seeds, numbers, sensor_id] = keys;
   const Batch batch{.sensors = sensors,
                     .objects = objects,
                     .seeds = {seeds.data(), seeds.shape(0)},
                     .numbers = {numbers.data(), numbers.shape(0)},
                     .sensor_id = sensor_id,
-                    .fields = fields};
+                    .hit_columns = hit_columns};
   Frames frames = unlocked([&](Watch& watch) { return measure_all(handle, batch, watch); });
   nb::list result;
   for (auto& measured : frames) {
@@ -140,14 +140,14 @@ nb::list simulate_all(const SimulatorHandle& handle, const Trajectories& sensors
 /// The same for one frame, with less ado.
 std::unique_ptr<Measured> simulate_one(const SimulatorHandle& handle, const Trajectories& sensor,
                                        const std::optional<Trajectories>& objects, const Key& key,
-                                       const HitFieldMask& fields) {
+                                       const HitColumnMask& hit_columns) {
   const auto& [seed, number, sensor_id] = key;
   const Batch batch{.sensors = sensor,
                     .objects = objects,
                     .seeds = {&seed, 1},
                     .numbers = {&number, 1},
                     .sensor_id = sensor_id,
-                    .fields = fields};
+                    .hit_columns = hit_columns};
   return std::move(
       unlocked([&](Watch& watch) { return measure_all(handle, batch, watch); }).front());
 }
@@ -181,23 +181,23 @@ void attach_scene(Measured& measured, const SceneHandle& scene, const std::strin
   if (!measured.unrendered) measured.unrendered = unrendered(scene, renderer);
 }
 
-HitFieldMask fields(const std::vector<std::string>& columns) {
-  return fields_needed_by(columns);
+HitColumnMask hit_columns(const std::vector<std::string>& columns) {
+  return hit_columns_for(columns);
 }
 
 }  // namespace
 
 void bind_simulator(nb::module_& module) {
-  nb::class_<HitFieldMask>(module, "HitFieldMask", "The ground truth that a frame keeps.");
-  module.def("fields_needed_by", fields, nb::arg("columns"));
+  nb::class_<HitColumnMask>(module, "HitColumnMask", "The ground truth that a frame keeps.");
+  module.def("hit_columns_for", hit_columns, nb::arg("columns"));
   nb::class_<SimulatorHandle>(module, "Simulator")
-      .def(
-          "simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(), nb::arg("keys"),
-          nb::arg("fields"),
-          nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, keys: "
-                  "tuple[numpy.ndarray, numpy.ndarray, int], fields: HitFieldMask) -> list[Frame]"))
+      .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(), nb::arg("keys"),
+           nb::arg("hit_columns"),
+           nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, keys: "
+                   "tuple[numpy.ndarray, numpy.ndarray, int], hit_columns: HitColumnMask) -> "
+                   "list[Frame]"))
       .def("simulate_one", simulate_one, nb::arg("sensor"), nb::arg("objects").none(),
-           nb::arg("key"), nb::arg("fields"))
+           nb::arg("key"), nb::arg("hit_columns"))
       .def("usual_motion", usual_motion)
       .def("attach", attach, nb::arg("frame"))
       .def_prop_ro("objects", [](const SimulatorHandle& self) {

@@ -157,11 +157,11 @@ TEST(PointCloud, RejectsUnknownAndUncastColumns) {
 
 TEST(PointCloud, RequiresTheHitFieldsOfItsColumns) {
   const std::vector<std::string> names = {"xyz", "normal", "colour"};
-  const HitFieldMask fields = fields_needed_by(names);
-  EXPECT_TRUE(fields.normal);
-  EXPECT_TRUE(fields.colour);
-  EXPECT_FALSE(fields.shading_normal);
-  EXPECT_FALSE(fields.object_point);
+  const HitColumnMask hit_columns = hit_columns_for(names);
+  EXPECT_TRUE(hit_columns.normal);
+  EXPECT_TRUE(hit_columns.colour);
+  EXPECT_FALSE(hit_columns.shading_normal);
+  EXPECT_FALSE(hit_columns.object_point);
 }
 
 TEST(RemoveInvalidPoints, KeepsTheHitsOnly) {

@@ -63,15 +63,15 @@ def test_ctrl_c_stops_a_batch_and_leaves_the_simulator_usable(asteroid):
     sensor = glidar.camera(256, 256)
     poses = poses_around(3000)
     core = glidar.Simulator(asteroid, sensor)._core
-    fields = glidar._core.fields_needed_by(["xyz"])
-    assert completed(core.simulate, glidar._core.constant(poses, "poses"), None, keys(len(poses)), fields) == []
+    hit_columns = glidar._core.hit_columns_for(["xyz"])
+    assert completed(core.simulate, glidar._core.constant(poses, "poses"), None, keys(len(poses)), hit_columns) == []
     assert glidar.simulate(asteroid, sensor, poses[0]).hits > 0
 
 
 def test_ctrl_c_stops_one_long_measurement(asteroid):
     simulator = glidar.Simulator(asteroid, glidar.camera(4000, 4000))
-    fields = glidar._core.fields_needed_by(["xyz"])
-    assert completed(simulator._core.simulate, simulator._core.usual_motion(), None, keys(1), fields) == []
+    hit_columns = glidar._core.hit_columns_for(["xyz"])
+    assert completed(simulator._core.simulate, simulator._core.usual_motion(), None, keys(1), hit_columns) == []
     glidar.simulate(asteroid, glidar.camera(), poses_around(1)[0])
 
 

@@ -16,7 +16,7 @@ using testing::scanner_beams;
 Hits cast_by(const char* kind, const Scene& scene, const Beams& beams, const Pose& pose) {
   Hits hits;
   make_renderer(scene, {.kind = kind, .threads = 2})
-      ->cast({.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields}, hits);
+      ->cast({.beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns}, hits);
   return hits;
 }
 
@@ -53,8 +53,8 @@ TEST(AutoRenderer, ChoosesTheRendererForEachCast) {
   Hits hits;
   for (int i = 0; i < 2; ++i) {
     for (const Beams* beams : {&many, &few}) {
-      renderer->cast({.beams = *beams, .world_from_sensor = kAlongEdges, .fields = kAllHitFields},
-                     hits);
+      renderer->cast(
+          {.beams = *beams, .world_from_sensor = kAlongEdges, .hit_columns = kAllHitColumns}, hits);
       EXPECT_TRUE(are_same(hits, cast_by("auto", scene, *beams, kAlongEdges)));
     }
   }

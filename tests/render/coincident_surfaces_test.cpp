@@ -76,7 +76,7 @@ TEST_P(CoincidentSurfaces, TheNextInstanceIsReportedIfTheFirstIsDisabled) {
   Hits hits;
   renderer(scene)->cast({.beams = beams,
                          .world_from_sensor = turned(0.2, {0.0, 1.0, 0.0}, {-0.6, 0.1, -3.0}),
-                         .fields = {},
+                         .hit_columns = {},
                          .instance_enabled = present},
                         hits);
   EXPECT_GT(count(hits, 1), 300U);

@@ -62,7 +62,7 @@ TEST_P(Copies, ReportTheFirstTriangleOfEachPair) {
     const auto cast_at = [&](const Scene& of) {
       Hits hits;
       renderer(of)->cast(
-          {.beams = beams, .world_from_sensor = pose, .fields = {}, .cull_back_faces = culls},
+          {.beams = beams, .world_from_sensor = pose, .hit_columns = {}, .cull_back_faces = culls},
           hits);
       return hits;
     };

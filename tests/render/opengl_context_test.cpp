@@ -52,7 +52,7 @@ class OpenglContext : public ::testing::Test {
   }
 
   [[nodiscard]] CastRequest request() const {
-    return {.beams = beams_, .world_from_sensor = pose_, .fields = {}};
+    return {.beams = beams_, .world_from_sensor = pose_, .hit_columns = {}};
   }
   std::unique_ptr<opengl::Context> shared() {
     return std::make_unique<SharedContext>(*window_, uses_);

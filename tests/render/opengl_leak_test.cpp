@@ -57,7 +57,8 @@ TEST_F(OpenglLeak, MemoryStaysConstantOverTenThousandFrames) {
   const auto renderer = make_renderer(scene_, {.kind = "opengl", .threads = 1});
   Hits hits;
   expect_flat(1000, 10'000, 1.0, [&](int /*frame*/) {
-    renderer->cast({.beams = beams_, .world_from_sensor = pose_, .fields = kAllHitFields}, hits);
+    renderer->cast({.beams = beams_, .world_from_sensor = pose_, .hit_columns = kAllHitColumns},
+                   hits);
   });
 }
 
@@ -69,8 +70,8 @@ TEST_F(OpenglLeak, MemoryStaysConstantOverBatchesAndResizes) {
   for (Hits& h : all) hits.push_back(&h);
   expect_flat(100, 500, 1.0, [&](int frame) {
     const Beams& first = frame % 2 == 0 ? beams_ : wide;
-    const CastRequest one{.beams = first, .world_from_sensor = pose_, .fields = {}};
-    const CastRequest other{.beams = wide, .world_from_sensor = pose_, .fields = {}};
+    const CastRequest one{.beams = first, .world_from_sensor = pose_, .hit_columns = {}};
+    const CastRequest other{.beams = wide, .world_from_sensor = pose_, .hit_columns = {}};
     renderer->cast_batch(std::vector<CastRequest>{one, one, other, one, other, other}, hits);
   });
 }
@@ -90,7 +91,7 @@ TEST_F(OpenglLeak, MemoryStaysConstantOverAHundredRenderers) {
   Hits hits;
   expect_flat(10, 100, 100 * kPerContext_MiB, [&](int /*frame*/) {
     make_renderer(scene_, {.kind = "opengl", .threads = 1})
-        ->cast({.beams = beams_, .world_from_sensor = pose_, .fields = {}}, hits);
+        ->cast({.beams = beams_, .world_from_sensor = pose_, .hit_columns = {}}, hits);
   });
 }
 

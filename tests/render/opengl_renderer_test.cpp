@@ -33,9 +33,9 @@ TEST_F(OpenglRenderer, ManyRenderersCanDrawInTurns) {
   Hits hits;
   for (int i = 0; i < 20; ++i) {
     const auto other = make_renderer(scene, {.kind = "opengl", .threads = 1});
-    other->cast({.beams = beams, .fields = {}}, hits);
+    other->cast({.beams = beams, .hit_columns = {}}, hits);
     const Hits theirs = hits;
-    first->cast({.beams = beams, .fields = {}}, hits);
+    first->cast({.beams = beams, .hit_columns = {}}, hits);
     EXPECT_EQ(hits.primitive, theirs.primitive);
   }
 }

@@ -17,7 +17,7 @@ Hits cast_by(const char* kind, const Scene& scene, const Beams& beams, const Pos
   make_renderer(scene, {.kind = kind, .threads = 2})
       ->cast({.beams = beams,
               .world_from_sensor = pose,
-              .fields = kAllHitFields,
+              .hit_columns = kAllHitColumns,
               .cull_back_faces = cull_back_faces},
              hits);
   return hits;

@@ -31,7 +31,7 @@ class Rasterizer : public ::testing::TestWithParam<const char*> {
 
   static Hits draw(const Scene& scene, const Beams& beams, const Pose& pose) {
     return cast_by(GetParam(), scene,
-                   {.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields});
+                   {.beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns});
   }
 };
 
@@ -64,7 +64,8 @@ TEST_P(Rasterizer, EqualsRaysOnADenseMesh) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(400, 300, 500.0);
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-  const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
+  const CastRequest request{
+      .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
   const Compared compared =
       compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
   EXPECT_GT(compared.hits, 30'000U);
@@ -82,7 +83,8 @@ TEST_P(Rasterizer, EqualsRaysOnTheBunny) {
     const Beams beams = camera_beams(300, 300, 1000.0 * distance_m);
     const Pose pose =
         look_at(middle + distance_m * Eigen::Vector3d(0.6, 0.0, 0.8), middle, {0.0, 1.0, 0.0});
-    const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
+    const CastRequest request{
+        .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
     const Compared compared =
         compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
     EXPECT_GT(compared.hits, 10'000U) << distance_m;
@@ -99,8 +101,8 @@ TEST_P(Rasterizer, DrawsImagesLargerThanOneTile) {
   const Pose pose = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Beams large = pinhole_beams(k);
   const Hits drawn = draw(scene, large, pose);
-  const Hits cast =
-      cast_by("rays", scene, {.beams = large, .world_from_sensor = pose, .fields = kAllHitFields});
+  const Hits cast = cast_by(
+      "rays", scene, {.beams = large, .world_from_sensor = pose, .hit_columns = kAllHitColumns});
   const Compared compared = compare(drawn, cast);
   EXPECT_GT(compared.hits, 500'000U);
   EXPECT_LE(compared.other_surface, 50U);
@@ -116,7 +118,7 @@ TEST_P(Rasterizer, AcceptsAnyPrincipalPointFocalLengthsAndPixelCentre) {
     const Beams beams = pinhole_beams(k);
     scene.instances[0].world_from_object.translation() =
         5.0 * direction_through(plane_x(k, 100), plane_y(k, 50));
-    const CastRequest request{.beams = beams, .fields = kAllHitFields};
+    const CastRequest request{.beams = beams, .hit_columns = kAllHitColumns};
     const Compared compared =
         compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
     EXPECT_GT(compared.hits, 3'000U);
@@ -184,7 +186,8 @@ TEST_P(Rasterizer, AlphaMasksOfSomeSlotsKeepTriangleIds) {
   scene.materials[2].opacity = 0.4F;  // all of it lets beams through
   const Beams beams = camera_beams(200, 200, 200.0);
   const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-  const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
+  const CastRequest request{
+      .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
   const Compared compared =
       compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
   EXPECT_GT(compared.hits, 10'000U);
@@ -198,7 +201,8 @@ TEST_P(Rasterizer, DisabledInstancesAreNotDrawn) {
   scene.instances[1].world_from_object.translation().z() = 9.0;
   const Beams beams = camera_beams(16, 16, 60.0);
   const auto middle = [&](std::vector<std::uint8_t> present) {
-    return cast_by(GetParam(), scene, {.beams = beams, .fields = {}, .instance_enabled = present})
+    return cast_by(GetParam(), scene,
+                   {.beams = beams, .hit_columns = {}, .instance_enabled = present})
         .instance[8 * 16 + 8];
   };
   EXPECT_EQ(middle({}), 0U);
@@ -257,7 +261,7 @@ TEST_P(Rasterizer, ReportsEveryBeamOnceAndItsProgress) {
     cast_by(GetParam(), scene,
             {.beams = beams,
              .world_from_sensor = pose,
-             .fields = {},
+             .hit_columns = {},
              .on_tile_done = FunctionRef<void(BeamRange)>(count),
              .progress = [&](double part) { progress = part; }});
     for (const std::atomic<int>& times : report_count) EXPECT_EQ(times, 1);

@@ -178,7 +178,7 @@ TEST_P(ReferenceCase, StableBeamsHitTheReferenceTriangleAtTheReferenceDepth) {
         ->cast({.beams = beams,
                 .world_from_sensor = world_from_sensor,
                 .world_from_instance = {},
-                .fields = {.depth = true, .incidence = true, .object_point = true}},
+                .hit_columns = {.depth = true, .incidence = true, .object_point = true}},
                hits);
     expect_reference(scene, reference, hits);
   }
@@ -204,7 +204,7 @@ TEST_P(TextureCase, UvsInterpolateAsInTheReference) {
   make_renderer(scene, {})->cast({.beams = beams,
                                   .world_from_sensor = pose_from(params["camera_to_world"]),
                                   .world_from_instance = {},
-                                  .fields = {.barycentrics = true}},
+                                  .hit_columns = {.barycentrics = true}},
                                  hits);
   const auto uv = testing::read_npy<float>(folder / "uv.npy");
   const auto stable = testing::read_npy<std::uint8_t>(folder / "stable_mask.npy");
@@ -247,7 +247,7 @@ TEST(M3tOpengl, DepthImageAndSilhouetteEqualTheReference) {
       {.beams = beams,
        .world_from_sensor = pose_from(params["world2camera"]).inverse(Eigen::Affine),
        .world_from_instance = {},
-       .fields = {.depth = true},
+       .hit_columns = {.depth = true},
        .cull_back_faces = true},
       hits);
   const auto depth = testing::read_npy<float>(folder / "depth_z_m.npy");
@@ -297,7 +297,7 @@ TEST(StanfordScan, TheRenderedBunnyMatchesTheScan) {
   make_renderer(scene, {})->cast({.beams = beams,
                                   .world_from_sensor = Pose::Identity(),
                                   .world_from_instance = {},
-                                  .fields = {}},
+                                  .hit_columns = {}},
                                  hits);
   std::vector<double> distance;
   for (std::size_t i = 0; i < points; ++i) {

@@ -34,7 +34,7 @@ class RendererBatch : public testing::RendererSuite {
 
   void add(const Beams& beams) {
     requests_.push_back(
-        {.beams = beams, .world_from_sensor = next_pose(), .fields = kAllHitFields});
+        {.beams = beams, .world_from_sensor = next_pose(), .hit_columns = kAllHitColumns});
   }
 
   /// Casts a batch, then each request alone, and compares every bit of every column.
@@ -107,7 +107,7 @@ TEST_P(RendererBatch, EveryCastHasItsOwnPosesFieldsAndCulling) {
   const std::vector<Pose> poses = {turned(0.5, {1.0, 0.0, 0.0}, {0.3, 0.0, 0.0}), next_pose()};
   const std::vector<std::uint8_t> present = {1, 0};
   requests_[1].world_from_instance = poses;
-  requests_[2].fields = {};
+  requests_[2].hit_columns = {};
   requests_[3].cull_back_faces = true;
   requests_[5].instance_enabled = present;
   expect_as_one_by_one();

@@ -79,7 +79,8 @@ Aimed aim_at(Renderer& renderer, const Scene& scene, const std::vector<Target>& 
   Hits hits;
   const Beams beams = loose_beams(directions, {});
   renderer.cast(
-      {.beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .fields = {}}, hits);
+      {.beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .hit_columns = {}},
+      hits);
   const double tolerance = 1e-6 * bounds(scene).diagonal().norm();
   Aimed aimed{.beams = ranges.size(), .leaked = 0};
   for (std::size_t i = 0; i < ranges.size(); ++i) {

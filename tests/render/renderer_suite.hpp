@@ -120,7 +120,7 @@ class RendererSuite : public ::testing::TestWithParam<std::string> {
     renderer(scene)->cast({.beams = beams,
                            .world_from_sensor = world_from_sensor,
                            .world_from_instance = {},
-                           .fields = kAllHitFields,
+                           .hit_columns = kAllHitColumns,
                            .cull_back_faces = cull_back_faces},
                           hits);
     return hits;

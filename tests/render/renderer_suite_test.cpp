@@ -225,12 +225,13 @@ TEST_P(RendererSuite, CanCullAfterCastingWithout) {
   const std::unique_ptr<Renderer> one = renderer(scene);
   Hits before;
   Hits culled;
-  one->cast({.beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .fields = {}},
-            before);
+  one->cast(
+      {.beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .hit_columns = {}},
+      before);
   one->cast({.beams = beams,
              .world_from_sensor = pose,
              .world_from_instance = {},
-             .fields = {},
+             .hit_columns = {},
              .cull_back_faces = true},
             culled);
   EXPECT_EQ(before.primitive, culled.primitive);  // from outside fronts come first
@@ -248,7 +249,7 @@ TEST_P(RendererSuite, InstancesMoveWithTheRequestedPoses) {
     one->cast({.beams = beams,
                .world_from_sensor = Pose::Identity(),
                .world_from_instance = poses,
-               .fields = {}},
+               .hit_columns = {}},
               hits);
     EXPECT_EQ(hits.instance[0], 0U);
     EXPECT_NEAR(hits.range_m[0], distance - 1.0, 2e-3);  // the facets lie just inside the sphere
@@ -341,7 +342,7 @@ TEST_P(RendererSuite, ResultsDoNotDependOnTheNumberOfThreads) {
   const CastRequest request{.beams = beams,
                             .world_from_sensor = pose,
                             .world_from_instance = {},
-                            .fields = kAllHitFields};
+                            .hit_columns = kAllHitColumns};
   Hits one;
   Hits many;
   renderer(scene, 1)->cast(request, one);

@@ -35,7 +35,7 @@ class SceneLimits : public RendererSuite {
         ->cast({.beams = beams,
                 .world_from_sensor = pose,
                 .world_from_instance = {},
-                .fields = kAllHitFields},
+                .hit_columns = kAllHitColumns},
                expected);
     ASSERT_TRUE(std::any_of(hits.range_m.begin(), hits.range_m.end(),
                             [](double range_m) { return std::isfinite(range_m); }));
@@ -51,7 +51,7 @@ class SceneLimits : public RendererSuite {
     try {
       renderer(scene)->cast({.beams = beams,
                              .world_from_instance = std::vector<Pose>{world_from_instance},
-                             .fields = kAllHitFields},
+                             .hit_columns = kAllHitColumns},
                             hits);
     } catch (const Error& error) {
       return error.what();
@@ -114,7 +114,7 @@ TEST(RasterLimits, AVeryCloseSurfaceEqualsRays) {
       const CastRequest request{.beams = beams,
                                 .world_from_sensor = pose,
                                 .world_from_instance = {},
-                                .fields = kAllHitFields};
+                                .hit_columns = kAllHitColumns};
       Hits hits;
       Hits expected;
       raster->cast(request, hits);

@@ -59,7 +59,7 @@ TEST(VisibleDepths, AreTightAroundTheHitsOnAnAsteroidThatFillsTheView) {
   const DepthSpan span = depths(scene, beams, pose);
   Hits hits;
   make_renderer(scene, {})->cast(
-      {.beams = beams, .world_from_sensor = pose, .fields = {.depth = true}}, hits);
+      {.beams = beams, .world_from_sensor = pose, .hit_columns = {.depth = true}}, hits);
   double nearest = 1e9;
   for (const double depth : hits.depth_m) {
     if (std::isnan(depth)) continue;

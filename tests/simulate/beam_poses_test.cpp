@@ -49,7 +49,7 @@ struct Stage {
   }
 
   PointCloud shoot(const std::vector<std::string>& columns) {
-    testing::simulate({scene, sensor, beams, motion, *renderer}, fields_needed_by(columns), frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, hit_columns_for(columns), frame);
     PointCloud cloud;
     make_point_cloud(frame, beams, scene, {beams.frame_id}, columns, cloud);
     return cloud;

@@ -31,7 +31,7 @@ struct Stage {
   Frame shoot(std::int64_t stamp_ns = 0) {
     Frame frame;
     frame.stamp_ns = stamp_ns;
-    testing::simulate(inputs(), kAllHitFields, frame);
+    testing::simulate(inputs(), kAllHitColumns, frame);
     return frame;
   }
 };
@@ -73,7 +73,7 @@ void expect_as_if_cast_alone(Stage& stage, const Frame& frame) {
     stage.renderer->cast({.beams = one,
                           .world_from_sensor = pose_at(stage.motion.world_from_sensor, t_ns),
                           .world_from_instance = poses,
-                          .fields = kAllHitFields},
+                          .hit_columns = kAllHitColumns},
                          hits);
     ASSERT_EQ(frame.ground_truth.instance[i], hits.instance[0]) << "beam " << i;
     if (hits.instance[0] == kInvalidId) continue;
@@ -188,7 +188,7 @@ TEST(MovingCast, ReportsProgressOverAllBodies) {
   testing::SimulationInputs inputs = stage.inputs();
   inputs.progress = [&](double fraction) { told.push_back(fraction); };
   Frame frame;
-  testing::simulate(inputs, kAllHitFields, frame);
+  testing::simulate(inputs, kAllHitColumns, frame);
   ASSERT_GE(told.size(), 3U);  // three bodies, each reported at least at its end
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_GE(told.front(), 0.0);
@@ -202,7 +202,7 @@ TEST(MovingCast, AllocatesNothingInTheSteadyState) {
       ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0), .linear_m_s = {1, 0, 0}};
   Simulator simulator(stage.scene, stage.sensor, *stage.renderer);
   Frame frame;
-  Simulation simulation = simulator.prepare(stage.beams, stage.motion, kAllHitFields, frame, {});
+  Simulation simulation = simulator.prepare(stage.beams, stage.motion, kAllHitColumns, frame, {});
   simulate({&simulation, 1});
   const void* const moved = simulation.workspace.moving_cast.beams.directions.data();
   const void* const deskewed = frame.deskewed.directions.data();

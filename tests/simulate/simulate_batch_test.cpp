@@ -43,14 +43,14 @@ class SimulateBatch : public ::testing::TestWithParam<std::string> {
   /// Simulates all together, then each alone, and compares what is measured.
   void expect_as_one_by_one(const Sensor& sensor) const {
     Simulator simulator(scene_, sensor, *renderer_);
-    const HitFieldMask fields{.depth = true, .normal = true};
+    const HitColumnMask hit_columns{.depth = true, .normal = true};
     std::vector<Frame> frames;
     for (int i = 0; i < kFrames; ++i) frames.push_back(seeded(i));
-    simulator.simulate_batch(motions_, fields, frames);
+    simulator.simulate_batch(motions_, hit_columns, frames);
     std::size_t hits = 0;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       Frame alone = seeded(static_cast<int>(i));
-      simulator.simulate(motions_[i], fields, alone);
+      simulator.simulate(motions_[i], hit_columns, alone);
       const auto same = [](const auto& a, const auto& b) {
         return a.size() == b.size() &&
                std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;

@@ -67,9 +67,9 @@ struct Stage {
         static_motion(scene, look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
     renderer = make_renderer(scene, {.threads = 2});
   }
-  Frame shoot(const HitFieldMask& fields = {}) {
+  Frame shoot(const HitColumnMask& hit_columns = {}) {
     Frame frame;
-    testing::simulate({scene, sensor, beams, motion, *renderer}, fields, frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, hit_columns, frame);
     return frame;
   }
 };
@@ -132,11 +132,12 @@ TEST(Simulate, AllocatesNothingInTheSteadyState) {
   stage.sensor.noise = {PointingJitter{.sigma_azimuth_rad = 1e-4}, RangeGaussian{.sigma_m = 0.01},
                         KinectV1{}, Dropout{.probability = 0.1}};
   Simulator simulator(stage.scene, stage.sensor, *stage.renderer);
-  const HitFieldMask fields{.depth = true, .normal = true, .object_point = true};
+  const HitColumnMask hit_columns{.depth = true, .normal = true, .object_point = true};
   Frame frame;
-  for (int warm_up = 0; warm_up < 3; ++warm_up) simulator.simulate(stage.motion, fields, frame);
+  for (int warm_up = 0; warm_up < 3; ++warm_up)
+    simulator.simulate(stage.motion, hit_columns, frame);
   const std::size_t before = allocations;
-  for (int i = 0; i < 10; ++i) simulator.simulate(stage.motion, fields, frame);
+  for (int i = 0; i < 10; ++i) simulator.simulate(stage.motion, hit_columns, frame);
   EXPECT_EQ(allocations - before, 0U);
 }
 
@@ -173,7 +174,7 @@ TEST(Simulate, AllocatesNothingInTheSteadyStateForScannersWhoseBeamsChange) {
     for (int i = 0; i < 300; ++i) raster.azimuths_rad.push_back(0.01 * i - 1.5);
     for (int i = 0; i < 30; ++i) raster.elevations_rad.push_back(0.01 * i - 0.15);
     Beams beams = make_beams(sensor);
-    CastRequest request{.beams = beams, .fields = {.normal = true}};
+    CastRequest request{.beams = beams, .hit_columns = {.normal = true}};
     request.world_from_sensor.translation().x() = -4.0;
     Hits hits;
     const auto cast = [&](int times) {
@@ -197,7 +198,7 @@ TEST(Simulate, AllocatesNothingInTheSteadyStateForOverlappingPartsOfMeshes) {
     Sensor sensor;
     sensor.optics = pinhole_from_fov(64, 64, 0.5);
     const Beams beams = make_beams(sensor);
-    CastRequest request{.beams = beams, .fields = {.normal = true}};
+    CastRequest request{.beams = beams, .hit_columns = {.normal = true}};
     request.world_from_sensor.translation().z() = -8.0;
     Hits hits;
     for (int warm_up = 0; warm_up < 3; ++warm_up) renderer->cast(request, hits);

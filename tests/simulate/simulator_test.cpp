@@ -71,7 +71,7 @@ TEST(Simulator, AFrameDoesNotDependOnTheFramesBefore) {
     Simulator(scene, beams, *renderer).simulate(still, {.normal = true}, expected);
     Simulator simulator(scene, beams, *renderer);
     Frame frame = seeded(8);
-    simulator.simulate(spin, kAllHitFields, frame);
+    simulator.simulate(spin, kAllHitColumns, frame);
     EXPECT_NE(frame.intensity, expected.intensity);
     frame.seed = 7;
     simulator.simulate(still, {.normal = true}, frame);

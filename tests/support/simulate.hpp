@@ -20,10 +20,10 @@ struct SimulationInputs {
 };
 
 /// Simulates one frame.
-inline void simulate(const SimulationInputs& in, const HitFieldMask& fields, Frame& frame) {
+inline void simulate(const SimulationInputs& in, const HitColumnMask& hit_columns, Frame& frame) {
   Simulator simulator(in.scene, std::make_shared<const BeamCache>(in.sensor, in.beams),
                       in.renderer);
-  Simulation simulation = simulator.prepare(in.beams, in.motion, fields, frame, in.progress);
+  Simulation simulation = simulator.prepare(in.beams, in.motion, hit_columns, frame, in.progress);
   glidar::simulate({&simulation, 1});
 }
 

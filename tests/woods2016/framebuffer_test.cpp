@@ -49,11 +49,11 @@ class Woods2016Measurement : public ::testing::Test {
     Measured measured;
     const Motion motion = static_motion(scene, pose);
     const auto camera = make_woods2016_camera(scene, {.kind = "opengl", .threads = 2});
-    const HitFieldMask fields{.depth = true, .incidence = true};
+    const HitColumnMask hit_columns{.depth = true, .incidence = true};
     Simulator simulator(scene, sensor, {.threads = 2});
-    simulator.simulate(motion, fields, measured.exact);
+    simulator.simulate(motion, hit_columns, measured.exact);
     simulator.set_return_replacement(woods2016_measurement(*camera, planes));
-    simulator.simulate(motion, fields, measured.frame);
+    simulator.simulate(motion, hit_columns, measured.frame);
     return measured;
   }
 };

@@ -43,10 +43,10 @@ Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted,
 141 standard output was closed.)";
 
 /// Measures the scene and shows the progress.
-void measure(const ActiveSensor& active, const HitFieldMask& fields, Console& console,
+void measure(const ActiveSensor& active, const HitColumnMask& hit_columns, Console& console,
              Frame& frame) {
   const ProgressScope progress(console, fmt::format("casting {} beams", active.beams.size()));
-  active.simulator->simulate(active.motion, fields, frame,
+  active.simulator->simulate(active.motion, hit_columns, frame,
                              [&console](double fraction) { console.set_progress(fraction); });
 }
 
@@ -65,10 +65,10 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
   fmt::print(to, "\n");
 }
 
-HitFieldMask needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
-  HitFieldMask fields = fields_for_outputs(outputs);
-  fields.normal = fields.normal || flags.fisher.is_requested;
-  return fields;
+HitColumnMask needed_hit_columns(const RenderFlags& flags, const std::vector<Output>& outputs) {
+  HitColumnMask hit_columns = hit_columns_for_outputs(outputs);
+  hit_columns.normal = hit_columns.normal || flags.fisher.is_requested;
+  return hit_columns;
 }
 
 /// Writes a frame and prints the summary.
@@ -135,7 +135,7 @@ void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active,
                      [&console](double fraction) { console.set_progress(fraction); });
     refuse_overwrite_of_inputs(prepared.files, outputs);
     start_frame(flags, k, active, frame);
-    measure(active, needed_fields(flags, outputs), console, frame);
+    measure(active, needed_hit_columns(flags, outputs), console, frame);
     if (k == 0) print_advice(view_advice(view), console);
     write(flags, view, outputs, console);
     for (const Output& output : outputs) job.written.push_back(output.path);

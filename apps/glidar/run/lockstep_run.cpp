@@ -242,7 +242,7 @@ void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> momen
     frames[i].number = moment.number;
     frames[i].sensor_id = active.id;
   }
-  simulator.simulate_batch(motions, glidar::fields_needed_by(measure.columns), frames);
+  simulator.simulate_batch(motions, glidar::hit_columns_for(measure.columns), frames);
   for (std::size_t i = 0; i < moments.size(); ++i) {
     if (recorder_) job.frames.push_back(line_of(measure.sensor, frames[i], &moments[i]));
     job.replies.push_back(cloud_of(measure, frames[i], *beams[i]));

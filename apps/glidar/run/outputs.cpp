@@ -28,10 +28,10 @@ std::vector<std::string> requested_columns(const OutputFlags& flags) {
 
 void check_layout(const OutputFlags& flags) {
   if (flags.sink.layout.empty()) return;
-  const auto has_fields = [&](const std::string& path) {
+  const auto takes_columns = [&](const std::string& path) {
     return format_of(flags, path).takes_more;
   };
-  if (std::any_of(flags.paths.begin(), flags.paths.end(), has_fields)) return;
+  if (std::any_of(flags.paths.begin(), flags.paths.end(), takes_columns)) return;
   throw Error({.where = "--layout",
                .found = "no output takes a layout",
                .allowed = "an output with the suffix " + suffixes_with_columns(),
@@ -212,12 +212,12 @@ void refuse_overwrite_of_inputs(const std::vector<std::string>& read,
   }
 }
 
-HitFieldMask fields_for_outputs(const std::vector<Output>& outputs) {
+HitColumnMask hit_columns_for_outputs(const std::vector<Output>& outputs) {
   std::vector<std::string> columns;
   for (const Output& output : outputs) {
     for (const std::string& name : output.columns) add_missing(name, columns);
   }
-  return fields_needed_by(columns);
+  return hit_columns_for(columns);
 }
 
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,

@@ -44,7 +44,7 @@ void refuse_overwrite_of_inputs(const std::vector<std::string>& read,
                                 const std::vector<Output>& outputs);
 
 /// The hit columns that all outputs together need.
-HitFieldMask fields_for_outputs(const std::vector<Output>& outputs);
+HitColumnMask hit_columns_for_outputs(const std::vector<Output>& outputs);
 
 /// Writes all outputs and reports which one is being written. They get their final names together:
 /// if one fails before that, no file of the frame exists. If a later name is refused, the error

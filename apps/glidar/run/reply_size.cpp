@@ -54,7 +54,7 @@ constexpr std::int64_t kHead_bytes = 120;
 }  // namespace
 
 std::int64_t point_bytes(std::span<const std::string> columns) {
-  (void)glidar::fields_needed_by(columns);  // throws on an unknown name
+  (void)glidar::hit_columns_for(columns);  // throws on an unknown name
   std::int64_t bytes = 0;
   for (const std::string& name : columns) {
     const auto* const found = std::find_if(

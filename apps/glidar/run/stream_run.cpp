@@ -108,7 +108,7 @@ void StreamRun::open_scene() {
   for (const Output& output : outputs) {
     columns.insert(columns.end(), output.columns.begin(), output.columns.end());
   }
-  fields_ = glidar::fields_needed_by(columns);
+  hit_columns_ = glidar::hit_columns_for(columns);
 }
 
 /// The original topic for one sensor, one topic per sensor for a rig.
@@ -280,7 +280,7 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
   measured.frame.stamp_ns =
       request.stamp_ns.value_or(frame_interval(active.sensor, request.number).start_ns);
   measured.frame.seed = request.seed.value_or(flags_.render.seed);
-  active.simulator->simulate(active.motion, fields_, measured.frame);
+  active.simulator->simulate(active.motion, hit_columns_, measured.frame);
   if (measured_++ > 0) return;
   print_advice(view_advice({prepared_.scene, active.sensor, *measured.beams, measured.frame}),
                console_);

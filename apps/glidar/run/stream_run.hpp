@@ -72,7 +72,7 @@ class StreamRun {
   std::vector<std::string> reserved_files_;  ///< files that no output may replace
   std::vector<OutputFlags> files_;           ///< of each sensor
   MovedScene moved_scene_;
-  HitFieldMask fields_;
+  HitColumnMask hit_columns_;
   StreamStats stats_;
   StreamStats::Clock::time_point status_time_;
   PointCloud cloud_;

@@ -82,14 +82,14 @@ class OpenglRenderer final : public Renderer {
 
   /// Resizes a cast's hits and adds its tiles, if there is anything to draw.
   void plan(const CastRequest& request, std::size_t cast, Hits& hits) {
-    resize(hits, request.beams.size(), request.fields);
+    resize(hits, request.beams.size(), request.hit_columns);
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
     const DepthRange depths = depths_of(request, resolver_, boxes_);
     if (!depths.is_empty() && request.beams.size() > 0) {
       opengl::add_tiles(request.beams, cast, depths, tiles_);
       return;
     }
-    write_misses(request.fields, 0, request.beams.size(), hits);
+    write_misses(request.hit_columns, 0, request.beams.size(), hits);
     if (request.on_tile_done) request.on_tile_done({0, request.beams.size()});
     if (request.progress) request.progress(1.0);
   }

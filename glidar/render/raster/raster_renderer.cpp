@@ -79,7 +79,7 @@ class RasterRenderer final : public Renderer {
   void cast(const CastRequest& request, Hits& hits) override {
     check(request, scene());
     check_pinhole(request.beams, "raster");
-    resize(hits, request.beams.size(), request.fields);
+    resize(hits, request.beams.size(), request.hit_columns);
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
     if (!overlaps_) overlaps_.emplace(base_->resolver, base_->search.trees());
@@ -111,7 +111,7 @@ class RasterRenderer final : public Renderer {
     const std::uint32_t cols = request.beams.cols;
     const auto miss = [&](std::size_t begin, std::size_t end) {
       if (begin >= end) return;
-      write_misses(request.fields, begin, end - begin, hits);
+      write_misses(request.hit_columns, begin, end - begin, hits);
       if (request.on_tile_done) request.on_tile_done({begin, end});
       count.add(end - begin);
     };

@@ -20,10 +20,10 @@ struct Job {
   const Beams& beams;
   const PlanePoints& points;
   GridWindow window;  ///< beams outside of it miss
-  const HitFieldMask& fields;
+  const HitColumnMask& hit_columns;
   const Resolver& resolver;
   const rays::BeamSearch& search;
-  bool with_corners;  ///< the fields need those of triangles
+  bool with_corners;  ///< the columns need those of triangles
   Hits& hits;
 };
 
@@ -99,16 +99,17 @@ void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_
 void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, std::size_t end) {
   std::array<HitBatch, 3> batches;
   tiling.for_beam_rows(begin, end, [&](BeamRange row) {
-    write_misses(job.fields, row.begin, row.end - row.begin, job.hits);
+    write_misses(job.hit_columns, row.begin, row.end - row.begin, job.hits);
   });
   for (std::size_t i = begin; i < end + 2; ++i) {
     if (i < end) start(job, tiling, i, end, batches[i % batches.size()]);
     if (i >= begin + 1 && i - 1 < end) {
-      job.resolver.prefetch_corners(batches[(i - 1) % batches.size()].block, job.fields);
+      job.resolver.prefetch_corners(batches[(i - 1) % batches.size()].block, job.hit_columns);
     }
     if (i < begin + 2) continue;
     // Hits are written over the misses.
-    job.resolver.write_batch(job.beams, job.fields, batches[(i - 2) % batches.size()], job.hits);
+    job.resolver.write_batch(job.beams, job.hit_columns, batches[(i - 2) % batches.size()],
+                             job.hits);
   }
 }
 
@@ -124,9 +125,9 @@ class RaysRenderer final : public Renderer {
   void cast(const CastRequest& request, Hits& hits) override {
     Resolver& resolver = base_->resolver;
     check(request, resolver.scene());
-    resize(hits, request.beams.size(), request.fields);
+    resize(hits, request.beams.size(), request.hit_columns);
     if (!any_instance_enabled(request, resolver.scene())) {
-      write_misses(request.fields, 0, request.beams.size(), hits);
+      write_misses(request.hit_columns, 0, request.beams.size(), hits);
       if (request.on_tile_done) request.on_tile_done({0, request.beams.size()});
       return;
     }
@@ -137,10 +138,10 @@ class RaysRenderer final : public Renderer {
         .beams = request.beams,
         .points = points_,
         .window = visible_window(resolver, mesh_boxes_, request.instance_enabled, points_),
-        .fields = request.fields,
+        .hit_columns = request.hit_columns,
         .resolver = resolver,
         .search = base_->search.beams(),
-        .with_corners = needs_corners(request.fields),
+        .with_corners = needs_corners(request.hit_columns),
         .hits = hits};
     const rays::Tiling tiling(request.beams);
     ProgressCounter count(request.progress, tiling.size());

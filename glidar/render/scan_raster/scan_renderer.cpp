@@ -67,7 +67,7 @@ void draw_sector(const Job& job, std::size_t index, SectorScratch& scratch) {
 
 /// Casts a run of beams as rays.
 void cast_run(const HitTarget& target, BeamRange run, SectorScratch& scratch) {
-  write_misses(target.request.fields, run.begin, run.end - run.begin, target.hits);
+  write_misses(target.request.hit_columns, run.begin, run.end - run.begin, target.hits);
   scratch.deferred_beams.resize(run.end - run.begin);
   std::iota(scratch.deferred_beams.begin(), scratch.deferred_beams.end(), run.begin);
   SectorWriter(target).cast_rays(scratch.deferred_beams);
@@ -112,8 +112,8 @@ void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
                  .remedy = "use --renderer rays"});
   }
   if (!any_instance_enabled(request, base_->resolver.scene())) {
-    resize(hits, request.beams.size(), request.fields);
-    write_misses(request.fields, 0, request.beams.size(), hits);
+    resize(hits, request.beams.size(), request.hit_columns);
+    write_misses(request.hit_columns, 0, request.beams.size(), hits);
     if (request.on_tile_done) request.on_tile_done({0, request.beams.size()});
     return;
   }
@@ -123,7 +123,7 @@ void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
 }
 
 void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
-  resize(hits, request.beams.size(), request.fields);
+  resize(hits, request.beams.size(), request.hit_columns);
   const bool has_bounds = slots_.prepare(base_->search.trees(), base_->resolver);
   const Job job{.request = request,
                 .grid = *grid_,

@@ -72,7 +72,7 @@ void SectorWriter::write_run(const SectorTable& sector, const SectorBuffer& buff
     batch.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
   }
   if (batch.block.mask != (1U << run.count) - 1U) {
-    write_misses(target_.request.fields, run.first_beam, run.count, target_.hits);
+    write_misses(target_.request.hit_columns, run.first_beam, run.count, target_.hits);
   }
   if (batch.block.mask != 0) {
     batch.block.is_run = batch.block.mask == (1U << kLanes) - 1U;
@@ -108,7 +108,7 @@ void SectorWriter::cast_rays(std::span<const std::size_t> beams_to_cast) {
 void SectorWriter::advance() {
   if (begun_ >= 2) {
     target_.resolver.prefetch_corners(batches_[(begun_ - 2) % batches_.size()].block,
-                                      target_.request.fields);
+                                      target_.request.hit_columns);
   }
   if (begun_ >= 3) write(batches_[(begun_ - 3) % batches_.size()]);
 }
@@ -119,7 +119,8 @@ void SectorWriter::finish() {
 }
 
 void SectorWriter::write(HitBatch& batch) const {
-  target_.resolver.write_batch(target_.request.beams, target_.request.fields, batch, target_.hits);
+  target_.resolver.write_batch(target_.request.beams, target_.request.hit_columns, batch,
+                               target_.hits);
 }
 
 }  // namespace glidar::scan_raster

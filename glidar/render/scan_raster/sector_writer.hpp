@@ -25,7 +25,7 @@ struct HitTarget {
 class SectorWriter {
  public:
   explicit SectorWriter(const HitTarget& target)
-      : target_(target), with_corners_(needs_corners(target.request.fields)) {}
+      : target_(target), with_corners_(needs_corners(target.request.hit_columns)) {}
 
   /// Hits and misses of all beams of a sector's rows. Deferred cells count as misses.
   void write_rows(const SectorTable& sector, const SectorBuffer& buffer,

@@ -246,9 +246,10 @@ Purpose rng_purpose(std::size_t step) {
   return static_cast<Purpose>(static_cast<std::size_t>(Purpose::first_noise_step) + step);
 }
 
-void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fields) {
-  fields.noise_scale = fields.noise_scale || !noise.empty();
-  fields.incidence = fields.incidence || std::any_of(noise.begin(), noise.end(), reads_incidence);
+void add_required_hit_columns(const std::vector<NoiseStep>& noise, HitColumnMask& hit_columns) {
+  hit_columns.noise_scale = hit_columns.noise_scale || !noise.empty();
+  hit_columns.incidence =
+      hit_columns.incidence || std::any_of(noise.begin(), noise.end(), reads_incidence);
 }
 
 NoisePlan plan_noise(std::vector<NoiseStep> steps, double frame_s) {

@@ -35,8 +35,8 @@ void describe(NoiseStep& step, FieldVisitor& visitor);
 /// The purpose of the random numbers of step k.
 Purpose rng_purpose(std::size_t step);
 
-/// Adds the ground truth columns that the steps read to `fields`.
-void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fields);
+/// Adds the ground truth columns that the steps read.
+void add_required_hit_columns(const std::vector<NoiseStep>& noise, HitColumnMask& hit_columns);
 
 /// Noise steps with what is the same for all frames, see plan_noise().
 struct NoisePlan {

@@ -28,7 +28,7 @@ TEST(ReplySize, OfEachColumnIsThatOfItsNumbers) {
   for (const std::string& name : cloud_column_names()) {
     const std::vector<std::string> columns = {name};
     Frame frame;
-    testing::simulate({scene, sensor, beams, motion, *renderer}, fields_needed_by(columns), frame);
+    testing::simulate({scene, sensor, beams, motion, *renderer}, hit_columns_for(columns), frame);
     PointCloud cloud;
     make_point_cloud(frame, beams, scene, {.frame_id = beams.frame_id}, columns, cloud);
     EXPECT_EQ(static_cast<std::int64_t>(lockstep::bytes_of(cloud.columns.at(0)).size()),

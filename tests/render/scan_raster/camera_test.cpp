@@ -156,7 +156,7 @@ TEST(CameraRaster, CullsBackFacesAndAppliesAlphaMasks) {
   const Pose pose = turned(0.0, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.2});
   expect_same_as_rays(room, {.beams = beams,
                              .world_from_sensor = pose,
-                             .fields = kAllHitFields,
+                             .hit_columns = kAllHitColumns,
                              .cull_back_faces = true});
   for (Material& material : room.materials) material.alpha_cutoff = 0.5F;
   expect_same_as_rays(room, beams, pose);
@@ -227,7 +227,7 @@ TEST(CameraRaster, DetectsBeamsThatChangedInPlace) {
   Beams beams = lens_beams(100, 70, 60.0, Fisheye{});
   const auto raster = make_renderer(room, {.kind = "raster", .threads = 2});
   for (int k = 0; k < 3; ++k) {
-    const CastRequest request{.beams = beams, .fields = kAllHitFields};
+    const CastRequest request{.beams = beams, .hit_columns = kAllHitColumns};
     Hits hits;
     raster->cast(request, hits);
     EXPECT_GT(expect_same_hits(hits, cast_with("rays", room, request)), 0U);
@@ -239,7 +239,7 @@ TEST(CameraRaster, DetectsBeamsThatChangedInPlace) {
 TEST(CameraRaster, HasTheSameBitsWithEveryInstructionSet) {
   const Scene room = make_room();
   const Beams beams = preset_beams("Azure-Kinect-NFOV-2x2");
-  const CastRequest request{.beams = beams, .fields = kAllHitFields};
+  const CastRequest request{.beams = beams, .hit_columns = kAllHitColumns};
   const Hits expected = cast_with("rays", room, request);
   for (const rays::Kernel* kernel : rays::usable_kernels()) {
     setenv("GLIDAR_ISA", kernel->name, 1);

@@ -136,7 +136,7 @@ TEST(ScanRenderer, CullsBackFacesAndAppliesAlphaMasks) {
   Scene room = make_room();
   EXPECT_GT(expect_same_as_rays(room, {.beams = beams,
                                        .world_from_sensor = at(0.0, 0.0, 0.2),
-                                       .fields = kAllHitFields,
+                                       .hit_columns = kAllHitColumns,
                                        .cull_back_faces = true}),
             0U);
   for (Material& material : room.materials) material.alpha_cutoff = 0.5F;
@@ -155,7 +155,7 @@ TEST(ScanRenderer, SkipsDisabledInstancesAndMovesTheOthers) {
   CastRequest request{.beams = beams,
                       .world_from_sensor = at(0.0, 0.0, 0.2),
                       .world_from_instance = poses,
-                      .fields = kAllHitFields,
+                      .hit_columns = kAllHitColumns,
                       .instance_enabled = present};
   EXPECT_GT(expect_same_as_rays(room, request), 0U);
   std::fill(present.begin(), present.end(), std::uint8_t{0});
@@ -206,7 +206,7 @@ TEST(ScanRenderer, DetectsBeamsThatChangedInPlace) {
   const auto raster = make_renderer(room, {.kind = "raster", .threads = 2});
   for (int k = 0; k < 3; ++k) {
     const CastRequest request{
-        .beams = beams, .world_from_sensor = at(0.0, 0.0, 0.2), .fields = kAllHitFields};
+        .beams = beams, .world_from_sensor = at(0.0, 0.0, 0.2), .hit_columns = kAllHitColumns};
     Hits hits;
     raster->cast(request, hits);
     EXPECT_GT(expect_same_hits(hits, cast_with("rays", room, request)), 0U);
@@ -239,7 +239,7 @@ TEST(ScanRenderer, HasTheSameBitsWithEveryInstructionSet) {
   for (const double origin_m : {0.0, 0.05}) {
     const Beams beams = scanner_beams({.rows = 32, .cols = 512, .origin_m = origin_m});
     const CastRequest request{
-        .beams = beams, .world_from_sensor = at(0.0, 0.0, 0.2), .fields = kAllHitFields};
+        .beams = beams, .world_from_sensor = at(0.0, 0.0, 0.2), .hit_columns = kAllHitColumns};
     const Hits expected = cast_with("rays", room, request);
     for (const rays::Kernel* kernel : rays::usable_kernels()) {
       setenv("GLIDAR_ISA", kernel->name, 1);

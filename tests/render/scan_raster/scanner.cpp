@@ -46,7 +46,8 @@ std::size_t expect_same_as_rays(const Scene& scene, const CastRequest& request) 
 std::size_t expect_same_as_rays(const Scene& scene, const Beams& beams,
                                 const Pose& world_from_sensor) {
   return expect_same_as_rays(
-      scene, {.beams = beams, .world_from_sensor = world_from_sensor, .fields = kAllHitFields});
+      scene,
+      {.beams = beams, .world_from_sensor = world_from_sensor, .hit_columns = kAllHitColumns});
 }
 
 }  // namespace glidar::testing

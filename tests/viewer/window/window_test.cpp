@@ -105,7 +105,7 @@ TEST_F(WindowTest, CloudsAreTheSameWithTheContextOfAWindowAndWithout) {
       static_motion(scene, look_at({6.0, -4.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
   const auto measured = [&](std::unique_ptr<Renderer> renderer) {
     Frame frame;
-    Simulator(scene, sensor, *renderer).simulate(motion, kAllHitFields, frame);
+    Simulator(scene, sensor, *renderer).simulate(motion, kAllHitColumns, frame);
     return frame;
   };
   const Frame with = measured(make_opengl_renderer(scene, {}, std::make_unique<GlfwContext>()));
