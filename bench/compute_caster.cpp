@@ -8,7 +8,6 @@
 #include <glidar/core/error.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 namespace glidar::bench {
 namespace {

@@ -14,7 +14,6 @@
 #include <zmq.hpp>
 
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>

@@ -6,7 +6,6 @@
 
 #include <glidar/io/model/imported_model.hpp>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

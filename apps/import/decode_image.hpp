@@ -4,7 +4,6 @@
 
 #include <glidar/core/material.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>

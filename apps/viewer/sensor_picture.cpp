@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/sensor_picture.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>

@@ -11,7 +11,6 @@
 #include <glidar/io/pictures/colour_scale.hpp>
 
 #include <array>
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -14,7 +14,6 @@
 #include <backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <utility>
 

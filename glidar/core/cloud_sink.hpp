@@ -5,8 +5,6 @@
 #include <glidar/core/frame.hpp>
 #include <glidar/core/point_cloud.hpp>
 
-#include <string>
-
 namespace glidar {
 
 /// A destination of point clouds: a file or a socket.

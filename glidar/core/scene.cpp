@@ -4,7 +4,6 @@
 
 #include <glidar/core/error.hpp>
 
-#include <cmath>
 #include <utility>
 #include <vector>
 

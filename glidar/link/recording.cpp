@@ -7,7 +7,6 @@
 #include <glidar/io/files/recorded_path.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 
-#include <array>
 #include <limits>
 #define JSON_DIAGNOSTICS 1  // error messages contain the key
 #include <glidar/io/config/json_text.hpp>

@@ -8,7 +8,6 @@
 
 #include <zmq.hpp>
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <utility>

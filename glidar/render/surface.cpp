@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/surface.hpp>
 
-#include <cmath>
-
 namespace glidar {
 namespace {
 

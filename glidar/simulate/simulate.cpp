@@ -8,7 +8,6 @@
 #include <glidar/simulate/pulse_cast.hpp>
 #include <glidar/simulate/waveforms.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

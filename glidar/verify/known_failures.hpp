@@ -4,8 +4,6 @@
 
 #include <glidar/verify/verify.hpp>
 
-#include <string_view>
-
 namespace glidar {
 
 /// The known failure of a renderer in a row's case; without a reason, the row must pass.

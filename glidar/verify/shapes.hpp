@@ -7,7 +7,6 @@
 #include <glidar/core/scene.hpp>
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

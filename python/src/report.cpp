@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.hpp"
 
-#include <string>
-
 namespace glidar::python {
 
 void Watch::look() {

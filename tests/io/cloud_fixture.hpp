@@ -5,7 +5,6 @@
 #include <glidar/io/formats/file_sink.hpp>
 #include <support/test_folder.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>

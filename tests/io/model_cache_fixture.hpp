@@ -6,7 +6,6 @@
 
 #include <io/model_test_support.hpp>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>

@@ -8,8 +8,6 @@
 
 #include <gmock/gmock.h>
 
-#include <numbers>
-
 namespace glidar {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <render/renderer_suite.hpp>
 #include <support/error_text.hpp>
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 

@@ -9,9 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
-#include <string>
 
 namespace glidar::app {
 

@@ -6,10 +6,8 @@
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
-#include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace glidar {
 

@@ -10,7 +10,6 @@
 #include <zip.h>
 
 #include <array>
-#include <cstdio>
 #include <exception>
 #include <memory>
 #include <type_traits>

@@ -8,9 +8,7 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace glidar {
 namespace {

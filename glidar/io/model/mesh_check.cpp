@@ -6,7 +6,6 @@
 #include <glidar/io/model/vertex_weld.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <tuple>
 #include <vector>

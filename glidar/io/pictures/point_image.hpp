@@ -8,7 +8,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 

@@ -7,8 +7,6 @@
 #include <glidar/render/opengl/scene_buffers.hpp>
 #include <glidar/render/renderer.hpp>
 
-#include <cstdint>
-
 namespace glidar::opengl {
 
 /// True if depths can use the precision of floats near 0 (GL_ARB_clip_control). OpenGL 3.3 alone

@@ -4,7 +4,6 @@
 
 #include <epoxy/gl.h>
 
-#include <cstddef>
 #include <utility>
 
 namespace glidar::opengl {

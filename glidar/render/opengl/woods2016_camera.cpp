@@ -10,7 +10,6 @@
 #include <glidar/render/visible_depths.hpp>
 #include <glidar/render/woods2016_framebuffer.hpp>
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 

@@ -7,7 +7,6 @@
 #include <glidar/sensor/lidar/weather_signal.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 

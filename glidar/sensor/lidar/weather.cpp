@@ -7,8 +7,6 @@
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/lidar/drop_size_distribution.hpp>
 
-#include <cmath>
-
 namespace glidar {
 namespace {
 

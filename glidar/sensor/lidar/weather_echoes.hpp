@@ -7,7 +7,6 @@
 #include <glidar/sensor/lidar/precipitation.hpp>
 #include <glidar/sensor/lidar/weather.hpp>
 
-#include <cstdint>
 #include <vector>
 
 namespace glidar {

@@ -9,9 +9,6 @@
 #include <glidar/sensor/noise/lateral_noise.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
-#include <algorithm>
-#include <cmath>
-
 namespace glidar {
 namespace {
 

@@ -5,10 +5,8 @@
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 
 namespace glidar {
 

@@ -6,7 +6,6 @@
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace glidar {

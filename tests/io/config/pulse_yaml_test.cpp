@@ -6,8 +6,6 @@
 #include <io/material_keys.hpp>
 #include <io/yaml_files.hpp>
 
-#include <numbers>
-
 namespace glidar {
 namespace {
 

@@ -4,8 +4,6 @@
 
 #include "io/yaml_files.hpp"
 
-#include <string>
-
 namespace glidar {
 namespace {
 

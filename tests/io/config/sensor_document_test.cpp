@@ -12,7 +12,6 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cstring>
 #include <numbers>
 #include <random>

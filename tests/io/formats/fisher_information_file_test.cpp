@@ -7,8 +7,6 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace glidar {
 namespace {
 

@@ -5,7 +5,6 @@
 #include "io/yaml_files.hpp"
 
 #include <clocale>
-#include <cmath>
 
 namespace glidar {
 namespace {

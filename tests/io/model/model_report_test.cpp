@@ -6,10 +6,6 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace glidar {
 namespace {
 

@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace glidar {
 namespace {

@@ -10,7 +10,6 @@
 #include <support/error_text.hpp>
 
 #include <gtest/gtest.h>
-#include <algorithm>
 #include <bit>
 #include <limits>
 

@@ -8,7 +8,6 @@
 #include <render/renderer_suite.hpp>
 
 #include <algorithm>
-#include <bit>
 
 namespace glidar {
 namespace {

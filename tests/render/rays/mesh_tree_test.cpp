@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 namespace glidar::rays::testing {
 namespace {

@@ -7,7 +7,6 @@
 #include <glidar/io/config/sensor_presets.hpp>
 #include <render/scan_raster/scanner.hpp>
 
-#include <limits>
 #include <set>
 
 namespace glidar::scan_raster {

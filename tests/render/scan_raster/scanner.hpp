@@ -5,7 +5,6 @@
 #include <render/renderer_suite.hpp>
 
 #include <cstddef>
-#include <vector>
 
 namespace glidar::testing {
 
