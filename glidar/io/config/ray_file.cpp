@@ -53,7 +53,7 @@ void each_line(std::string_view text, const Visit& visit) {
   }
 }
 
-/// What the head of an .npy file says (NumPy's format 1.0 and 2.0).
+/// The header of an .npy file (NumPy's format 1.0 and 2.0).
 struct NpyHead {
   std::size_t data_at = 0;
   std::size_t number_bytes = 0;  // 4 or 8
@@ -134,7 +134,7 @@ std::array<std::size_t, 3> ray_shape(const std::string& where, const NpyHead& he
   }
   const std::size_t there = (bytes - head.data_at) / (head.number_bytes * shape[2]);
   if (shape[0] > there || shape[1] > there / shape[0]) {
-    fail(where, "fewer numbers than its shape tells", "a whole .npy file");
+    fail(where, "fewer numbers than its shape requires", "a whole .npy file");
   }
   return shape;
 }

@@ -107,7 +107,7 @@ void read_motion_of(const YamlField& root, const std::string& whose, ScenePlan& 
   plan.world_from_rig = pose_at(*plan.rig_motion, 0);
 }
 
-/// One sensor is placed by itself, several are placed by their rig.
+/// A single sensor has its own pose; several sensors have the pose of their rig.
 void check_keys(const YamlField& root, bool has_several) {
   const char* const list = has_several ? "sensors" : "sensor";
   for (const char* key : {"sensor", "sensor_pose", "sensor_motion"}) {

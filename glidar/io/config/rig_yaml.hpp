@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// Reads what a scene file says of sensors and where they are: `sensor`, `sensor_pose` and
+/// Reads the sensors of a scene file and their poses: `sensor`, `sensor_pose` and
 /// `sensor_motion`, or `sensors`, `rig_pose` and `rig_motion`.
 void read_rig(const YamlField& root, ScenePlan& plan);
 

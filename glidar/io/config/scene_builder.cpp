@@ -24,7 +24,7 @@ std::string real_path(const std::string& path) {
   return error ? path : real.string();
 }
 
-/// The texts of paths that many instances have, which the system is asked for once.
+/// Canonical paths, requested from the system once for all instances of a model.
 using RealPaths = std::unordered_map<std::string, std::string>;
 
 LoadKey load_key(const PlannedInstance& planned, RealPaths& known) {

@@ -25,33 +25,33 @@ struct PlannedInstance {
   std::string name;                                 ///< unique in the scene
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< along the model's own axes
   Pose world_from_object = Pose::Identity();
-  std::optional<Trajectory> motion;  ///< empty: it stands still
+  std::optional<Trajectory> motion;  ///< empty: static
   std::uint32_t id = 0;
   std::string class_name;                   ///< empty: unlabelled
   std::vector<MaterialOverride> overrides;  ///< those for "*" first
 };
 
-/// All that a scene file says, checked, before any model is loaded.
+/// The checked content of a scene file, before any model is loaded.
 struct ScenePlan {
   std::vector<PlannedInstance> instances;
   std::vector<RigSensor> sensors;
   std::optional<Pose> world_from_rig;
   bool looks_at = false;                 ///< see SceneFile
-  std::optional<Trajectory> rig_motion;  ///< empty: it stands still
+  std::optional<Trajectory> rig_motion;  ///< empty: static
   std::vector<std::string> files;        ///< the scene file, and the sensor files it names
 };
 
 /// Reads a scene file and the sensor files it names; loads no model.
 ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
-/// The same of what such a file holds, without its own name among the files.
+/// The same for the content of such a file, without its own name among the files.
 ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults);
 
-/// What `materials` of a scene file says; those for "*" first.
+/// The changes under `materials` of a scene file; those for "*" first.
 std::vector<MaterialOverride> read_overrides(const YamlField& field);
 
 using ModelLoader = std::function<Model(const std::string& source, const ModelOptions& options)>;
 
-/// Loads every model once and places its instances. Errors of `load` are told with their place in
+/// Loads every model once and places its instances. Errors of `load` contain their place in
 /// the scene file.
 Scene build_scene(const ScenePlan& plan, const ModelLoader& load);
 

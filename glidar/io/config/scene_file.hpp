@@ -29,8 +29,8 @@ struct SceneFile {
   std::optional<Pose> world_from_rig;  ///< at time 0
   bool looks_at = false;               ///< the pose is that of look_at(), for a boresight +z
   std::vector<std::string> files;      ///< this file, and the sensor and trajectory files it names
-  std::vector<Trajectory> world_from_instance = {};  ///< one per instance; empty: all stand still
-  std::optional<Trajectory> rig_motion = {};         ///< empty: the rig stands still
+  std::vector<Trajectory> world_from_instance = {};  ///< one per instance; empty: all are static
+  std::optional<Trajectory> rig_motion = {};         ///< empty: the rig is static
 };
 
 /// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.
@@ -44,8 +44,8 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
 SceneFile parse_scene(const std::string& text, const Report& report,
                       const std::filesystem::path& folder = {});
 
-/// Changes materials of an instance, and of it alone, by a text, YAML or JSON, that says what
-/// `materials` of a scene file does. Paths are relative to `folder`, or to the working folder when
+/// Changes the materials of one instance by a text, YAML or JSON, with the keys of `materials` in
+/// scene files. Paths are relative to `folder`, or to the working folder when
 /// it is empty. Errors name the field.
 void set_materials(Scene& scene, std::size_t instance, const std::string& text,
                    const std::filesystem::path& folder = {});

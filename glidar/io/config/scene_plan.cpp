@@ -121,8 +121,8 @@ PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults,
   return planned;
 }
 
-/// Names given in the file stand; the others get their file's name, with a number where it is
-/// taken.
+/// Keeps names given in the file; the others get the name of their model file, with a number where
+/// it is taken.
 void read_names(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
   std::unordered_set<std::string> taken;
   std::unordered_map<std::string, std::uint64_t> counted;  // by file: how many names it has given
@@ -179,7 +179,7 @@ std::vector<MaterialOverride> read_overrides(const YamlField& field) {
   for (const auto& [material, value] : entries(field)) {
     changes.push_back(read_override(material, value));
   }
-  // What is said of one material wins over what is said of all, wherever it stands.
+  // Changes of one material have priority over changes of all, in any order.
   std::stable_partition(changes.begin(), changes.end(),
                         [](const MaterialOverride& change) { return change.material == "*"; });
   return changes;

@@ -14,7 +14,7 @@
 namespace glidar {
 namespace {
 
-/// "optics.elevation_deg" and all that it stands under: "optics".
+/// True for the path "optics.elevation_deg" and keys that contain it, such as "optics".
 bool covers(const std::string& key, const std::string& path) {
   return path == key || path.starts_with(key + ".") || path.starts_with(key + "[");
 }

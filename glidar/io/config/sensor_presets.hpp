@@ -14,7 +14,7 @@ namespace glidar {
 struct DatasheetEntry {
   std::string key;     ///< e.g. "optics.elevation_deg"
   std::string value;   ///< as written; long lists shortened
-  std::string source;  ///< empty: the file does not tell
+  std::string source;  ///< empty: not stated
   bool verified = true;
 };
 
@@ -36,8 +36,8 @@ ValueCount count_values(const Datasheet& sheet);
 /// Like load_sensor_file, with the sources that the file gives.
 Datasheet load_datasheet(const std::filesystem::path& path);
 
-/// The sensor files that come with GLIDAR, by name. They lie in sensors/ of the source, in
-/// share/glidar/sensors where it is installed, or where the variable GLIDAR_SENSORS says.
+/// The bundled sensor files, by name: in sensors/ of the source, in share/glidar/sensors of an
+/// installation, or in the folder given by the variable GLIDAR_SENSORS.
 /// Throws Error when there is no such folder.
 std::vector<std::filesystem::path> preset_files();
 

@@ -53,7 +53,7 @@ SurfacePreset find_surface(const std::string& name, const std::string& where) {
   }
   const std::string nearest = closest_match(name, names);
   throw Error(
-      {where, "'" + excerpt(name) + "' is no surface that comes along", listed,
+      {where, "'" + excerpt(name) + "' is no surface preset", listed,
        nearest.empty() ? "see 'glidar sensors --surfaces'" : "did you mean '" + nearest + "'?"});
 }
 

@@ -14,7 +14,7 @@ struct SurfacePreset {
   std::string name;
   std::string about;
   LookupTable spectrum;   ///< (wavelength in m, reflectance)
-  Brdf backscatter = {};  ///< Lambert unless the file says otherwise
+  Brdf backscatter = {};  ///< Lambert by default
   std::string source;
   bool verified = true;
 };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/io: reading YAML so that every error tells file:line:column and the field.
+// Private to glidar/io: reading YAML so that every error contains file:line:column and the field.
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field.hpp>
@@ -85,7 +85,7 @@ std::string text(const YamlField& field);
 std::string path_beside(const YamlField& field);
 /// The place of the text in `words`; throws Error when it is none of them.
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words);
-/// A list of 1 to 4096 pairs [place, value] with rising places; places are told in `unit`.
+/// A list of 1 to 4096 pairs [place, value] with rising places, which are in `unit`.
 LookupTable table(const YamlField& field, const NumberRule& place, const NumberRule& value,
                   double unit = 1.0);
 /// A list of three numbers.

@@ -110,7 +110,7 @@ TEST(SurfacesInASceneFile, AreToldTheNearestNameWhenUnknown) {
   const std::string error = error_of(folder, [&] { load_scene_file(file, {}, {}); });
   EXPECT_TRUE(
       error.starts_with("s.yaml:1:58: models[0].materials.*.surface: 'asfalt' is no surface "
-                        "that comes along; allowed: asphalt, deciduous_leaf, conifer, "))
+                        "preset; allowed: asphalt, deciduous_leaf, conifer, "))
       << error;
   EXPECT_TRUE(error.ends_with("did you mean 'asphalt'?")) << error;
 }
