@@ -3,12 +3,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks the wording of every tracked *.md file against a list of discouraged words, each with its replacement.
 
-usage: check_prose.py [--sources] [--update] [FILE...]
+usage: check_prose.py [--sources] [FILE...]
   FILE       check only these files
   --sources  also check comments and string literals of C++ and Python files
-  --update   with --sources, remove files that are clean or deleted from scripts/prose_pending.txt
-Exit status 1 when a file has discouraged words. Files in scripts/prose_pending.txt are skipped. A file in that list
-that is clean or deleted is an error, so that the list only shrinks.
+Exit status 1 when a file has discouraged words.
 """
 
 import argparse
@@ -20,7 +18,6 @@ import tokenize
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PENDING = ROOT / "scripts" / "prose_pending.txt"
 WORD_LISTS = {"scripts/check_prose.py", "tests/scripts/check_prose_test.py"}  # contain the discouraged words
 
 WORDS = [
@@ -123,15 +120,6 @@ def check_text(path, text):
     ]
 
 
-def read_pending(text):
-    return [line for line in text.splitlines() if line and not line.startswith("#")]
-
-
-def still_pending(text, clean):
-    """The list of pending files without the clean ones."""
-    return "".join(line for line in text.splitlines(True) if line.strip() not in clean)
-
-
 def tracked(suffixes):
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
     files = [path for path in listed.split("\0") if Path(path).suffix in suffixes and path not in WORD_LISTS]
@@ -142,23 +130,13 @@ def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="*", metavar="FILE")
     parser.add_argument("--sources", action="store_true", help="also check comments and strings of C++ and Python")
-    parser.add_argument("--update", action="store_true", help="remove clean files from scripts/prose_pending.txt")
     return parser.parse_args(arguments)
 
 
 def main(arguments):
     options = parse(arguments)
-    listed = PENDING.read_text(encoding="utf-8")
-    suffixes = set(PROSE) if options.sources else {".md"}
-    pending = [] if options.files else [path for path in read_pending(listed) if Path(path).suffix in suffixes]
-    files = options.files or tracked(suffixes)
-    found = {path: check_text(path, (ROOT / path).read_text(encoding="utf-8")) for path in files}
-    clean = [path for path in pending if not found.get(path)]
-    if options.update:
-        PENDING.write_text(still_pending(listed, clean), encoding="utf-8")
-        clean = []
-    complaints = [one for path, some in found.items() if path not in pending for one in some]
-    complaints += [f"scripts/prose_pending.txt: {path} is clean or gone; run scripts/check_prose.py --update" for path in clean]
+    files = options.files or tracked(set(PROSE) if options.sources else {".md"})
+    complaints = [one for path in files for one in check_text(path, (ROOT / path).read_text(encoding="utf-8"))]
     for complaint in complaints:
         print(complaint)
     return 1 if complaints else 0

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The check of wording reports every discouraged word with its line, reads only prose, and its list of exceptions shrinks."""
+"""The check of wording reports every discouraged word with its line, reads only prose."""
 
 import io
 import sys
@@ -62,45 +62,34 @@ class Sources(unittest.TestCase):
                          ["a.py:1: 'told'", "a.py:3: 'lies'", "a.py:4: 'matt'"])
 
 
-class Pending(unittest.TestCase):
+class Files(unittest.TestCase):
     def run_check(self, *arguments):
-        """The exit code and output for a folder with a clean and an unclean page, both on the list."""
+        """The exit code and output for a folder with a clean page, an unclean page and an unclean source."""
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             (folder / "good.md").write_text("A diffuse wall.\n", encoding="utf-8")
             (folder / "bad.md").write_text("A matt wall.\n", encoding="utf-8")
-            (folder / "pending.txt").write_text("# why\nbad.md\ngood.md\n", encoding="utf-8")
-            with mock.patch.multiple(check_prose, ROOT=folder, PENDING=folder / "pending.txt",
-                                     tracked=lambda _: ["bad.md", "good.md"]), redirect_stdout(io.StringIO()) as out:
-                code = check_prose.main(list(arguments))
-            return code, out.getvalue(), (folder / "pending.txt").read_text(encoding="utf-8")
-
-    def test_a_clean_file_on_the_list_is_an_error(self):
-        code, out, _ = self.run_check()
-        self.assertEqual(code, 1)
-        self.assertIn("good.md is clean", out)
-        self.assertNotIn("bad.md", out)
-
-    def test_sources_on_the_list_are_skipped_and_not_clean_without_the_option(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
             (folder / "bad.py").write_text("# told\n", encoding="utf-8")
-            (folder / "pending.txt").write_text("bad.py\n", encoding="utf-8")
-            for arguments, files in (([], []), (["--sources"], ["bad.py"])):
-                with mock.patch.multiple(check_prose, ROOT=folder, PENDING=folder / "pending.txt", tracked=lambda _, f=files: f):
-                    self.assertEqual(check_prose.main(arguments), 0)
+            with mock.patch.multiple(check_prose, ROOT=folder,
+                                     tracked=lambda suffixes: [file for file in ("bad.md", "bad.py", "good.md")
+                                                               if Path(file).suffix in suffixes]), \
+                    redirect_stdout(io.StringIO()) as out:
+                code = check_prose.main(list(arguments))
+            return code, [line.split(";")[0] for line in out.getvalue().splitlines()]
+
+    def test_pages_are_checked_without_options(self):
+        self.assertEqual(self.run_check(), (1, ["bad.md:1: 'matt'"]))
+
+    def test_sources_are_checked_with_the_option(self):
+        self.assertEqual(self.run_check("--sources"), (1, ["bad.md:1: 'matt'", "bad.py:1: 'told'"]))
+
+    def test_files_that_are_named_are_checked_alone(self):
+        self.assertEqual(self.run_check("good.md"), (0, []))
+        self.assertEqual(self.run_check("bad.py"), (1, ["bad.py:1: 'told'"]))
 
     def test_the_check_skips_the_files_that_list_the_words(self):
         self.assertTrue(all((ROOT / path).is_file() for path in check_prose.WORD_LISTS))
         self.assertFalse(check_prose.WORD_LISTS & set(check_prose.tracked({".py"})))
-
-    def test_update_removes_clean_files_only(self):
-        code, out, listed = self.run_check("--update")
-        self.assertEqual((code, out, listed), (0, "", "# why\nbad.md\n"))
-
-    def test_a_file_that_is_named_is_checked_even_if_it_is_on_the_list(self):
-        code, out, _ = self.run_check("bad.md")
-        self.assertEqual((code, out), (1, "bad.md:1: 'matt'; use: diffuse\n"))
 
 
 if __name__ == "__main__":
