@@ -177,7 +177,7 @@ class View:
 
     def __init__(self, target, frame):
         self.target, self.pose = target, frame.world_from_sensor
-        cloud = frame.cloud(COLUMNS, hits_only=True)
+        cloud = frame.cloud(COLUMNS, drop_invalid=True)
         self.clouds = {"exact": cloud["true_xyz"], "noisy": cloud["xyz"]}
         self.normals = cloud["normal"].astype(float)
         away = self.clouds["exact"]

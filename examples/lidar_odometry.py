@@ -133,8 +133,8 @@ def drive(scene, sensor, seconds, seed=1):
     with Progress("driving", turns) as progress:
         for number in range(turns):
             frame = simulator.simulate(trajectory, seed=seed, frame=number, columns=["xyz", "time", "sensor_pose"])
-            cloud = frame.cloud(["xyz", "time"], hits_only=True)
-            still = frame.cloud(["xyz"], hits_only=True, deskew=True)
+            cloud = frame.cloud(["xyz", "time"], drop_invalid=True)
+            still = frame.cloud(["xyz"], drop_invalid=True, deskew=True)
             scans.append(Scan(cloud["xyz"], still["xyz"], cloud["time"] * 1e-9 * sensor.rate_hz))
             progress.step()
     return scans, trajectory

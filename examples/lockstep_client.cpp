@@ -15,7 +15,8 @@ struct Request {  // of one column, moment and object; little-endian as this mac
   char magic[4] = {'G', 'L', 'D', 'R'};
   std::uint16_t version = 1, kind = 1;
   std::uint64_t id = 7;
-  std::uint32_t sensor_number = 0, hits_only = 1, columns = 1, moments = 1, objects = 1, zero = 0;
+  std::uint32_t sensor_number = 0, drop_invalid = 1, columns = 1, moments = 1, objects = 1,
+                zero = 0;
   char column[24] = "xyz";
   std::int64_t t_ns = 0;
   std::uint64_t seed = 1;

@@ -192,7 +192,7 @@ class Frame(Immutable):
         columns: str | Iterable[str] | None = None,
         *,
         frame: str = "sensor",
-        hits_only: bool = False,
+        drop_invalid: bool = False,
         deskew: bool = False,
     ) -> Cloud:
         """The measurement as a point cloud.
@@ -201,16 +201,16 @@ class Frame(Immutable):
             columns: names (docs/python.md), "all", or None for xyz, intensity, range, normal,
                 instance, class.
             frame: coordinate frame: "sensor", "optical", "ros", "gl", "legacy" or "world".
-            hits_only: whether to omit misses.
+            drop_invalid: whether to omit misses.
             deskew: whether points are computed with the sensor's pose at the firing time of their beam.
 
         Raises:
             Error: an unknown column or coordinate frame, or a column that the frame was measured without.
         """
         names = column_list(columns)
-        if hits_only and "xyz" not in names:
+        if drop_invalid and "xyz" not in names:
             names.append("xyz")
-        return Cloud(self._with_scene().cloud(names, frame, deskew, hits_only), hits_only)
+        return Cloud(self._with_scene().cloud(names, frame, deskew, drop_invalid), drop_invalid)
 
     def save(
         self,
@@ -219,7 +219,7 @@ class Frame(Immutable):
         columns: str | Iterable[str] | None = None,
         layout: str | None = None,
         frame: str = "sensor",
-        hits_only: bool = False,
+        drop_invalid: bool = False,
         deskew: bool = False,
         pcd: str = "binary",
         ply_ascii: bool = False,
@@ -235,7 +235,7 @@ class Frame(Immutable):
         .view.png .transform.
 
         Args:
-            columns, frame, hits_only, deskew: as for ``cloud``.
+            columns, frame, drop_invalid, deskew: as for ``cloud``.
             layout: point format of a sensor's driver instead of columns, such as "velodyne".
             pcd: "ascii", "binary" or "binary_compressed".
             ply_ascii: whether PLY files are text.
@@ -264,7 +264,7 @@ class Frame(Immutable):
         options.deskew = deskew
         options.set_pcd(encoding)
         options.set_ply_ascii(ply_ascii)
-        options.set_dense(hits_only)
+        options.set_drop_invalid(drop_invalid)
         options.set_sidecar(sidecar)
         options.set_layout(layout or "")
         options.set_depth_units_per_m(scale)
@@ -336,7 +336,7 @@ class Frame(Immutable):
         Raises:
             Error: an unknown column, or one that has several numbers per point.
         """
-        cloud = self.cloud(["xyz", colour], frame=frame, hits_only=True)
+        cloud = self.cloud(["xyz", colour], frame=frame, drop_invalid=True)
         if cloud[colour].ndim != 1:
             raise Error("colour", shown(colour), "a column with one number per point, such as range")
         if whole(max_points, "max_points", MAX_UINT32) == 0:
@@ -349,27 +349,27 @@ class Frame(Immutable):
         return html_table(rows) + html_picture(self.save)
 
     def explain(
-        self, index: int | None = None, *, row: int | None = None, col: int | None = None, hits_only: bool = False
+        self, index: int | None = None, *, row: int | None = None, col: int | None = None, drop_invalid: bool = False
     ) -> PointTrace:
         """Traces how the measurement of an entry arose: beam, hit, received signal, echoes, and every noise step with
         its random numbers. For this the frame is measured again.
 
         Args:
-            index: index of a point of a cloud of the frame, from 0; with ``hits_only``, of a cloud of hits
+            index: index of a point of a cloud of the frame, from 0; with ``drop_invalid``, of a cloud of hits
                 only. Or:
             row, col: row and column of the frame's arrays.
 
         Raises:
             Error: there is no such entry.
         """
-        return trace_of(_core.explain(self._with_renderer(), self._entry(index, row, col, hits_only)))
+        return trace_of(_core.explain(self._with_renderer(), self._entry(index, row, col, drop_invalid)))
 
-    def _entry(self, index: int | None, row: int | None, col: int | None, hits_only: bool) -> int:
+    def _entry(self, index: int | None, row: int | None, col: int | None, drop_invalid: bool) -> int:
         if index is None and row is not None and col is not None:
             return whole(row, "row", self.rows - 1) * self.cols + whole(col, "col", self.cols - 1)
         if index is None or row is not None or col is not None:
             raise Error("explain", "a point is given twice or not at all", "index, or row and col")
-        if not hits_only:
+        if not drop_invalid:
             return whole(index, "index", self.rows * self.cols - 1)
         entries = np.flatnonzero(self.status == Status.hit)
         if len(entries) == 0:

@@ -98,10 +98,10 @@ PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns
 }
 
 CloudHandle cloud_of(const Measured& measured, const std::vector<std::string>& columns,
-                     const std::string& frame, bool deskew, bool hits_only) {
+                     const std::string& frame, bool deskew, bool drop_invalid) {
   const nb::gil_scoped_release release;
   CloudHandle handle{make_cloud(measured, columns, frame, deskew)};
-  if (hits_only) {
+  if (drop_invalid) {
     PointCloud hits;
     remove_invalid_points(handle.cloud, hits);
     handle.cloud = std::move(hits);
@@ -203,7 +203,7 @@ void bind_save_options(nb::module_& module) {
           [](SaveOptions& self, const Eigen::Vector3d& at) { self.sink.picture.target_m = at; },
           nb::arg("target_m"))
       .def("set_ply_ascii", sink_member<&FileSinkOptions::ply_ascii>(), nb::arg("value"))
-      .def("set_dense", sink_member<&FileSinkOptions::dense>(), nb::arg("value"))
+      .def("set_drop_invalid", sink_member<&FileSinkOptions::drop_invalid>(), nb::arg("value"))
       .def("set_sidecar", sink_member<&FileSinkOptions::sidecar>(), nb::arg("value"))
       .def("set_layout", sink_member<&FileSinkOptions::layout>(), nb::arg("value"))
       .def("set_depth_units_per_m", sink_member<&FileSinkOptions::depth_png_units_per_m>(),
@@ -341,7 +341,7 @@ void bind_frame(nb::module_& module) {
                    [](const Measured& self) { return self.beams->range_offset_m; })
       .def("picture", beam_picture, nb::arg("number_of_return"))
       .def("cloud", cloud_of, nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
-           nb::arg("hits_only"))
+           nb::arg("drop_invalid"))
       .def("save", save, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
            nb::sig("def save(self, path: str, options: SaveOptions, log: object | None) -> None"));
 }

@@ -82,7 +82,7 @@ TEST(DecodeRequest, ReadsEveryFieldOfBytesWrittenByHand) {
   EXPECT_EQ(id, 77U);
   const auto& measure = std::get<Measure>(request);
   EXPECT_EQ(measure.id, 77U);
-  EXPECT_TRUE(measure.hits_only);
+  EXPECT_TRUE(measure.drop_invalid);
   EXPECT_THAT(measure.columns, ::testing::ElementsAre("xyz", "intensity"));
   ASSERT_EQ(measure.moments.size(), 1U);
   const Moment& moment = measure.moments[0];

@@ -83,20 +83,20 @@ def test_arrays_of_clouds_belong_to_the_caller(frame):
 
 
 def test_cloud_of_hits_only_is_flat(frame):
-    cloud = frame.cloud(["range"], hits_only=True)
+    cloud = frame.cloud(["range"], drop_invalid=True)
     assert cloud.points == frame.hits
     assert cloud["range"].shape == (frame.hits,)
     assert np.array_equal(cloud["range"], frame.range_m[frame.status == 0])
 
 
 def test_clouds_in_different_coordinate_frames_differ_by_rigid_transforms(frame):
-    sensor = frame.cloud(["xyz"], hits_only=True)
-    world = frame.cloud(["xyz"], frame="world", hits_only=True)
+    sensor = frame.cloud(["xyz"], drop_invalid=True)
+    world = frame.cloud(["xyz"], frame="world", drop_invalid=True)
     pose = frame.world_from_sensor
     assert world["xyz"] == pytest.approx(sensor["xyz"] @ pose[:3, :3].T + pose[:3, 3], abs=1e-12)
     assert world.world_from_cloud == pytest.approx(np.eye(4), abs=1e-15)
     assert world.frame_id == "world"
-    ros = frame.cloud(["xyz"], frame="ros", hits_only=True)["xyz"]
+    ros = frame.cloud(["xyz"], frame="ros", drop_invalid=True)["xyz"]
     assert ros == pytest.approx(sensor["xyz"][:, [2, 0, 1]] * [1, -1, -1], abs=1e-12)
 
 
@@ -148,7 +148,7 @@ def test_trace_of_an_entry_lists_every_random_number(frame):
     assert dropout.after.range_m == frame.range_m.flat[index]
     assert "noise 1" in str(trace)
     assert frame.explain(row=index // 64, col=index % 64).text == trace.text
-    assert frame.explain(5, hits_only=True).text == trace.text
+    assert frame.explain(5, drop_invalid=True).text == trace.text
 
 
 def test_explain_rejects_entries_out_of_range(frame):
@@ -156,7 +156,7 @@ def test_explain_rejects_entries_out_of_range(frame):
         with pytest.raises(glidar.Error):
             frame.explain(**arguments)
     with pytest.raises(glidar.Error):
-        frame.explain(frame.hits, hits_only=True)
+        frame.explain(frame.hits, drop_invalid=True)
 
 
 def test_fisher_information_of_a_plane_has_three_degenerate_directions():

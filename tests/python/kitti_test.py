@@ -182,7 +182,7 @@ def test_a_bin_file_has_a_label_file_when_the_scene_has_classes(tmp_path):
     frame = glidar.simulate(glidar.Scene(tmp_path / "scene.yaml"), glidar.load_sensor("VLP-16"),
                             pose=np.eye(4), seed=3, columns="all")  # fmt: skip
     frame.save(tmp_path / "a.bin", sidecar=False)
-    cloud = frame.cloud(["xyz", "instance", "class"], hits_only=True)
+    cloud = frame.cloud(["xyz", "instance", "class"], drop_invalid=True)
     none = cloud["instance"] == 0xFFFFFFFF
     wanted = np.where(none, 0, cloud["class"] | cloud["instance"] << 16).ravel()
     np.testing.assert_array_equal(np.fromfile(tmp_path / "a.label", "<u4"), wanted)

@@ -134,8 +134,8 @@ def test_deskew_corrects_the_motion_distortion_of_a_cloud():
     scene = glidar.Scene("builtin:box")
     moving = glidar.Trajectory.twist(np.eye(4), [0, 0, 1.0], [0.5, 0, 0])
     frame = glidar.simulate(scene, lidar, moving, columns="all")
-    skewed = frame.cloud(["xyz"], hits_only=True)["xyz"]
-    straight = frame.cloud(["xyz"], hits_only=True, deskew=True)["xyz"]
+    skewed = frame.cloud(["xyz"], drop_invalid=True)["xyz"]
+    straight = frame.cloud(["xyz"], drop_invalid=True, deskew=True)["xyz"]
     walls = np.abs(straight).max(axis=1)
     assert walls == pytest.approx(np.ones(len(walls)), abs=1e-6)
     assert np.abs(np.abs(skewed).max(axis=1) - 1).max() > 0.01

@@ -195,7 +195,7 @@ def test_a_frame_with_motion_survives_pickling(asteroid):
     back = again(frame)
     assert back == frame
     assert back.cloud(["xyz"], deskew=True) == frame.cloud(["xyz"], deskew=True)
-    assert str(back.explain(0, hits_only=True)) == str(frame.explain(0, hits_only=True))
+    assert str(back.explain(0, drop_invalid=True)) == str(frame.explain(0, drop_invalid=True))
 
 
 def test_a_frame_with_pointing_errors_survives_pickling(asteroid):
@@ -278,9 +278,9 @@ def test_frames_that_differ_in_one_number_are_not_equal(asteroid, noisy):
     assert copy.deepcopy(frame) is frame
 
 
-@pytest.mark.parametrize("hits_only", [False, True])
-def test_a_cloud_survives_pickling(asteroid, camera, hits_only):
-    cloud = glidar.simulate(asteroid, camera).cloud(["xyz", "intensity", "status"], hits_only=hits_only, frame="world")
+@pytest.mark.parametrize("drop_invalid", [False, True])
+def test_a_cloud_survives_pickling(asteroid, camera, drop_invalid):
+    cloud = glidar.simulate(asteroid, camera).cloud(["xyz", "intensity", "status"], drop_invalid=drop_invalid, frame="world")
     for protocol in PROTOCOLS:
         back = again(cloud, protocol)
         assert back == cloud

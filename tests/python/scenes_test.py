@@ -143,7 +143,7 @@ def test_frames_keep_the_scene_as_it_was_measured(camera):
     scene.objects[0].id = 3
     frame = glidar.simulate(scene, camera, POSE)
     scene.objects[0].id = 4
-    seen = frame.cloud(["instance"], hits_only=True)["instance"]
+    seen = frame.cloud(["instance"], drop_invalid=True)["instance"]
     assert set(seen) == {3}
 
 

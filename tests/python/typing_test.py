@@ -23,7 +23,7 @@ nearest: float = float(np.nanmin(frame.range_m))
 frames: list[glidar.Frame] = glidar.simulate_batch(scene, sensor, np.stack([np.eye(4)] * 3), [1, 2, 3])
 spin = glidar.Trajectory.spin(np.eye(4), [0, 0, 1])
 frames.append(glidar.simulate(scene, "VLP-16", spin, objects=[np.eye(4)]))
-xyz = frame.cloud(["xyz"], frame="world", hits_only=True)["xyz"]
+xyz = frame.cloud(["xyz"], frame="world", drop_invalid=True)["xyz"]
 print(xyz.shape, frame.fisher_information().bound, frame.explain(0).steps, nearest)
 try:
     glidar.load_sensor("none")

@@ -54,7 +54,7 @@ void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
   group.add("--frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]",
             flags.frame, one_of({output_frame_names().begin(), output_frame_names().end()}));
   group.add_flag("--deskew", "Compensate the motion of the sensor within a frame", flags.deskew);
-  group.add_flag("--drop-invalid", "Drop points without a return", flags.sink.dense);
+  group.add_flag("--drop-invalid", "Drop points without a return", flags.sink.drop_invalid);
   group.add("--pcd-encoding", "NAME", "ascii, binary or binary_compressed [binary]", flags.sink.pcd,
             one_of<PcdEncoding>({{"ascii", PcdEncoding::ascii},
                                  {"binary", PcdEncoding::binary},

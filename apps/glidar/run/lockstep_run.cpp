@@ -206,7 +206,7 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
                    fmt::format("{}, one for each object of the scene, or 0", instances));
   }
   const auto& columns = measure.columns;
-  if (measure.hits_only && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
+  if (measure.drop_invalid && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
     refuse_request("flags", "hits only, without the column xyz", "xyz among the columns");
   }
   const std::size_t points = prepared_.sensors[measure.sensor].beams.size();
@@ -257,7 +257,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
   axes.thread_pool = &prepared_.renderer->thread_pool();
   std::shared_ptr<PointCloud> cloud = clouds_.take();
   make_point_cloud(frame, beams, prepared_.scene, axes, measure.columns, *cloud);
-  if (measure.hits_only) {
+  if (measure.drop_invalid) {
     const std::shared_ptr<PointCloud> hits = clouds_.take();
     remove_invalid_points(*cloud, *hits);
     cloud = hits;

@@ -82,7 +82,7 @@ std::vector<std::string> columns_of(const FileFormat& format,
 /// NAME.pcd and NAME.transform as the original GLIDAR writes them.
 void plan_legacy(const std::string& name, const SidecarContext& context, const Report& report,
                  std::vector<Output>& outputs) {
-  const FileSinkOptions options{.dense = true, .sidecar = false};
+  const FileSinkOptions options{.drop_invalid = true, .sidecar = false};
   for (const char* suffix : {".pcd", ".transform"}) {
     const std::filesystem::path path = name + suffix;
     outputs.push_back({.path = path,

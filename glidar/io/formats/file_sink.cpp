@@ -155,10 +155,10 @@ class FormatSink : public FileSink {
   }
 
   void stage_points(const PointCloud& cloud, const Frame& frame) {
-    const bool dense =
-        format_.content == Content::kitti || (format_.content == Content::points && options_.dense);
-    if (dense) remove_invalid_points(cloud, hits_);
-    const PointCloud& points = dense ? hits_ : cloud;
+    const bool drops_invalid = format_.content == Content::kitti ||
+                               (format_.content == Content::points && options_.drop_invalid);
+    if (drops_invalid) remove_invalid_points(cloud, hits_);
+    const PointCloud& points = drops_invalid ? hits_ : cloud;
     if (format_.content == Content::kitti) {
       deliver(kitti_cloud(points, context_.sensor, context_.beams), frame);
     } else {

@@ -41,9 +41,9 @@ std::span<const std::string> colour_by_names();
 struct FileSinkOptions {
   PcdEncoding pcd = PcdEncoding::binary;
   bool ply_ascii = false;
-  bool dense = false;       ///< point formats omit misses
-  bool sidecar = true;      ///< write FILE.json for a cloud
-  std::string layout = {};  ///< of cloud_layouts(), for formats that take columns; empty: none
+  bool drop_invalid = false;  ///< point formats omit points without a return
+  bool sidecar = true;        ///< write FILE.json for a cloud
+  std::string layout = {};    ///< of cloud_layouts(), for formats that take columns; empty: none
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
   CloudPictureOptions picture = {};
   ProgressCallback progress = {};  ///< of one file, by its points; not for images and NPZ

@@ -213,7 +213,7 @@ std::vector<std::byte> encode_one(const Measure& measure) {
   Writer to;
   to.write_start(kMeasure, measure.id);
   to.write(measure.sensor);
-  to.write(measure.hits_only ? kHitsOnly : 0U);
+  to.write(measure.drop_invalid ? kHitsOnly : 0U);
   to.write(static_cast<std::uint32_t>(measure.columns.size()));
   to.write(static_cast<std::uint32_t>(measure.moments.size()));
   to.write(
@@ -256,7 +256,7 @@ Request decode_request(Bytes message, std::uint64_t& id) {
   check(counts, message.size());
   Measure measure{.id = id,
                   .sensor = counts.sensor,
-                  .hits_only = (counts.flags & kHitsOnly) != 0,
+                  .drop_invalid = (counts.flags & kHitsOnly) != 0,
                   .columns = {},
                   .moments = {}};
   for (std::uint32_t i = 0; i < counts.columns; ++i) measure.columns.push_back(read_name(from));

@@ -51,9 +51,9 @@ struct Describe {
 
 /// Requests clouds.
 struct Measure {
-  std::uint64_t id = 0;      ///< returned in the reply
-  std::uint32_t sensor = 0;  ///< index on the rig
-  bool hits_only = false;    ///< omits beams without a return
+  std::uint64_t id = 0;       ///< returned in the reply
+  std::uint32_t sensor = 0;   ///< index on the rig
+  bool drop_invalid = false;  ///< omits beams without a return
   std::vector<std::string> columns;
   std::vector<Moment> moments;
 };

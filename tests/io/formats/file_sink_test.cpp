@@ -354,7 +354,7 @@ TEST(FileSink, FramesWithoutHitsGiveValidDenseFiles) {
   for (double& value : std::get<std::vector<double>>(made.cloud.columns[0].values))
     value = std::nan("");
   FileSinkOptions options;
-  options.dense = true;
+  options.drop_invalid = true;
   write_cloud(made, folder / "a.pcd", options);
   EXPECT_THAT(file_bytes(folder / "a.pcd"),
               AllOf(HasSubstr("WIDTH 0\nHEIGHT 1\n"), HasSubstr("POINTS 0\nDATA binary\n")));

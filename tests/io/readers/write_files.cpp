@@ -27,8 +27,8 @@ void write_layouts(CloudFixture made, const std::filesystem::path& folder) {
     write("_ascii.pcd", {.pcd = PcdEncoding::ascii});
     write("_compressed.pcd", {.pcd = PcdEncoding::binary_compressed});
     write("_ascii.ply", {.ply_ascii = true});
-    write("_dense.pcd", {.dense = true});
-    write("_dense.npz", {.dense = true});
+    write("_dense.pcd", {.drop_invalid = true});
+    write("_dense.npz", {.drop_invalid = true});
   }
 }
 
@@ -47,7 +47,7 @@ void write_all(const CloudFixture& made, const std::filesystem::path& folder) {
   write_cloud(made, folder / "ascii.ply", ascii);
   write_cloud(made, folder / "compressed.pcd", compressed);
   for (FileSinkOptions options : {FileSinkOptions{}, ascii, compressed}) {
-    options.dense = true;
+    options.drop_invalid = true;
     const std::string name = "dense" + std::to_string(static_cast<int>(options.pcd));
     for (const char* suffix : {".pcd", ".ply", ".npz", ".csv"})
       write_cloud(made, folder / (name + suffix), options);
