@@ -177,10 +177,10 @@ def odometry(name, scans, trajectory, rate_hz):
             estimator.register_frame(getattr(scan, kind), scan.phase)
             poses.append(estimator.last_pose.copy())
             progress.step()
-    return judged(name, np.stack(poses), trajectory, (np.arange(len(scans)) + phase) / rate_hz, round(rate_hz))
+    return evaluated(name, np.stack(poses), trajectory, (np.arange(len(scans)) + phase) / rate_hz, round(rate_hz))
 
 
-def judged(name, poses, trajectory, times_s, apart):
+def evaluated(name, poses, trajectory, times_s, apart):
     truth = trajectory.poses_at(times_s)
     metres, radians = relative_errors(poses, truth, apart)
     way = ways(truth, apart)

@@ -108,16 +108,16 @@ def mixed(stage, place):
     return 1e3 * float(two_planes(stage, place, 0.3, "returns: [strongest]")[0])
 
 
-def told_as(which):
+def reported_as(which):
     return lambda stage, place: float(two_planes(stage, place, 2.0, f"returns: [{which}]")[0])
 
 
 def separate_ranges(separation_m):
     """How far from each other the first and last returns are; 0: there is one."""
     def measure(stage, apart_m):
-        told = two_planes(stage, -0.02, apart_m,
-                          f"min_return_separation_m: {separation_m}, returns: [first, last]")
-        return float(told[1] - told[0]) if np.isfinite(told[1]) else 0.0
+        measured = two_planes(stage, -0.02, apart_m,
+                             f"min_return_separation_m: {separation_m}, returns: [first, last]")
+        return float(measured[1] - measured[0]) if np.isfinite(measured[1]) else 0.0
     return measure
 
 
@@ -222,10 +222,10 @@ CASES = [
          [Series("as the pulse can", separate_ranges(0), lambda x: x * (x > APART_M)),
           Series("min_return_separation_m: 1", separate_ranges(1), lambda x: x * (x > 1))]),
     Case("returns, planes 2 m apart", "reported behind the front one, m", "edge / w", PLACES,
-         [Series("last", told_as("last"), lambda x: 2.0),
-          Series("strongest", told_as("strongest"),
+         [Series("last", reported_as("last"), lambda x: 2.0),
+          Series("strongest", reported_as("strongest"),
                  lambda x: 2.0 * ((50 / 52) ** 2 * (1 - lit_law(x)) > lit_law(x))),
-          Series("first", told_as("first"), lambda x: 0.0)]),
+          Series("first", reported_as("first"), lambda x: 0.0)]),
     Case("range walk, leading edge, 5 ns", "reported - true, mm", "log10 of S", [0, 0.1, 0.3, 0.6, 1, 1.5, 2, 3, 4],
          [Series("", walk_mm, lambda d: -1e3 * SIGMA_M * math.sqrt(2 * d * math.log(10)))]),
     Case("echo on a tilted plane", "sigma, m; 20 mrad at 50 m", "tilt, deg", DEGREES[:-1],

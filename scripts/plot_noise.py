@@ -98,8 +98,8 @@ def level_mm(stage, depth_m):
     """From the level of disparity at a depth to the next one."""
     step = "{type: disparity_quantization, k_m: 351.3}"
     first, second = (1.0 / (round(351.3 / depth_m) - k) * 351.3 for k in (0, 1))
-    told = [float(np.nanmean(stage.wall(step, z)["depth"])) for z in (first, second)]
-    return 1e3 * (told[1] - told[0])
+    measured = [float(np.nanmean(stage.wall(step, z)["depth"])) for z in (first, second)]
+    return 1e3 * (measured[1] - measured[0])
 
 
 def bias_quantile_mm(stage, quantile):
@@ -181,9 +181,9 @@ def jitter_deg(stage, sigma_deg):
     step = f"{{type: pointing_jitter, sigma_azimuth_deg: {sigma_deg}, sigma_elevation_deg: 0}}"
     cloud = stage.wall(step, 1.0)
     went = cloud["true_xyz"].reshape(-1, 3)
-    told = cloud["xyz"].reshape(-1, 3)
-    sine = np.cross(went, told) / np.linalg.norm(went, axis=1, keepdims=True)
-    sine /= np.linalg.norm(told, axis=1, keepdims=True)
+    measured = cloud["xyz"].reshape(-1, 3)
+    sine = np.cross(went, measured) / np.linalg.norm(went, axis=1, keepdims=True)
+    sine /= np.linalg.norm(measured, axis=1, keepdims=True)
     return math.degrees(float(np.sqrt(np.nanmean(np.sum(sine ** 2, axis=1)))))
 
 

@@ -273,7 +273,7 @@ def growth_mb(times, memory):
     return np.median(memory[quarter == 3]) - np.median(memory[quarter == 1])
 
 
-def judge(findings, memory, tolerance_mb=MEMORY_TOLERANCE_MB):
+def find_errors(findings, memory, tolerance_mb=MEMORY_TOLERANCE_MB):
     """Everything that must not be."""
     if findings.errors:
         return findings.errors
@@ -345,7 +345,7 @@ def main(arguments=None):
         finally:
             stats = soak.end()
         log = Path(folder, "log.txt").read_text(encoding="utf-8")
-    errors = judge(soak.findings, memory, HOSTILE_TOLERANCE_MB if flags.hostile else MEMORY_TOLERANCE_MB)
+    errors = find_errors(soak.findings, memory, HOSTILE_TOLERANCE_MB if flags.hostile else MEMORY_TOLERANCE_MB)
     if not soak.findings.errors:
         latencies = np.concatenate([np.array(one).reshape(-1, 2) for one in soak.findings.latencies])
         report(soak.findings, memory, stats, latencies)

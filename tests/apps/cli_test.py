@@ -224,10 +224,10 @@ class Render(CliTest):
 
 class Motion(CliTest):
     def test_fisher_information_is_written_beside_the_output(self):
-        told = self.succeed("render", "builtin:plane", "--eye", "0,0,5", "--target", "0,0,0",
+        reported = self.succeed("render", "builtin:plane", "--eye", "0,0,5", "--target", "0,0,0",
                             "--up-vector", "0,1,0", "--fisher", "-o", "view.pcd").stdout
-        self.assertIn("sigma of ranges assumed: 0.01 m", told)
-        self.assertIn("DEGENERATE   translation along x", told)
+        self.assertIn("sigma of ranges assumed: 0.01 m", reported)
+        self.assertIn("DEGENERATE   translation along x", reported)
         with open(os.path.join(self.folder, "view.fisher.json"), encoding="utf-8") as file:
             information = json.load(file)
         self.assertEqual(sum(d["degenerate"] for d in information["directions"]), 3)
@@ -305,14 +305,14 @@ class Advice(CliTest):
                       self.warned("builtin:box", "--eye", "0.1,0,0", "--target", "1,0,0"))
 
     def test_a_sensor_inside_a_room_gets_no_advice(self):
-        def told(*arguments):
+        def reported(*arguments):
             return self.succeed("render", *arguments, "-o", "x.pcd").stderr
         ahead = ("--target", "1,0,0")
-        self.assertEqual(told("builtin:torus", "--eye", "0,0,0", *ahead), "")  # sees front faces
+        self.assertEqual(reported("builtin:torus", "--eye", "0,0,0", *ahead), "")  # sees front faces
         for place in ("0,0,0", "0.2,0.1,0"):  # a room with outward triangles, seen by a 360 degree sensor
-            self.assertEqual(told("builtin:box", "--sensor", "VLP-16", "--eye", place), "")
+            self.assertEqual(reported("builtin:box", "--sensor", "VLP-16", "--eye", place), "")
         room = self.write("room.obj", re.sub(r"(?m)^f (\d) (\d) (\d) (\d)$", r"f \4 \3 \2 \1", box_of(4)))
-        self.assertEqual(told(room, "--eye", "0.1,0,0", *ahead), "")
+        self.assertEqual(reported(room, "--eye", "0.1,0,0", *ahead), "")
 
     def test_models_a_thousand_times_too_large_or_small_get_advice(self):
         big = self.write("big.obj", box_of(2000))

@@ -38,12 +38,12 @@ class Explain(CliTest):
         return trace
 
     def assert_is_trace_of(self, trace, point):
-        told = re.match(r"([-0-9.]+) m, intensity ([-+0-9.e]+)", trace["reported"][0])
-        if told is None:
+        reported = re.match(r"([-0-9.]+) m, intensity ([-+0-9.e]+)", trace["reported"][0])
+        if reported is None:
             self.assertEqual(float(point["status"]) == 0, False)
             return
-        self.assertAlmostEqual(float(told[1]), float(point["range"]), delta=1e-6)
-        self.assertAlmostEqual(float(told[2]), float(point["intensity"]), delta=1e-5 * float(told[2]))
+        self.assertAlmostEqual(float(reported[1]), float(point["range"]), delta=1e-6)
+        self.assertAlmostEqual(float(reported[2]), float(point["intensity"]), delta=1e-5 * float(reported[2]))
 
     def test_the_trace_of_every_point_ends_at_its_reported_values(self):
         self.write("s.yaml", SENSOR)
@@ -92,12 +92,12 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
         with open(os.path.join(ROOT, "docs", "explain.md"), encoding="utf-8") as file:
             shown = file.read()
         commands = re.search(r"```sh\n(.*?)```", shown, re.DOTALL)[1].splitlines()
-        told = re.search(r"```text\n(.*?)```", shown, re.DOTALL)[1]
+        reported = re.search(r"```text\n(.*?)```", shown, re.DOTALL)[1]
         for command in commands:
             name, *arguments = shlex.split(command)
             self.assertEqual(name, "glidar")
             done = self.succeed(*arguments)
-        self.assertEqual(done.stdout, told)
+        self.assertEqual(done.stdout, reported)
 
     def test_frames_of_a_sequence_and_moved_folders_are_found(self):
         self.write("box.obj", box_of(2))
@@ -105,11 +105,11 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
         self.succeed("render", "box.obj", "--sensor-rate", "0,1,0", "--camera-z", "9", "--duration", "0.1",
                      "--threads", "1", "--quiet", "-o", "out/b.csv", "--columns", "xyz,range,intensity,status")
         with open(os.path.join(self.folder, "out", "b_000002.csv.json"), encoding="utf-8") as file:
-            told = json.load(file)
-        self.assertEqual(told["frame"], 2)
-        self.assertEqual(told["command"]["folder"], "..")
-        self.assertNotIn("--threads", told["command"]["arguments"])
-        self.assertNotIn("--quiet", told["command"]["arguments"])
+            reported = json.load(file)
+        self.assertEqual(reported["frame"], 2)
+        self.assertEqual(reported["command"]["folder"], "..")
+        self.assertNotIn("--threads", reported["command"]["arguments"])
+        self.assertNotIn("--quiet", reported["command"]["arguments"])
         moved = os.path.join(self.folder, "moved")
         os.mkdir(moved)
         for name in ("box.obj", "out"):
@@ -137,12 +137,12 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
         os.remove(os.path.join(self.folder, "box.obj"))
         self.assertIn("box.obj", explain("b.pcd", "--index", "0"))
         with open(os.path.join(self.folder, "b.pcd.json"), encoding="utf-8") as file:
-            told = json.load(file)
+            reported = json.load(file)
         for key, value in (("frame", 2 ** 40), ("frame", 1.5), ("command", {"arguments": [], "folder": 3}),
                            ("command", {"arguments": ["render", "--help"], "folder": "."}),
                            ("command", {"arguments": ["verify"], "folder": "."}),
-                           ("command", {"arguments": told["command"]["arguments"], "folder": "nowhere"})):
-            self.write("b.pcd.json", json.dumps(dict(told, **{key: value})))
+                           ("command", {"arguments": reported["command"]["arguments"], "folder": "nowhere"})):
+            self.write("b.pcd.json", json.dumps(dict(reported, **{key: value})))
             self.assertIn("b.pcd.json", explain("b.pcd", "--index", "0"))
         self.write("b.pcd.json", "{}")
         self.assertIn("not a sidecar", explain("b.pcd", "--index", "0"))

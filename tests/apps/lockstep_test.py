@@ -146,10 +146,10 @@ class Lockstep(CliTest):
             socket.send(struct.pack("<4s2HQ", b"GLDR", 1, 0, 3))
             head, text = socket.recv_multipart()
         self.assertEqual(struct.unpack("<4s2HQ", head), (b"GLDR", 1, 4, 3))
-        told = json.loads(text)
-        self.assertEqual(told["sensors"][0]["rows"], 32)
-        self.assertEqual(told["objects"][0]["name"], "asteroid")
-        self.assertIn("xyz", told["columns"])
+        reported = json.loads(text)
+        self.assertEqual(reported["sensors"][0]["rows"], 32)
+        self.assertEqual(reported["objects"][0]["name"], "asteroid")
+        self.assertIn("xyz", reported["columns"])
 
     def test_bad_requests_get_a_text_error_and_the_next_one_is_answered(self):
         good = CLIENT["request"](["xyz"], [(0, 1, 0, [SENSOR, ROCK])])

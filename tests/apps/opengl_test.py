@@ -71,9 +71,9 @@ class OpenglRenderer(CliTest):
         self.assertLess(np.nanquantile(off, 0.99), 0.52 * (far - near) / 65536)
 
     def test_the_float_framebuffer_has_no_paper_png(self):
-        told = "x.framebuffer.png: the float framebuffer, which has no such image; allowed: this output with --quantized-framebuffer"
+        reported = "x.framebuffer.png: the float framebuffer, which has no such image; allowed: this output with --quantized-framebuffer"
         for renderer in ((), ("--renderer", "opengl")):
-            self.assertIn(told, self.refused("render", *VIEW, *renderer, "-o", "x.framebuffer.png"))
+            self.assertIn(reported, self.refused("render", *VIEW, *renderer, "-o", "x.framebuffer.png"))
 
     def test_unsupported_sensors_are_refused(self):
         self.assertIn("add --renderer opengl",

@@ -38,9 +38,9 @@ class Rigs(CliTest):
 
     def test_an_output_that_fits_none_of_the_sensors_is_an_error_before_any_work(self):
         self.write("rig.yaml", RIG[: RIG.index("  - name: camera")] + "  - {name: second, sensor: VLP-16}\n" + PLACED)
-        told = self.refused("render", "rig.yaml", "-o", "r.pcd", "-o", "r.depth.png")
-        self.assertIn("fits none of the sensors on the rig: lidar: it has beams", told)
-        self.assertIn("write .npy or .depth.tiff", told)
+        reported = self.refused("render", "rig.yaml", "-o", "r.pcd", "-o", "r.depth.png")
+        self.assertIn("fits none of the sensors on the rig: lidar: it has beams", reported)
+        self.assertIn("write .npy or .depth.tiff", reported)
 
     def test_a_stream_leaves_the_same_output_out(self):
         self.succeed("stream", "rig.yaml", "--frames", "2", "-o", "r.depth.png", "--no-sidecar")
@@ -48,8 +48,8 @@ class Rigs(CliTest):
         self.assertFalse([name for name in self.files() if name.startswith("r_lidar_")], self.files())
 
     def test_a_rig_cannot_write_to_standard_output(self):
-        told = self.refused("render", "rig.yaml", "-o", "-", "--format", "csv")
-        self.assertIn("--sensor-name", told)
+        reported = self.refused("render", "rig.yaml", "-o", "-", "--format", "csv")
+        self.assertIn("--sensor-name", reported)
         done = self.succeed("render", "rig.yaml", "--sensor-name", "camera", "-o", "-", "--format", "csv")
         self.assertEqual(done.stdout.count("\n"), 40 * 30 + 1)
 
@@ -66,9 +66,9 @@ class Folders(CliTest):
 class Failures(CliTest):
     def test_when_one_output_fails_no_file_of_the_frame_exists(self):
         # the box is 7 m and more away: 20000 units per metre do not fit 16 bits
-        told = self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "a.depth.png", "-o", "a.csv",
+        reported = self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "a.depth.png", "-o", "a.csv",
                             "--depth-scale", "20000")
-        self.assertIn("--depth-scale", told)
+        self.assertIn("--depth-scale", reported)
 
     def test_an_error_lists_what_was_written_before_it(self):
         # from the second frame on, the box is farther than 65535 / 6200 m
@@ -124,10 +124,10 @@ class StandardOutput(CliTest):
 
     def test_commands_that_write_sequences_do_not_offer_it(self):
         for command in ("stream", "replay"):
-            told = self.succeed(command, "--help").stdout
-            self.assertIn("--output", told)
-            self.assertNotIn("stdout", told)
-            self.assertNotIn("--format", told)
+            reported = self.succeed(command, "--help").stdout
+            self.assertIn("--output", reported)
+            self.assertNotIn("stdout", reported)
+            self.assertNotIn("--format", reported)
         self.assertIn("-: standard output", self.succeed("render", "--help").stdout)
 
     def test_files_are_written_together_with_it(self):

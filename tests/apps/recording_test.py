@@ -95,10 +95,10 @@ class RealSense(CliTest):
         for decimetres in (5, 11, 20):
             depth_m = self.render(f"{{model: builtin:plane, pose: {{position: [0, 0, {decimetres / 10}]}}, scale: 9}}",
                                   "D435")
-            told = spread_by_depth(depth_m)[decimetres]
-            self.assertAlmostEqual(told, 0.003587, 4)  # 3.587 mm z^2
-            self.assertGreater(told, recorded[decimetres])
-            self.assertLess(told, 2.5 * recorded[decimetres])
+            reported = spread_by_depth(depth_m)[decimetres]
+            self.assertAlmostEqual(reported, 0.003587, 4)  # 3.587 mm z^2
+            self.assertGreater(reported, recorded[decimetres])
+            self.assertLess(reported, 2.5 * recorded[decimetres])
 
 
 if __name__ == "__main__":

@@ -65,19 +65,19 @@ class Files(RigTest):
 
     def test_a_sensor_moves_with_the_rig(self):
         self.succeed("render", "rig.yaml", "--duration", "0.1", "-o", "s.npz")
-        told = json.loads(self.bytes_of("s_camera_000001.npz.json"))["sensor"]
+        reported = json.loads(self.bytes_of("s_camera_000001.npz.json"))["sensor"]
         turned = np.deg2rad(2) * 0.05  # a screw motion of 0.5 m/s along x: an arc
         radius = 0.5 / np.deg2rad(2)
         rig = np.array([radius * np.sin(turned), radius * (1 - np.cos(turned)), 0])
         expected = rig + 0.1 * np.array([np.cos(turned), np.sin(turned), 0])
-        position = [told["world_from_sensor"]["position_m"][k] for k in range(3)]
+        position = [reported["world_from_sensor"]["position_m"][k] for k in range(3)]
         np.testing.assert_allclose(position, expected, atol=1e-12)
 
     def test_explain_knows_which_sensor_it_was(self):
         self.succeed("render", "rig.yaml", "-o", "s.pcd")
-        told = self.succeed("explain", "s_camera_2.pcd", "--row", "15", "--col", "20").stdout
-        self.assertIn("1200", told)
-        self.assertIn("range_gaussian", told)
+        reported = self.succeed("explain", "s_camera_2.pcd", "--row", "15", "--col", "20").stdout
+        self.assertIn("1200", reported)
+        self.assertIn("range_gaussian", reported)
 
     def test_images_by_ring_are_left_out_for_cameras(self):
         for name in ("b.bev.png", "b.view.png"):
@@ -200,11 +200,11 @@ class Requests(RigTest):
         with Server(self, "rig.yaml") as server:
             socket = server.connect()
             socket.send(struct.pack("<4s2HQ", b"GLDR", 1, 0, 3))
-            told = json.loads(socket.recv_multipart()[1])
-            self.assertEqual([sensor["name"] for sensor in told["sensors"]], ["lidar", "camera", "camera_2"])
-            np.testing.assert_allclose(told["sensors"][1]["rig_from_sensor"][:3], [0.1, 0, 0])
+            reported = json.loads(socket.recv_multipart()[1])
+            self.assertEqual([sensor["name"] for sensor in reported["sensors"]], ["lidar", "camera", "camera_2"])
+            np.testing.assert_allclose(reported["sensors"][1]["rig_from_sensor"][:3], [0.1, 0, 0])
             rock = body((6, 0, 0))
-            for index, sensor in enumerate(told["sensors"]):
+            for index, sensor in enumerate(reported["sensors"]):
                 socket.send(self.request(index, [(0, 1, 0, [body((0, 0, 0)), rock])]))
                 _, cloud = CLIENT["clouds"](socket.recv_multipart())[0]
                 self.assertEqual(cloud["xyz"].shape[:2], (sensor["rows"], sensor["cols"]))

@@ -14,10 +14,10 @@ class Sensors(CliTest):
         lines = self.succeed("sensors").stdout.splitlines()
         names = {line.split()[0] for line in lines[1:]}
         self.assertLessEqual({"VLP-16", "OS1-128", "Livox-Avia", "D435", "TiM781"}, names)
-        told = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
-        self.assertEqual(set(told), names)
-        self.assertEqual(told["VLP-16"]["rows"], 16)
-        self.assertEqual(told["VLP-16"]["view_deg"][0], 360)
+        reported = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
+        self.assertEqual(set(reported), names)
+        self.assertEqual(reported["VLP-16"]["rows"], 16)
+        self.assertEqual(reported["VLP-16"]["view_deg"][0], 360)
 
     def test_the_list_and_the_docs_count_the_values_with_sources(self):
         root = os.path.join(os.path.dirname(__file__), "..", "..")
@@ -40,10 +40,10 @@ class Sensors(CliTest):
         lines = self.succeed("sensors", "--surfaces").stdout.splitlines()
         asphalt = next(line for line in lines if line.startswith("asphalt "))
         self.assertEqual(asphalt.split()[1:5], ["0.269", "0.278", "0.302", "0.362"])
-        told = {entry["name"]: entry
+        reported = {entry["name"]: entry
                 for entry in json.loads(self.succeed("sensors", "--surfaces", "--json").stdout)}
-        self.assertEqual(told["grass"]["reflectance_at_nm"]["1550"], 0.243)
-        self.assertFalse(told["mli"]["diffuse"])
+        self.assertEqual(reported["grass"]["reflectance_at_nm"]["1550"], 0.243)
+        self.assertFalse(reported["mli"]["diffuse"])
         self.assertIn("--surfaces alone", self.refused("sensors", "VLP-16", "--surfaces"))
 
         box = ("render", "builtin:box", "--eye", "0,0,0", "-o", "a.csv", "--surface")
@@ -131,11 +131,11 @@ class Sensors(CliTest):
         self.assertIn("\n* receiver.pulse_ns = 6\n", text)
         self.assertIn("\n  receiver.returns = strongest\n", text)
         self.assertIn(" 5.1 x 2.5 ", text)  # 1.699 times the widths at half maximum
-        told = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
-        self.assertAlmostEqual(told["VLS-128"]["divergence_mrad"][0], 3 * 1.699, 2)
-        self.assertEqual(told["Livox-Avia"]["returns"], ["first"])
-        self.assertIsNone(told["UTM-30LX"]["divergence_mrad"])
-        self.assertEqual(told["D435"]["returns"], [])
+        reported = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
+        self.assertAlmostEqual(reported["VLS-128"]["divergence_mrad"][0], 3 * 1.699, 2)
+        self.assertEqual(reported["Livox-Avia"]["returns"], ["first"])
+        self.assertIsNone(reported["UTM-30LX"]["divergence_mrad"])
+        self.assertEqual(reported["D435"]["returns"], [])
 
     def test_returns_can_be_selected(self):
         room = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "--returns")
@@ -144,10 +144,10 @@ class Sensors(CliTest):
         with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file)["sensor"]["receiver"]["returns"], ["strongest", "last"])
         self.assertIn("1809 x 48 beams", self.succeed(*room, "3", "-o", "a.pcd").stdout)
-        for wrong, told in (("lst", "'lst'; allowed: 1 to 16 of first, second, third, last, strongest, "),
+        for wrong, reported in (("lst", "'lst'; allowed: 1 to 16 of first, second, third, last, strongest, "),
                             ("strongst", "did you mean strongest?"), ("first,", "an empty part"),
                             ("0", "how many of the nearest, 1 to 16"), (",".join(["last"] * 17), "17 returns")):
-            self.assertIn(told, self.refused(*room, wrong, "-o", "a.pcd"))
+            self.assertIn(reported, self.refused(*room, wrong, "-o", "a.pcd"))
         self.assertIn("--returns: --ground-truth removes", self.refused(*room, "last", "--ground-truth", "-o", "a.pcd"))
         self.assertIn("--returns: the sensor has no pulse light", self.refused(
             "render", "builtin:box", "--returns", "last", "-o", "a.pcd"))

@@ -235,29 +235,29 @@ TEST(Sidecar, ContainsSensorPosesSeedModelAndCounts) {
   pinhole.distortion = RadialTangential{.k1 = 0.125, .k6 = -2.0};
   made.sensor.optics = pinhole;
   made.sensor.name = "bad \xFF utf-8 \"quoted\"\n";
-  const nlohmann::json told = sidecar_of(made);
-  EXPECT_EQ(told.at("glidar"), version());
-  EXPECT_EQ(told.at("renderer"), "rays");
-  EXPECT_EQ(told.at("seed"), made.frame.seed);
-  EXPECT_EQ(told.at("stamp_ns"), made.frame.stamp_ns);
-  EXPECT_EQ(told.at("sensor").at("optics").at("fx"), 123.25);
-  EXPECT_EQ(told.at("sensor").at("optics").at("distortion").at("model"), "radial_tangential");
-  EXPECT_EQ(told.at("sensor").at("optics").at("distortion").at("k6"), -2.0);
-  EXPECT_TRUE(told.at("sensor").at("limits").at("far_m").is_null());
-  EXPECT_EQ(told.at("sensor").at("world_from_sensor").at("position_m"),
+  const nlohmann::json reported = sidecar_of(made);
+  EXPECT_EQ(reported.at("glidar"), version());
+  EXPECT_EQ(reported.at("renderer"), "rays");
+  EXPECT_EQ(reported.at("seed"), made.frame.seed);
+  EXPECT_EQ(reported.at("stamp_ns"), made.frame.stamp_ns);
+  EXPECT_EQ(reported.at("sensor").at("optics").at("fx"), 123.25);
+  EXPECT_EQ(reported.at("sensor").at("optics").at("distortion").at("model"), "radial_tangential");
+  EXPECT_EQ(reported.at("sensor").at("optics").at("distortion").at("k6"), -2.0);
+  EXPECT_TRUE(reported.at("sensor").at("limits").at("far_m").is_null());
+  EXPECT_EQ(reported.at("sensor").at("world_from_sensor").at("position_m"),
             nlohmann::json({1.0, 2.0, 3.0}));
-  EXPECT_EQ(told.at("sensor").at("world_from_sensor").at("orientation").at("y"), -0.5);
-  EXPECT_EQ(told.at("sensor").at("world_from_sensor").at("matrix").at(0),
+  EXPECT_EQ(reported.at("sensor").at("world_from_sensor").at("orientation").at("y"), -0.5);
+  EXPECT_EQ(reported.at("sensor").at("world_from_sensor").at("matrix").at(0),
             nlohmann::json({0.0, -1.0, 0.0, 1.0}));
-  EXPECT_EQ(told.at("cloud").at("frame_id"), "map");
+  EXPECT_EQ(reported.at("cloud").at("frame_id"), "map");
   EXPECT_EQ(
-      told.at("cloud").at("columns").at(0),
+      reported.at("cloud").at("columns").at(0),
       nlohmann::json::parse(R"({"name": "xyz", "type": "f32", "components": ["x", "y", "z"]})"));
-  EXPECT_EQ(told.at("instances").at(0).at("model_hash"), "0123abcd");
-  EXPECT_EQ(told.at("instances").at(0).at("scale"), 2.5);
-  EXPECT_EQ(told.at("instances").at(0).at("class"), "unlabelled");
-  EXPECT_EQ(told.at("beams_by_status").at("hit"), 14);
-  EXPECT_EQ(told.at("beams_by_status").at("miss"), 6);
+  EXPECT_EQ(reported.at("instances").at(0).at("model_hash"), "0123abcd");
+  EXPECT_EQ(reported.at("instances").at(0).at("scale"), 2.5);
+  EXPECT_EQ(reported.at("instances").at(0).at("class"), "unlabelled");
+  EXPECT_EQ(reported.at("beams_by_status").at("hit"), 14);
+  EXPECT_EQ(reported.at("beams_by_status").at("miss"), 6);
 }
 
 // readers_test.py compares the columns of every sidecar with the header of the file beside it.
@@ -270,8 +270,9 @@ TEST(Sidecar, ListsOnlyColumnsOfTheFile) {
 
 TEST(Sidecar, ListsNamesAndTypesAsStoredInTheFile) {
   const auto column = [](const char* file, std::size_t i) {
-    const nlohmann::json told = sidecar_of(make_fixture(), file).at("cloud").at("columns").at(i);
-    return told.at("type").get<std::string>() + " " + told.at("components").dump();
+    const nlohmann::json reported =
+        sidecar_of(make_fixture(), file).at("cloud").at("columns").at(i);
+    return reported.at("type").get<std::string>() + " " + reported.at("components").dump();
   };
   EXPECT_EQ(column("a.pcd", 2), R"(f32 ["depth"])");
   EXPECT_EQ(column("a.pcd", 4), R"(packed_rgb ["rgb"])");

@@ -71,10 +71,10 @@ std::vector<Ray> pinhole_rays(const nlohmann::json& p) {
 std::vector<Ray> lidar_rays(const nlohmann::json& p, std::size_t count) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   const std::size_t columns = count / p["elevation_deg"].size();
-  const Eigen::Vector3d told = vector(p["origin"]);
+  const Eigen::Vector3d reported = vector(p["origin"]);
   // Files of z up were turned to y up for the reference.
   const Eigen::Vector3d origin =
-      p["up_axis"] == "y" ? Eigen::Vector3d(told.x(), -told.z(), told.y()) : told;
+      p["up_axis"] == "y" ? Eigen::Vector3d(reported.x(), -reported.z(), reported.y()) : reported;
   std::vector<Ray> rays;
   for (const nlohmann::json& elevation_deg : p["elevation_deg"]) {
     const double elevation = elevation_deg.get<double>();

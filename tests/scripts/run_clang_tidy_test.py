@@ -74,8 +74,8 @@ class Grouping(unittest.TestCase):
         self.assertTrue((build / "tidy/0").exists())
         bad = self.source("glidar/c.cpp", BAD.format("c"))
         self.write_database(build, [*good, bad])
-        told = run_clang_tidy.check(build, [*good, bad], "1")
-        self.assertRegex(told, r"glidar/c\.cpp:2:22: error: parameter 'unused' is unused")
+        reported = run_clang_tidy.check(build, [*good, bad], "1")
+        self.assertRegex(reported, r"glidar/c\.cpp:2:22: error: parameter 'unused' is unused")
         self.assertFalse((build / "tidy/1").exists())
 
     @unittest.skipIf(shutil.which("clang-tidy") is None, "no clang-tidy")

@@ -184,16 +184,16 @@ TEST(MovingCast, ReportsProgressOverAllBodies) {
     stage.motion.world_from_instance[i] = ConstantTwist{
         .pose = stage.scene.instances[i].world_from_object, .angular_rad_s = {1.0, 2.0, -1.5}};
   }
-  std::vector<double> told;
+  std::vector<double> reported;
   testing::SimulationInputs inputs = stage.inputs();
-  inputs.progress = [&](double fraction) { told.push_back(fraction); };
+  inputs.progress = [&](double fraction) { reported.push_back(fraction); };
   Frame frame;
   testing::simulate(inputs, kAllHitColumns, frame);
-  ASSERT_GE(told.size(), 3U);  // three bodies, each reported at least at its end
-  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-  EXPECT_GE(told.front(), 0.0);
-  EXPECT_LE(told.front(), 1.0 / 3.0 + 1e-12);
-  EXPECT_DOUBLE_EQ(told.back(), 1.0);
+  ASSERT_GE(reported.size(), 3U);  // three bodies, each reported at least at its end
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+  EXPECT_GE(reported.front(), 0.0);
+  EXPECT_LE(reported.front(), 1.0 / 3.0 + 1e-12);
+  EXPECT_DOUBLE_EQ(reported.back(), 1.0);
 }
 
 TEST(MovingCast, AllocatesNothingInTheSteadyState) {

@@ -211,20 +211,20 @@ TEST(Simulate, AllocatesNothingInTheSteadyStateForOverlappingPartsOfMeshes) {
 
 TEST(Simulate, ReportsProgressAndMeasuresTheSame) {
   Stage stage(512);
-  std::vector<double> told;
+  std::vector<double> reported;
   Frame frame;
   testing::simulate({.scene = stage.scene,
                      .sensor = stage.sensor,
                      .beams = stage.beams,
                      .motion = stage.motion,
                      .renderer = *stage.renderer,
-                     .progress = [&](double fraction) { told.push_back(fraction); }},
+                     .progress = [&](double fraction) { reported.push_back(fraction); }},
                     {}, frame);
-  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-  EXPECT_GT(told.size(), 5U);
-  EXPECT_GT(told.front(), 0.0);
-  EXPECT_LT(told.front(), 0.5);
-  EXPECT_EQ(told.back(), 1.0);
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+  EXPECT_GT(reported.size(), 5U);
+  EXPECT_GT(reported.front(), 0.0);
+  EXPECT_LT(reported.front(), 0.5);
+  EXPECT_EQ(reported.back(), 1.0);
   const Frame silent = stage.shoot();
   EXPECT_EQ(std::memcmp(frame.range_m.data(), silent.range_m.data(),
                         silent.range_m.size() * sizeof(double)),

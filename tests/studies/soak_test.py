@@ -62,14 +62,14 @@ class SoakTest(unittest.TestCase):
         self.assertEqual(run.findings.errors, ["glidar ended before its time"])
 
     def test_memory_that_grows_is_a_fault(self):
-        self.assertEqual(soak.judge(findings(), memory(0.0)), [])
-        self.assertEqual(soak.judge(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800)), [])
-        errors = soak.judge(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800))
+        self.assertEqual(soak.find_errors(findings(), memory(0.0)), [])
+        self.assertEqual(soak.find_errors(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800)), [])
+        errors = soak.find_errors(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800))
         self.assertEqual(len(errors), 1)
         self.assertIn("lock-step: memory grew by 2.2 MB", errors[0])
 
     def test_a_client_that_does_nothing_is_a_fault(self):
-        self.assertEqual(soak.judge(soak.Findings(), memory(0.0)), ["a client did nothing"])
+        self.assertEqual(soak.find_errors(soak.Findings(), memory(0.0)), ["a client did nothing"])
 
 
 if __name__ == "__main__":

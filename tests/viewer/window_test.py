@@ -271,8 +271,8 @@ class ScreenshotTest(DisplayTest):
 
     def test_frames_are_the_sensors_frames_and_repeatable(self):
         arguments = ("builtin:asteroid", "--object-rate", "0,2,0", "--frames", "7")
-        first, told = self.shoot(*arguments)
-        self.assertIn("7 frames in", told)
+        first, reported = self.shoot(*arguments)
+        self.assertIn("7 frames in", reported)
         second, _ = self.shoot(*arguments)
         self.assertEqual(difference(first.crop((290, 20, 1280, 640)),
                                     second.crop((290, 20, 1280, 640))), 0.0)

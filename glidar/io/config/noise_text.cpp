@@ -7,9 +7,9 @@
 namespace glidar {
 
 std::string noise_text(const NoiseStep& step) {
-  const nlohmann::ordered_json told = write_struct(FieldVisitor::Mode::report, step);
+  const nlohmann::ordered_json json = write_struct(FieldVisitor::Mode::report, step);
   std::string text;
-  for (const auto& [key, value] : told.items()) {
+  for (const auto& [key, value] : json.items()) {
     if (key == "type") {
       text = value.get<std::string>();
       continue;

@@ -161,7 +161,7 @@ std::vector<std::string> columns_of(const Layout& layout) {
   return columns;
 }
 
-PointFieldLayout told(const Layout& layout) {
+PointFieldLayout public_layout(const Layout& layout) {
   std::string text = layout.whose + ":";
   for (const LayoutField& field : layout.fields) text += " " + field.name;
   return {layout.name, text, columns_of(layout)};
@@ -295,7 +295,7 @@ std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& senso
 std::span<const PointFieldLayout> cloud_layouts() {
   static const std::vector<PointFieldLayout> kTold = [] {
     std::vector<PointFieldLayout> all;
-    for (const Layout& layout : layouts()) all.push_back(told(layout));
+    for (const Layout& layout : layouts()) all.push_back(public_layout(layout));
     return all;
   }();
   return kTold;

@@ -170,7 +170,7 @@ class FormatSink : public FileSink {
     if (options_.layout.empty() || !format_.info.takes_more) {
       const std::vector<PointField> fields = fields_of(cloud);
       store({cloud, frame, options_, context_, fields, {}, format_.pixels});
-      tell(
+      warn_rounding(
           rounding_warning(fields, "write .npz, .csv or .ply, which store distant points exactly"));
       return;
     }
@@ -178,8 +178,8 @@ class FormatSink : public FileSink {
     const std::vector<PointField> fields = native_fields(laid);
     store({laid, frame, options_, context_, fields, options_.layout, {}});
     const std::array points = {PointField{"x", find_column(cloud, "xyz"), 0, Stored::f32}};
-    tell(rounding_warning(points,
-                          "without a layout .npz, .csv and .ply store distant points exactly"));
+    warn_rounding(rounding_warning(
+        points, "without a layout .npz, .csv and .ply store distant points exactly"));
   }
 
   /// All files are complete before the first is renamed. The cloud's file is renamed last, so
@@ -200,7 +200,7 @@ class FormatSink : public FileSink {
     sidecar.finish();
   }
 
-  void tell(const std::string& warning) const {
+  void warn_rounding(const std::string& warning) const {
     if (!warning.empty()) report_.warn(target_.path.string() + ": " + warning);
   }
 

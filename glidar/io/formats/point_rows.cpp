@@ -170,7 +170,7 @@ void append_row(fmt::memory_buffer& text, std::span<const PointField> fields, co
   text.push_back('\n');
 }
 
-void tell(const ProgressCallback& progress, std::size_t done, std::size_t count) {
+void report_progress(const ProgressCallback& progress, std::size_t done, std::size_t count) {
   if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
 }
 
@@ -260,7 +260,7 @@ void write_binary_rows(std::span<const PointField> fields, std::size_t count, At
     pack_rows(fields, first, now, rows);
     file.take(now * stride);
     first += now;
-    tell(progress, first, count);
+    report_progress(progress, first, count);
   }
 }
 
@@ -277,7 +277,7 @@ void write_text_rows(std::span<const PointField> fields, std::size_t count, char
     for (std::size_t i = 0; i < now; ++i)
       append_row(text, fields, rows.data() + i * stride, separator);
     file.write(std::string_view(text.data(), text.size()));
-    tell(progress, first + now, count);
+    report_progress(progress, first + now, count);
   }
 }
 

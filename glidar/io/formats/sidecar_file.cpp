@@ -115,17 +115,17 @@ Json instances_json(const CloudFile& job) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const MeshSource& source = scene.sources.at(instance.mesh);
-    Json told = {{"name", instance.name},
-                 {"id", instance.id},
-                 {"class_id", instance.class_id},
-                 {"class", scene.class_names.at(instance.class_id)},
-                 {"model", source.path},
-                 {"model_hash", source.hash.empty() ? Json() : Json(source.hash)},
-                 {"metres_per_unit", source.metres_per_unit},
-                 {"up", source.up.empty() ? Json() : Json(source.up)},
-                 {"scale", scale_json(instance, source)}};
-    told["world_from_object"] = pose_json(job.frame.world_from_instance.at(i));
-    instances.push_back(told);
+    Json entry = {{"name", instance.name},
+                  {"id", instance.id},
+                  {"class_id", instance.class_id},
+                  {"class", scene.class_names.at(instance.class_id)},
+                  {"model", source.path},
+                  {"model_hash", source.hash.empty() ? Json() : Json(source.hash)},
+                  {"metres_per_unit", source.metres_per_unit},
+                  {"up", source.up.empty() ? Json() : Json(source.up)},
+                  {"scale", scale_json(instance, source)}};
+    entry["world_from_object"] = pose_json(job.frame.world_from_instance.at(i));
+    instances.push_back(entry);
   }
   return instances;
 }
@@ -138,12 +138,12 @@ Json status_json(const Frame& frame) {
   for (std::size_t i = 0; i < frame.status.size(); ++i)
     ++counts[i % kLanes][static_cast<std::size_t>(frame.status[i])];
   constexpr auto kLast = static_cast<std::size_t>(Status::no_return_of_rank);
-  Json told = Json::object();
+  Json by_name = Json::object();
   for (std::size_t s = 0; s <= kLast; ++s) {
-    told[std::string(name(static_cast<Status>(s)))] =
+    by_name[std::string(name(static_cast<Status>(s)))] =
         counts[0][s] + counts[1][s] + counts[2][s] + counts[3][s];
   }
-  return told;
+  return by_name;
 }
 
 Json command_json(const CommandRecord& command, const std::filesystem::path& path) {

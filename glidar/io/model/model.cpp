@@ -143,7 +143,7 @@ void drop_unused(Scene& scene, std::uint32_t mesh) {
   for (MeshSource& source : scene.sources) move_up(source.unstretched);
 }
 
-void tell(const Model& model, const Report& report) {
+void report_contents(const Model& model, const Report& report) {
   for (const std::string& note : model.notes) report.info(model.source + ": " + note);
   if (model.missing_textures.empty()) return;
   std::string text = model.source + ": textures missing:";
@@ -174,7 +174,7 @@ Model load_model(const std::string& source, const ModelOptions& options, const R
   model.from_cache = loaded.from_cache;
   model.mesh.name = fs::path(source).stem().string();
   place(model, options);
-  tell(model, report);
+  report_contents(model, report);
   return model;
 }
 

@@ -76,19 +76,19 @@ std::vector<bool> used_plainly(const Mesh& mesh, const std::vector<FaceTangent>&
 /// Returns for every vertex whether its uvs are mirrored.
 std::vector<bool> split_mirrored(Mesh& mesh, const std::vector<FaceTangent>& faces) {
   const std::vector<bool> plain = used_plainly(mesh, faces);
-  std::vector<std::uint32_t> twin(plain.size(), kNone);
+  std::vector<std::uint32_t> repeated(plain.size(), kNone);
   std::vector<bool> mirrored(plain.size(), false);
-  const auto twin_of = [&](std::uint32_t v) {
-    if (plain[v] && twin[v] == kNone) {
-      twin[v] = repeat_vertex(mesh, v);
+  const auto repeat_of = [&](std::uint32_t v) {
+    if (plain[v] && repeated[v] == kNone) {
+      repeated[v] = repeat_vertex(mesh, v);
       mirrored.push_back(true);
     }
     if (!plain[v]) mirrored[v] = true;
-    return plain[v] ? twin[v] : v;
+    return plain[v] ? repeated[v] : v;
   };
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (!faces[f].mirrored) continue;
-    for (std::uint32_t& v : mesh.triangles[f]) v = twin_of(v);
+    for (std::uint32_t& v : mesh.triangles[f]) v = repeat_of(v);
   }
   return mirrored;
 }

@@ -26,9 +26,9 @@ bool is_space(char c) {
 }
 
 std::string trimmed(std::string_view text) {
-  const auto dull = [](char c) { return is_space(c) || c == '"'; };
-  while (!text.empty() && dull(text.front())) text.remove_prefix(1);
-  while (!text.empty() && dull(text.back())) text.remove_suffix(1);
+  const auto is_ignored = [](char c) { return is_space(c) || c == '"'; };
+  while (!text.empty() && is_ignored(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_ignored(text.back())) text.remove_suffix(1);
   return std::string(text);
 }
 

@@ -334,19 +334,19 @@ void select_returns(const Receiver& receiver, std::span<const PulseEcho> echoes,
               return echoes[a].signal != echoes[b].signal ? echoes[a].signal > echoes[b].signal
                                                           : a < b;
             });
-  const auto is_told = [&](int index, std::size_t before) {
+  const auto is_reported = [&](int index, std::size_t before) {
     return std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(before), index) !=
            chosen.begin() + static_cast<std::ptrdiff_t>(before);
   };
-  const auto strongest_untold = [&](std::size_t before) {
+  const auto strongest_unreported = [&](std::size_t before) {
     const auto end = by_strength.begin() + static_cast<std::ptrdiff_t>(echoes.size());
-    const auto found =
-        std::find_if(by_strength.begin(), end, [&](int echo) { return !is_told(echo, before); });
+    const auto found = std::find_if(by_strength.begin(), end,
+                                    [&](int echo) { return !is_reported(echo, before); });
     return found == end ? -1 : static_cast<int>(*found);
   };
   for (std::size_t r = 0; r < count; ++r) {
     int index = find_return(receiver.returns[r], echoes, by_strength);
-    if (index >= 0 && is_told(index, r)) index = strongest_untold(r);
+    if (index >= 0 && is_reported(index, r)) index = strongest_unreported(r);
     chosen[r] = index;
   }
 }

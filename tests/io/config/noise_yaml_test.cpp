@@ -78,36 +78,36 @@ TEST(NoiseYaml, ConvertsUnits) {
 }
 
 TEST(NoiseYaml, TellsInTheSidecarWhatTheFileSays) {
-  const nlohmann::ordered_json told = report(read(kEvery));
+  const nlohmann::ordered_json reported = report(read(kEvery));
   const auto near = [](const nlohmann::ordered_json& value, double expected) {
     EXPECT_NEAR(value.get<double>(), expected, 1e-12 * std::abs(expected));
   };
-  EXPECT_EQ(told[0].at("type"), "range_gaussian");
-  near(told[0].at("sigma_m"), 0.02);
-  near(told[2].at("pulse_fwhm_ns"), 5.0);
-  EXPECT_EQ(told[4].at("distribution"), "normal");
-  EXPECT_EQ(told[7].at("per_ring"), true);
-  near(told[8].at("by_incidence_deg")[1][0], 90.0);
-  EXPECT_EQ(told[12].at("window"), 7);
-  near(told[18].at("frequencies_hz")[1], 16e6);
-  EXPECT_EQ(told[20].at("kind"), "vendor");
-  near(told[22].at("phase_deg"), 45.0);
+  EXPECT_EQ(reported[0].at("type"), "range_gaussian");
+  near(reported[0].at("sigma_m"), 0.02);
+  near(reported[2].at("pulse_fwhm_ns"), 5.0);
+  EXPECT_EQ(reported[4].at("distribution"), "normal");
+  EXPECT_EQ(reported[7].at("per_ring"), true);
+  near(reported[8].at("by_incidence_deg")[1][0], 90.0);
+  EXPECT_EQ(reported[12].at("window"), 7);
+  near(reported[18].at("frequencies_hz")[1], 16e6);
+  EXPECT_EQ(reported[20].at("kind"), "vendor");
+  near(reported[22].at("phase_deg"), 45.0);
 }
 
 TEST(NoiseYaml, EveryNumberOfTheFileComesBackInTheSidecar) {
   const TestFolder folder;
   const YamlField file = read_yaml(folder.write("s.yaml", "noise:\n" + kEvery));
   const std::vector<YamlField> steps = items(need(file, "noise"));
-  const nlohmann::ordered_json told = report(read(kEvery));
+  const nlohmann::ordered_json reported = report(read(kEvery));
   for (std::size_t i = 0; i < steps.size(); ++i) {
     std::set<std::string> keys;
     for (const auto& [key, value] : entries(steps[i])) {
       keys.insert(key);
-      if (!told[i].at(key).is_number()) continue;
+      if (!reported[i].at(key).is_number()) continue;
       const double expected = number(value, kFinite);
-      EXPECT_NEAR(told[i].at(key).get<double>(), expected, 1e-12 * std::abs(expected)) << key;
+      EXPECT_NEAR(reported[i].at(key).get<double>(), expected, 1e-12 * std::abs(expected)) << key;
     }
-    for (const auto& [key, value] : told[i].items()) EXPECT_TRUE(keys.contains(key)) << key;
+    for (const auto& [key, value] : reported[i].items()) EXPECT_TRUE(keys.contains(key)) << key;
   }
 }
 

@@ -54,9 +54,9 @@ TEST(WeatherYaml, IsClearByDefault) {
 }
 
 TEST(WeatherYaml, ComesBackInTheSidecarAsTheFileSaysIt) {
-  const nlohmann::ordered_json told = write_struct(FieldVisitor::Mode::report, weather(kEvery));
+  const nlohmann::ordered_json reported = write_struct(FieldVisitor::Mode::report, weather(kEvery));
   EXPECT_EQ(
-      told.dump(),
+      reported.dump(),
       R"({"visibility_m":200.0,"visibility_kind":"mor","fog_model":"kruse",)"
       R"("fog_backscatter_per_sr":0.092,"fog_looks":4,"rain_mm_per_h":12.0,"rain_model":"goodin",)"
       R"("snow_mm_per_h":3.0,"snow_model":"sekhon_srivastava","min_signal":0.2})");

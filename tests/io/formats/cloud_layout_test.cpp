@@ -189,29 +189,29 @@ TEST(PointFieldLayout, TheSidecarListsTheLayoutAndItsFields) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   fixture::add_scan_columns(made.cloud);
-  const auto cloud_told = [&](const char* name) {
+  const auto cloud_json = [&](const char* name) {
     write_cloud(made, folder / name, {.layout = "velodyne"});
     return nlohmann::json::parse(file_bytes(folder / (std::string(name) + ".json"))).at("cloud");
   };
-  const nlohmann::json told = cloud_told("a.ply");
-  EXPECT_EQ(told.at("layout"), "velodyne");
-  EXPECT_EQ(told.at("columns").size(), 6U);
-  EXPECT_EQ(told.at("columns").at(4),
+  const nlohmann::json reported = cloud_json("a.ply");
+  EXPECT_EQ(reported.at("layout"), "velodyne");
+  EXPECT_EQ(reported.at("columns").size(), 6U);
+  EXPECT_EQ(reported.at("columns").at(4),
             nlohmann::json::parse(R"({"name": "ring", "type": "u16", "components": ["ring"]})"));
-  EXPECT_TRUE(cloud_told("a.bin").at("layout").is_null()) << "a format with fields of its own";
+  EXPECT_TRUE(cloud_json("a.bin").at("layout").is_null()) << "a format with fields of its own";
 }
 
 TEST(PointFieldLayout, DistantPointsCauseAWarning) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   std::get<std::vector<double>>(made.cloud.columns[0].values)[0] = 10000.0004;
-  std::string told;
-  const Report report{[&told](Severity, std::string_view text) { told += text; }, {}};
+  std::string reported;
+  const Report report{[&reported](Severity, std::string_view text) { reported += text; }, {}};
   const SidecarContext context = made.context();
   make_file_sink(folder / "a.npz", {.layout = "minimal"}, context, report)
       ->write(made.cloud, made.frame);
-  EXPECT_THAT(told, AllOf(HasSubstr("moves its points by up to 0.0004 m"),
-                          HasSubstr("without a layout .npz")));
+  EXPECT_THAT(reported, AllOf(HasSubstr("moves its points by up to 0.0004 m"),
+                              HasSubstr("without a layout .npz")));
 }
 
 }  // namespace

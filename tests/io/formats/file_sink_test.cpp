@@ -175,9 +175,9 @@ TEST(FileSink, SidecarsOfImagesDescribeThePixels) {
   for (const char* name : {"a.npy", "a.depth.png", "a.depth.tiff", "a.rgb.png", "a.normal.png",
                            "a.instance.png", "a.class.png"}) {
     write_cloud(made, folder / name, {.depth_png_units_per_m = 2000.0});
-    const auto told = nlohmann::json::parse(file_bytes(folder / (std::string(name) + ".json")));
-    EXPECT_FALSE(told.at("cloud").at("image").at("pixels").get<std::string>().empty()) << name;
-    const auto& info = told.at("sensor").at("camera_info");
+    const auto reported = nlohmann::json::parse(file_bytes(folder / (std::string(name) + ".json")));
+    EXPECT_FALSE(reported.at("cloud").at("image").at("pixels").get<std::string>().empty()) << name;
+    const auto& info = reported.at("sensor").at("camera_info");
     EXPECT_EQ(info.at("k"), nlohmann::json::parse("[10.0,0.0,2.0, 0.0,11.0,1.5, 0.0,0.0,1.0]"));
     EXPECT_EQ(info.at("d"), nlohmann::json::parse("[0.25,0.0,0.5,0.0,0.125]"));
     EXPECT_EQ(info.at("distortion_model"), "plumb_bob");
@@ -281,38 +281,38 @@ TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
 }
 
 /// What is reported when a cloud whose first coordinate and depth are these is written.
-std::string told_of(const char* name, double x_m, double depth_m) {
+std::string warnings_of(const char* name, double x_m, double depth_m) {
   const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   std::get<std::vector<double>>(made.cloud.columns[0].values)[0] = x_m;
   std::get<std::vector<double>>(made.cloud.columns[2].values)[0] = depth_m;
-  std::string told;
-  const Report report{[&told](Severity severity, std::string_view text) {
+  std::string reported;
+  const Report report{[&reported](Severity severity, std::string_view text) {
                         EXPECT_EQ(severity, Severity::warning);
-                        told += text;
+                        reported += text;
                       },
                       {}};
   const SidecarContext context = made.context();
   make_file_sink(folder / name, {}, context, report)->write(made.cloud, made.frame);
-  return told;
+  return reported;
 }
 
 TEST(FileSink, PointsMovedByRoundingAreReportedWithDistanceAndRemedy) {
   // Floats near 10 km are 0.977 mm apart.
-  EXPECT_THAT(told_of("a.bin", 10000.0004, 1.0),
+  EXPECT_THAT(warnings_of("a.bin", 10000.0004, 1.0),
               AllOf(HasSubstr("a.bin: rounding to float32 moves its points by up to 0.0004 m"),
                     HasSubstr("write .npz, .csv or .ply")));
-  EXPECT_THAT(told_of("a.npy", 1.0, 10000.0004), HasSubstr("its depth by up to 0.0004 m"));
+  EXPECT_THAT(warnings_of("a.npy", 1.0, 10000.0004), HasSubstr("its depth by up to 0.0004 m"));
 }
 
 TEST(FileSink, RoundingBelowATenthOfAMillimetreCausesNoWarning) {
   for (const char* name : {"a.bin", "a.npy", "a.pcd"}) {
-    EXPECT_EQ(told_of(name, 2000.0001, 2000.0001), "") << name;
-    EXPECT_EQ(told_of(name, 4096.0, 4096.0), "") << name;
-    EXPECT_EQ(told_of(name, 3000.00005, 3000.00005), "") << name;
+    EXPECT_EQ(warnings_of(name, 2000.0001, 2000.0001), "") << name;
+    EXPECT_EQ(warnings_of(name, 4096.0, 4096.0), "") << name;
+    EXPECT_EQ(warnings_of(name, 3000.00005, 3000.00005), "") << name;
   }
   for (const char* name : {"a.ply", "a.npz", "a.csv"})
-    EXPECT_EQ(told_of(name, 10000.0004, 10000.0004), "") << name;
+    EXPECT_EQ(warnings_of(name, 10000.0004, 10000.0004), "") << name;
 }
 
 TEST(FileSink, ConcurrentSinksOfOnePathLeaveACompleteFile) {
@@ -335,8 +335,8 @@ TEST(FileSink, PathsMayContainSpacesAndAnyCharacters) {
   const std::string name = "größe mit leer — 点群 'q\".pcd";
   write_cloud(make_fixture(), folder / name);
   EXPECT_FALSE(file_bytes(folder / name).empty());
-  const auto told = nlohmann::json::parse(file_bytes(folder / (name + ".json")));
-  EXPECT_EQ(told.at("cloud").at("file"), name);
+  const auto reported = nlohmann::json::parse(file_bytes(folder / (name + ".json")));
+  EXPECT_EQ(reported.at("cloud").at("file"), name);
 }
 
 TEST(FileSink, ABareFileNameIsWrittenToTheCurrentFolder) {

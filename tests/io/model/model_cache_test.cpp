@@ -161,11 +161,11 @@ TEST_F(ModelCache, AnUpgradedImporterLibraryInvalidatesTheEntry) {
 
 TEST_F(ModelCache, AnUnwritableFolderCausesOnlyAWarning) {
   cache_.write("models", "a file in its place");
-  std::string told;
-  const Report report{[&told](Severity, std::string_view text) { told += text; }, {}};
+  std::string reported;
+  const Report report{[&reported](Severity, std::string_view text) { reported += text; }, {}};
   const Model model = load_model(file_.string(), options_, report);
   EXPECT_EQ(model.mesh.triangles.size(), 2U);
-  EXPECT_THAT(told, HasSubstr("cache"));
+  EXPECT_THAT(reported, HasSubstr("cache"));
 }
 
 /// A cache entry is one piece: the index of one model and the mesh of another are no model.

@@ -147,8 +147,8 @@ TEST(LoadModel, MaterialsTexturesAndTheirOptions) {
              "newmtl paint\nKd 0.5 0.25 1\nKs 1 1 1\nNs 500\nillum 2\n"
              "map_Kd -s 2 3 1 -o 0.5 0.25 paint.ppm\nmap_Ks gone.ppm\n");
   temp.write("paint.ppm", testing::ppm(2, 2, "abc"));
-  std::string told;
-  const Report report{[&told](Severity, std::string_view text) { told += text; }, {}};
+  std::string reported;
+  const Report report{[&reported](Severity, std::string_view text) { reported += text; }, {}};
   const Model model =
       load_model(temp.write("a.obj", testing::quad_obj("a.mtl")).string(), without_cache(), report);
   ASSERT_EQ(model.materials.size(), 1U);
@@ -166,7 +166,7 @@ TEST(LoadModel, MaterialsTexturesAndTheirOptions) {
   ASSERT_EQ(model.missing_textures.size(), 1U);
   EXPECT_EQ(model.missing_textures[0].name, "gone.ppm");
   EXPECT_EQ(model.missing_textures[0].reason, "not found");
-  EXPECT_THAT(told, HasSubstr("gone.ppm"));
+  EXPECT_THAT(reported, HasSubstr("gone.ppm"));
 }
 
 TEST(LoadModel, AnOpacityTextureBecomesACutOut) {

@@ -308,14 +308,14 @@ class Formats(unittest.TestCase):
 
     def test_sidecar(self):
         for path, _, rows, cols in self.each("a.pcd", "dense1.ply", "a.bin"):
-            told = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
-            self.assertEqual((told["cloud"]["rows"], told["cloud"]["cols"]), (rows, cols))
-            self.assertEqual(told["cloud"]["file"], path.name)
+            reported = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
+            self.assertEqual((reported["cloud"]["rows"], reported["cloud"]["cols"]), (rows, cols))
+            self.assertEqual(reported["cloud"]["file"], path.name)
 
     def told_columns(self, path):
         """The sidecar's (name, type, components)."""
-        told = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
-        return [(c["name"], c["type"], c["components"]) for c in told["cloud"]["columns"]]
+        reported = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
+        return [(c["name"], c["type"], c["components"]) for c in reported["cloud"]["columns"]]
 
     def test_sidecars_name_every_field_of_the_file_with_its_type(self):
         types = {"f4": "f32", "f8": "f64", "u1": "u8", "u2": "u16", "u4": "u32", "i8": "i64"}
@@ -326,14 +326,14 @@ class Formats(unittest.TestCase):
             found = [(n, types[points.dtype[n].str[1:]]) for n in points.dtype.names]
             # PCD has no type of its own for colour: float in binary files, integer in text
             found = [(n, "packed_rgb" if n == "rgb" else t) for n, t in found]
-            told = [(n, t) for _, t, names in self.told_columns(path) for n in names]
-            self.assertEqual(told, found, path)
+            reported = [(n, t) for _, t, names in self.told_columns(path) for n in names]
+            self.assertEqual(reported, found, path)
 
     def test_sidecars_of_csv_npz_and_kitti_tell_what_is_there(self):
         sizes = {"f32": 4, "f64": 8, "u8": 1, "u16": 2, "u32": 4}
         for path, *_ in self.each("a.csv"):
-            told = [n for _, _, names in self.told_columns(path) for n in names]
-            self.assertEqual(told, path.read_text("ascii").splitlines()[0].split(","))
+            reported = [n for _, _, names in self.told_columns(path) for n in names]
+            self.assertEqual(reported, path.read_text("ascii").splitlines()[0].split(","))
         for path, *_ in self.each("a.npz", "dense1.npz"):
             with np.load(path, allow_pickle=False) as arrays:
                 for name, kind, components in self.told_columns(path):

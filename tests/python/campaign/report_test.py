@@ -128,8 +128,8 @@ def test_a_report_is_written_atomically(campaign):
 
     (campaign.folder / "own").mkdir()
     (campaign.folder / "own" / "report.html").write_text("before")
-    told = campaign.call("report", "out", "-o", "own/report.html", code=2, preexec_fn=limit)
-    assert "cannot be written" in told
+    reported = campaign.call("report", "out", "-o", "own/report.html", code=2, preexec_fn=limit)
+    assert "cannot be written" in reported
     assert [p.read_text() for p in (campaign.folder / "own").iterdir()] == ["before"]
     assert "<!doctype html>" in campaign.call("report", "out", "-o", "/dev/stdout")
 
