@@ -42,9 +42,9 @@ optics:
   EXPECT_EQ(sensor.limits.along, Limits::Along::depth);
   const auto& s = std::get<Spinning>(sensor.optics);
   EXPECT_EQ(s.rotation_hz, 20.0);
-  EXPECT_EQ(s.turn, Spinning::Turn::counterclockwise);
+  EXPECT_EQ(s.rotation_direction, Spinning::RotationDirection::counterclockwise);
   EXPECT_DOUBLE_EQ(s.start_azimuth_rad, 90 * kDegree);
-  EXPECT_EQ(s.sequence_ns, 50'000.0);
+  EXPECT_EQ(s.firing_period_ns, 50'000.0);
   ASSERT_EQ(s.channels.size(), 2U);
   EXPECT_DOUBLE_EQ(s.channels[0].elevation_rad, -10 * kDegree);
   EXPECT_DOUBLE_EQ(s.channels[1].azimuth_offset_rad, 2 * kDegree);  // right is negative
@@ -52,8 +52,8 @@ optics:
   EXPECT_EQ(s.channels[1].ring, 1U);
   EXPECT_TRUE(s.channels[1].origin_m.isApprox(Eigen::Vector3d(0.001, 0.003, 0.004)));
   EXPECT_DOUBLE_EQ(s.beam_origin_m, 0.015);
-  EXPECT_DOUBLE_EQ(s.sector_start_rad, -60 * kDegree);
-  EXPECT_DOUBLE_EQ(s.sector_width_rad, 90 * kDegree);
+  EXPECT_DOUBLE_EQ(s.azimuth_start_rad, -60 * kDegree);
+  EXPECT_DOUBLE_EQ(s.azimuth_width_rad, 90 * kDegree);
 }
 
 TEST(LidarFile, ReadsRastersAndPrisms) {

@@ -13,7 +13,7 @@ Sensor scanner() {
   sensor.rate_hz = 10.0;
   Spinning& spinning = sensor.optics.emplace<Spinning>();
   spinning.channels = {{.elevation_rad = 0.1}, {.elevation_rad = -0.1, .ring = 1}};
-  spinning.sequence_ns = 700'000.0;
+  spinning.firing_period_ns = 700'000.0;
   return sensor;
 }
 

@@ -79,7 +79,7 @@ TEST(Recording, OfAVlp16HasTheSimulatedTimesAndAzimuths) {
 
   Spinning simulated;
   simulated.channels.resize(1);
-  simulated.sequence_ns = 55'296.0;
+  simulated.firing_period_ns = 55'296.0;
   simulated.rotation_hz = passed_deg / 360.0 / (1e-6 * passed_us);
   EXPECT_NEAR(simulated.rotation_hz, 10.0, 0.2);  // the unit ran at 600 turns a minute
   const Beams beams = make_beams(simulated, {0, 1'000'000'000});

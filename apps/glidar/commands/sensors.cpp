@@ -110,7 +110,7 @@ void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
   }
   const auto* spinning = std::get_if<Spinning>(&sensor.optics);
   const bool whole_turn =
-      spinning != nullptr && spinning->sector_width_rad >= 2.0 * std::numbers::pi;
+      spinning != nullptr && spinning->azimuth_width_rad >= 2.0 * std::numbers::pi;
   summary.across_deg = whole_turn ? 360.0 : kDegreesPerRadian * std::max(0.0, high.x() - low.x());
   summary.upright_deg = kDegreesPerRadian * std::max(0.0, high.y() - low.y());
 }

@@ -88,7 +88,7 @@ void apply_scan(const SensorOptions& options, const SensorOptionNames& names, Se
                  .remedy = "leave it out, or choose a sensor that spins (glidar sensors)"});
   }
   spinning->columns_per_turn = static_cast<std::uint32_t>(columns);
-  spinning->sequence_ns = 0.0;  // the columns decide the time between firing sequences
+  spinning->firing_period_ns = 0.0;  // the columns decide the time between firing sequences
 }
 
 void apply_weather(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor) {

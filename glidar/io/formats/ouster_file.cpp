@@ -95,9 +95,9 @@ void apply_column_window(const nlohmann::json& all, const std::string& file, Spi
     fail(where, "a column that the mode does not have", "columns from 0 to below those of a turn");
   }
   const double count = std::fmod(last - first + columns, columns) + 1.0;
-  s.sector_width_rad = kTwoPi * count / columns;
+  s.azimuth_width_rad = kTwoPi * count / columns;
   // half a column beyond the last one, so that rounding cannot lose a column at either end
-  s.sector_start_rad = s.start_azimuth_rad - kTwoPi * (first + count - 0.5) / columns;
+  s.azimuth_start_rad = s.start_azimuth_rad - kTwoPi * (first + count - 0.5) / columns;
 }
 
 }  // namespace

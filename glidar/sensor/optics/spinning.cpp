@@ -35,8 +35,9 @@ void validate(const Spinning& s) {
                  "a finite angle");
   require_number(std::abs(s.beam_origin_m) <= 1e3, "optics, beam origin", s.beam_origin_m,
                  "-1000 to 1000 m");
-  require_number(std::isfinite(s.sector_start_rad) && s.sector_width_rad > 0.0, "optics, sector",
-                 s.sector_width_rad, "a finite start and a width above 0");
+  require_number(std::isfinite(s.azimuth_start_rad) && s.azimuth_width_rad > 0.0,
+                 "optics, azimuth_range", s.azimuth_width_rad,
+                 "a finite start and a width above 0");
   for (const SpinningChannel& channel : s.channels) validate(channel);
 }
 
@@ -57,11 +58,11 @@ double turn_fraction(const Spinning& s, std::int64_t k) {
     const auto columns = std::int64_t{s.columns_per_turn};
     return static_cast<double>(k % columns) / static_cast<double>(columns);
   }
-  return std::fmod(static_cast<double>(k) * s.sequence_ns * s.rotation_hz / kSecond_ns, 1.0);
+  return std::fmod(static_cast<double>(k) * s.firing_period_ns * s.rotation_hz / kSecond_ns, 1.0);
 }
 
 double rotation_sign(const Spinning& s) {
-  return s.turn == Spinning::Turn::clockwise ? -1.0 : 1.0;
+  return s.rotation_direction == Spinning::RotationDirection::clockwise ? -1.0 : 1.0;
 }
 
 /// Azimuth of the head at the start of sequence k.
@@ -70,9 +71,9 @@ double head_azimuth_rad(const Spinning& s, std::int64_t k) {
 }
 
 bool is_in_sector(const Spinning& s, double azimuth_rad) {
-  if (s.sector_width_rad >= kTwoPi) return true;
-  const double into = std::fmod(azimuth_rad - s.sector_start_rad, kTwoPi);
-  return (into < 0.0 ? into + kTwoPi : into) <= s.sector_width_rad;
+  if (s.azimuth_width_rad >= kTwoPi) return true;
+  const double into = std::fmod(azimuth_rad - s.azimuth_start_rad, kTwoPi);
+  return (into < 0.0 ? into + kTwoPi : into) <= s.azimuth_width_rad;
 }
 
 double first_firing_ns(const Spinning& s) {
@@ -137,18 +138,19 @@ void visit_column_timing(FieldVisitor& visitor, Spinning& s) {
   visitor.whole_number(
       {"columns_per_turn", "columns at equal angles", kNoUnit, false, "this or `firing_period_us`"},
       {1, kMaxColumnsPerTurn}, s.columns_per_turn);
-  double period_ns = s.columns_per_turn > 0 ? 0.0 : s.sequence_ns;
+  double period_ns = s.columns_per_turn > 0 ? 0.0 : s.firing_period_ns;
   if (visitor.is_report()) period_ns = sequence_period_ns(s);
   visitor.number({"firing_period_us", "time between firing sequences", kUnitMicrosecond_ns, false,
                   "this or `columns_per_turn`"},
                  {1e-3, 1e6, false, "microseconds from 0.001 to 1e6"}, period_ns);
-  if (visitor.is_reading()) s.sequence_ns = period_ns;
+  if (visitor.is_reading()) s.firing_period_ns = period_ns;
 }
 
 }  // namespace
 
 double sequence_period_ns(const Spinning& s) {
-  return s.columns_per_turn > 0 ? kSecond_ns / (s.rotation_hz * s.columns_per_turn) : s.sequence_ns;
+  return s.columns_per_turn > 0 ? kSecond_ns / (s.rotation_hz * s.columns_per_turn)
+                                : s.firing_period_ns;
 }
 
 Beams make_beams(const Spinning& s, const FrameInterval& interval) {
@@ -174,14 +176,15 @@ Beams make_beams(const Spinning& s, const FrameInterval& interval) {
 }
 
 void describe(Spinning& s, FieldVisitor& visitor) {
-  using Turn = Spinning::Turn;
-  constexpr std::array<Named<Turn>, 2> kTurns = {
-      {{"clockwise", Turn::clockwise}, {"counterclockwise", Turn::counterclockwise}}};
+  using Direction = Spinning::RotationDirection;
+  constexpr std::array<Named<Direction>, 2> kDirections = {
+      {{"clockwise", Direction::clockwise}, {"counterclockwise", Direction::counterclockwise}}};
   constexpr NumberRule kAzimuth = {-360.0, 360.0, false, "degrees from -360 to 360"};
   constexpr NumberRule kOffset = {-1e4, 1e4, false, "millimetres from -1e4 to 1e4"};
   if (visitor.is_report())
     visitor.number({"rotation_hz", "turns per second", kUnitHertz}, kAboveZero, s.rotation_hz);
-  visit_choice(visitor, {"rotation_direction", "rotation seen from above"}, kTurns, s.turn);
+  visit_choice(visitor, {"rotation_direction", "rotation seen from above"}, kDirections,
+               s.rotation_direction);
   visitor.number({"start_azimuth_deg", "direction of the head at time 0", kUnitDegree}, kAzimuth,
                  s.start_azimuth_rad);
   visit_column_timing(visitor, s);

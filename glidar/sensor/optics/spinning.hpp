@@ -26,25 +26,25 @@ struct SpinningChannel {
 /// A rotating head that fires all channels, sequence after sequence.
 struct Spinning {
   static constexpr TypeInfo kType = {"spinning", "a rotating LiDAR with one beam per channel"};
-  enum class Turn : std::uint8_t { clockwise, counterclockwise };  ///< seen from above
+  enum class RotationDirection : std::uint8_t { clockwise, counterclockwise };  ///< seen from above
 
   std::vector<SpinningChannel> channels;
   double rotation_hz = 10.0;  ///< revolutions per second
-  Turn turn = Turn::clockwise;
+  RotationDirection rotation_direction = RotationDirection::clockwise;
   double start_azimuth_rad = 0.0;  ///< azimuth of the head at time 0
   /// Firing sequences per revolution, triggered by the encoder at equal angles; 0: by a clock.
   std::uint32_t columns_per_turn = 0;
-  double sequence_ns = 0.0;  ///< period of the sequences, if triggered by a clock
+  double firing_period_ns = 0.0;  ///< period of the sequences, if triggered by a clock
   /// Distance of the beam origins from the axis along the head's azimuth; ranges are measured from
   /// the axis (Ouster: lidar_origin_to_beam_origin).
   double beam_origin_m = 0.0;
   /// Sequences fire only while the head's azimuth is in this sector: from its first azimuth, its
   /// width to the left.
-  double sector_start_rad = 0.0;
-  double sector_width_rad = 2.0 * std::numbers::pi;
+  double azimuth_start_rad = 0.0;
+  double azimuth_width_rad = 2.0 * std::numbers::pi;
 };
 
-/// Most columns of a turn.
+/// Maximum number of columns per turn.
 inline constexpr std::uint32_t kMaxColumnsPerTurn = 1U << 20U;
 
 /// Keys of `optics` in sensor files.

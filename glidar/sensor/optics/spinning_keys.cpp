@@ -116,14 +116,14 @@ struct SectorDegrees {
 
 /// The numbers in degrees that a reader converts into exactly this sector.
 std::optional<SectorDegrees> exact_degrees(const Spinning& s) {
-  const auto from_deg = find_exact_in(s.sector_start_rad, kDegree);
-  const auto width_deg = find_exact_in(s.sector_width_rad, kDegree);
+  const auto from_deg = find_exact_in(s.azimuth_start_rad, kDegree);
+  const auto width_deg = find_exact_in(s.azimuth_width_rad, kDegree);
   if (!from_deg || !width_deg) return std::nullopt;
   const SectorDegrees sector = {*from_deg, *from_deg + *width_deg};
   const double read_deg = sector.to - sector.from;
   const bool is_allowed = std::abs(sector.from) <= kTurn.max && std::abs(sector.to) <= kTurn.max &&
                           read_deg <= kTurn.max;
-  if (!is_allowed || read_deg * kDegree != s.sector_width_rad) return std::nullopt;
+  if (!is_allowed || read_deg * kDegree != s.azimuth_width_rad) return std::nullopt;
   return sector;
 }
 
@@ -132,9 +132,9 @@ void visit_sector_rad(FieldVisitor& visitor, bool is_required, Spinning& s) {
   constexpr NumberRule kWidth = {0.0, 6.2832, true, "radians above 0, up to a whole turn (6.2832)"};
   visitor.number(
       {"from_rad", "first azimuth, where `from_deg` is not exact", {"radians"}, is_required, ""},
-      kFrom, s.sector_start_rad);
+      kFrom, s.azimuth_start_rad);
   visitor.number({"width_rad", "width of the sector", {"radians"}, is_required, ""}, kWidth,
-                 s.sector_width_rad);
+                 s.azimuth_width_rad);
 }
 
 void visit_sector_deg(FieldVisitor& visitor, bool is_required, Spinning& s) {
@@ -152,14 +152,14 @@ void visit_sector_deg(FieldVisitor& visitor, bool is_required, Spinning& s) {
     visitor.reject("to_deg", "{}", "from_deg to from_deg + 360, counted to the left",
                    "add 360 when the sector reaches over the back");
   }
-  s.sector_start_rad = sector.from * kDegree;
-  s.sector_width_rad = width_deg * kDegree;
+  s.azimuth_start_rad = sector.from * kDegree;
+  s.azimuth_width_rad = width_deg * kDegree;
 }
 
 void visit_sector(FieldVisitor& visitor, Spinning& s) {
   if (visitor.is_report()) {
-    visitor.number({"from_deg", "", kUnitDegree}, kTurn, s.sector_start_rad);
-    return visitor.number({"width_deg", "", kUnitDegree}, kTurn, s.sector_width_rad);
+    visitor.number({"from_deg", "", kUnitDegree}, kTurn, s.azimuth_start_rad);
+    return visitor.number({"width_deg", "", kUnitDegree}, kTurn, s.azimuth_width_rad);
   }
   if (visitor.mode() == FieldVisitor::Mode::schema) {
     visit_sector_deg(visitor, false, s);
@@ -198,8 +198,8 @@ void visit_channels(FieldVisitor& visitor, std::vector<SpinningChannel>& channel
 
 void visit_azimuth_range(FieldVisitor& visitor, Spinning& spinning) {
   const Spinning whole_turn;
-  const bool is_whole = spinning.sector_start_rad == whole_turn.sector_start_rad &&
-                        spinning.sector_width_rad == whole_turn.sector_width_rad;
+  const bool is_whole = spinning.azimuth_start_rad == whole_turn.azimuth_start_rad &&
+                        spinning.azimuth_width_rad == whole_turn.azimuth_width_rad;
   const auto sector = [&](FieldVisitor& nested) { visit_sector(nested, spinning); };
   visitor.object({"azimuth_range", "measured azimuths", kNoUnit, false, "full circle"},
                  !visitor.is_document() || !is_whole, FieldVisitor::Describe(sector));

@@ -23,7 +23,7 @@ Spinning puck() {
     channel.ring = static_cast<std::uint16_t>(i);
     s.channels.push_back(channel);
   }
-  s.sequence_ns = 55296.0;
+  s.firing_period_ns = 55296.0;
   return s;
 }
 
@@ -77,7 +77,7 @@ TEST(Spinning, RowsHaveDecreasingElevation) {
 TEST(Spinning, RotatesCounterclockwiseWhenConfigured) {
   Spinning s = puck();
   const Beams right = make_beams(s, {0, kSecond_ns / 10});
-  s.turn = Spinning::Turn::counterclockwise;
+  s.rotation_direction = Spinning::RotationDirection::counterclockwise;
   const Beams left = make_beams(s, {0, kSecond_ns / 10});
   for (std::size_t i = 0; i < left.size(); ++i) {
     const Eigen::Vector3d mirrored = left.directions[i].cwiseProduct(Eigen::Vector3d(1, -1, 1));
@@ -111,8 +111,8 @@ TEST(Spinning, ColumnsOfATurnStayAtEqualAngles) {
 
 TEST(Spinning, FiresOnlyInItsSector) {
   Spinning s = puck();
-  s.sector_start_rad = -30.0 * kDegree;
-  s.sector_width_rad = 90.0 * kDegree;
+  s.azimuth_start_rad = -30.0 * kDegree;
+  s.azimuth_width_rad = 90.0 * kDegree;
   for (SpinningChannel& channel : s.channels) channel.fire_time_ns = 0.0;
   const Beams beams = make_beams(s, {0, kSecond_ns / 10});
   EXPECT_NEAR(beams.cols, 90.0 / 360.0 * 1e8 / 55296.0, 1.0);
@@ -195,7 +195,7 @@ TEST(Spinning, RejectsNumbersOutOfRange) {
   const FrameInterval turn = {0, kSecond_ns / 10};
   EXPECT_THROW(make_beams(Spinning{}, turn), Error);  // no channels
   Spinning s = puck();
-  s.sequence_ns = 0.0;
+  s.firing_period_ns = 0.0;
   EXPECT_THROW(make_beams(s, turn), Error);
   s = puck();
   s.rotation_hz = -1.0;
@@ -203,7 +203,7 @@ TEST(Spinning, RejectsNumbersOutOfRange) {
   s = puck();
   EXPECT_THROW(make_beams(s, {0, 5 * kSecond_ns}), Error);  // times in 32 bits
   EXPECT_THROW(make_beams(s, {10, 0}), Error);
-  s.sequence_ns = 1.0;  // more beams than memory
+  s.firing_period_ns = 1.0;  // more beams than memory
   EXPECT_THROW(make_beams(s, {0, kSecond_ns}), Error);
 }
 
