@@ -226,7 +226,8 @@ std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
   std::vector<double> numbers = field_values(cloud, layout, "intensity", 0);
   const Spelling spelling = spelling_of(sensor);
   if (spelling.vendor != nullptr) {
-    for (double& number : numbers) number = vendor_reflectance(number, spelling.vendor->largest);
+    for (double& number : numbers)
+      number = vendor_reflectance(number, spelling.vendor->max_reflectance);
   }
   if (spelling.is_reflectance) return numbers;
   const std::vector<double> ranges_m = field_values(cloud, layout, "range", 0);

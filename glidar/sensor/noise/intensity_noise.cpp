@@ -26,7 +26,7 @@ GLIDAR_SIMD void disturb(const IntensityGaussian& step, const Batch<double>& nor
 double scaled_intensity(const IntensityScale& step, double reflectance) {
   switch (step.kind) {
     case IntensityScale::Kind::vendor:
-      return vendor_intensity(reflectance, step.largest);
+      return vendor_intensity(reflectance, step.max_reflectance);
     case IntensityScale::Kind::plain:
       return reflectance;
     default:
@@ -36,16 +36,16 @@ double scaled_intensity(const IntensityScale& step, double reflectance) {
 
 }  // namespace
 
-double vendor_intensity(double reflectance, double largest) {
+double vendor_intensity(double reflectance, double max_reflectance) {
   if (!(reflectance > 0.0)) return 0.0;
   if (reflectance <= 1.0) return std::floor(100.0 * reflectance + 0.5);
-  const double share = portable_log(reflectance) / portable_log(largest);
+  const double share = portable_log(reflectance) / portable_log(max_reflectance);
   return 101.0 + std::floor(154.0 * std::min(share, 1.0) + 0.5);
 }
 
-double vendor_reflectance(double intensity, double largest) {
+double vendor_reflectance(double intensity, double max_reflectance) {
   if (!(intensity > 100.0)) return intensity / 100.0;
-  return portable_exp((intensity - 101.0) / 154.0 * portable_log(largest));
+  return portable_exp((intensity - 101.0) / 154.0 * portable_log(max_reflectance));
 }
 
 void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
@@ -76,7 +76,8 @@ void describe(IntensityScale& step, FieldVisitor& visitor) {
   visitor.number({"gain", "factor"}, kAboveZero, step.gain);
   visitor.number({"reference_m", "range of the range compensation; 0: none", kUnitMetre}, kFromZero,
                  step.reference_m);
-  visitor.number({"largest", "reflectance that `vendor` reports as 255"}, kAboveOne, step.largest);
+  visitor.number({"max_reflectance", "reflectance that `vendor` reports as 255"}, kAboveOne,
+                 step.max_reflectance);
   visit_choice(visitor, {"kind", "of the reported numbers"}, kNames, step.kind);
 }
 

@@ -104,7 +104,7 @@ TEST(SensorDocument, NoiseReadsBackTheSame) {
       "0.3",
       "intensity_gaussian, sigma: 0.01, relative: 0.003",
       "intensity_scale",
-      "intensity_scale, kind: vendor, gain: 1.1, reference_m: 0.3, largest: 255.5",
+      "intensity_scale, kind: vendor, gain: 1.1, reference_m: 0.3, max_reflectance: 255.5",
       "pointing_jitter, sigma_azimuth_deg: 0.013, sigma_elevation_deg: 0.007",
       "encoder_error, step_deg: 0.011, eccentricity_deg: 0.003, phase_deg: 77.7, turn_sigma_deg: "
       "0.017"};
