@@ -53,8 +53,8 @@ void measure_alone(benchmark::State& state, const View& view) {
 class Reader {
  public:
   Reader()
-      : socket_(context_, {.kind = link::SocketKind::subscribe,
-                           .largest_message_bytes = std::int64_t{1} << 30}) {
+      : socket_(context_,
+                {.kind = link::SocketKind::subscribe, .max_message_bytes = std::int64_t{1} << 30}) {
     socket_.subscribe("c");
     socket_.connect({"127.0.0.1", kPort});
     thread_ = std::thread([this] { run(); });

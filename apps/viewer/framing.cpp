@@ -83,8 +83,8 @@ std::optional<FieldOfView> field_of_view(const Beams& beams) {
     field.up = std::max(field.up, up);
     field.down = std::max(field.down, -up);
   }
-  const double least = std::min({field.left, field.right, field.up, field.down});
-  return least < kMinTangent ? std::nullopt : std::optional(field);
+  const double min_tangent = std::min({field.left, field.right, field.up, field.down});
+  return min_tangent < kMinTangent ? std::nullopt : std::optional(field);
 }
 
 Visibility visibility(const FieldOfView& field, const Pose& world_from_sensor,
@@ -102,9 +102,9 @@ Visibility visibility(const FieldOfView& field, const Pose& world_from_sensor,
     beyond[3] += -up > field.down * ahead ? 1 : 0;
     beyond[4] += ahead <= 0.0 ? 1 : 0;
   }
-  const std::size_t most = *std::max_element(beyond.begin(), beyond.end());
-  if (most == 0) return Visibility::inside;
-  return most == corners_m.size() ? Visibility::outside : Visibility::partly;
+  const std::size_t max_beyond = *std::max_element(beyond.begin(), beyond.end());
+  if (max_beyond == 0) return Visibility::inside;
+  return max_beyond == corners_m.size() ? Visibility::outside : Visibility::partly;
 }
 
 std::optional<Pose> aimed_at(const FieldOfView& field, const Pose& world_from_sensor,

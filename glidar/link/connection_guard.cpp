@@ -280,7 +280,7 @@ void ConnectionGuard::report_descriptors() {
 void ConnectionGuard::check_unread() {
   const Clock::time_point now = Clock::now();
   std::uint64_t all = 0;
-  std::uint64_t most = 0;
+  std::uint64_t max_unread = 0;
   auto largest = connections_.end();
   for (auto one = connections_.begin(); one != connections_.end(); ++one) {
     const Connection& connection = one->second;
@@ -298,7 +298,7 @@ void ConnectionGuard::check_unread() {
       continue;
     }
     all += unread;
-    if (unread > std::exchange(most, std::max(most, unread))) largest = one;
+    if (unread > std::exchange(max_unread, std::max(max_unread, unread))) largest = one;
   }
   if (all <= limits_.all_unread_bytes) return;
   cut(largest, "peer cut off",

@@ -176,7 +176,7 @@ Socket::Socket(Context& context, const SocketOptions& options)
   socket.set(zmq::sockopt::linger, static_cast<int>(millis(options.linger)));
   socket.set(zmq::sockopt::sndhwm, options.send_queue);
   socket.set(zmq::sockopt::rcvhwm, options.receive_queue);
-  socket.set(zmq::sockopt::maxmsgsize, options.largest_message_bytes);
+  socket.set(zmq::sockopt::maxmsgsize, options.max_message_bytes);
   if (options.keeps_newest) socket.set(zmq::sockopt::conflate, true);
   if (options.curve) {
     socket.set(zmq::sockopt::curve_server, 1);

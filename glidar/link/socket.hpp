@@ -68,7 +68,7 @@ struct SocketOptions {
   int receive_queue = 1000;   ///< messages queued from each peer; 0: unlimited
   bool keeps_newest = false;  ///< only the last message is queued
   /// A peer that sends a larger message is cut off before memory is allocated.
-  std::int64_t largest_message_bytes = std::int64_t{1} << 20;
+  std::int64_t max_message_bytes = std::int64_t{1} << 20;
   std::chrono::milliseconds linger{0};  ///< time for unsent messages after it is closed
   bool reports_events = false;          ///< events() returns the events of its connections
   /// For listening sockets: peers need the public key, and all messages are encrypted. Empty: no

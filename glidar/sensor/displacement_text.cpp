@@ -28,11 +28,11 @@ std::string triple_text(const Eigen::Vector3d& v, double negligible) {
 
 /// "x" for the directions +x and -x, and so on, else the components.
 std::string axis_text(const Eigen::Vector3d& direction) {
-  Eigen::Index largest = 0;
-  const double most = direction.cwiseAbs().maxCoeff(&largest);
-  const double others = std::sqrt(std::max(0.0, direction.squaredNorm() - most * most));
-  if (others < kNegligible * most) return std::string(1, "xyz"[largest]);
-  return triple_text(direction[largest] < 0.0 ? Eigen::Vector3d(-direction) : direction, 1e-4);
+  Eigen::Index axis = 0;
+  const double length = direction.cwiseAbs().maxCoeff(&axis);
+  const double others = std::sqrt(std::max(0.0, direction.squaredNorm() - length * length));
+  if (others < kNegligible * length) return std::string(1, "xyz"[axis]);
+  return triple_text(direction[axis] < 0.0 ? Eigen::Vector3d(-direction) : direction, 1e-4);
 }
 
 }  // namespace

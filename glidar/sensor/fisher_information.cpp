@@ -166,8 +166,9 @@ Spectrum spectrum_of(const Matrix6& scaled) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
   Spectrum spectrum{.values = solver.eigenvalues().reverse().cwiseMax(0.0),
                     .vectors = solver.eigenvectors().rowwise().reverse()};
-  const double least = kDegenerate * spectrum.values[0];
-  for (Eigen::Index k = 5; k >= 0 && !(spectrum.values[k] > least); --k) ++spectrum.degenerate;
+  const double min_eigenvalue = kDegenerate * spectrum.values[0];
+  for (Eigen::Index k = 5; k >= 0 && !(spectrum.values[k] > min_eigenvalue); --k)
+    ++spectrum.degenerate;
   if (spectrum.degenerate > 0) {
     spectrum.vectors.rightCols(spectrum.degenerate) =
         simplest_basis(spectrum.vectors.rightCols(spectrum.degenerate));

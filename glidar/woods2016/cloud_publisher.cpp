@@ -64,7 +64,7 @@ link::SocketOptions cloud_socket(const CloudPublisherOptions& options, link::Err
           .send_queue = options.queue,
           .receive_queue = kSubscriptionsAtOnce,
           .keeps_newest = options.keeps_newest,
-          .largest_message_bytes = kMaxSubscription_bytes,
+          .max_message_bytes = kMaxSubscription_bytes,
           .reports_events = true,
           .protection = subscriber_protection(options, errors),
           .subscriptions = {.subscriptions = static_cast<std::size_t>(limits.subscriptions),
@@ -75,7 +75,7 @@ link::SocketOptions handshakes_socket(const CloudPublisherOptions& options,
                                       link::ErrorLog& errors) {
   return {.send_queue = kMaxHandshakesAtOnce,
           .receive_queue = kMaxHandshakesAtOnce,
-          .largest_message_bytes = kMaxHandshakeBytes,
+          .max_message_bytes = kMaxHandshakeBytes,
           .reports_events = true,
           .protection = handshake_protection(options, errors)};
 }

@@ -18,7 +18,7 @@ link::SocketOptions pose_socket_options(const PoseReceiverOptions& options) {
   return {.kind = link::SocketKind::subscribe,
           .receive_queue = std::max(options.queue, 1),
           .keeps_newest = options.queue == 0,
-          .largest_message_bytes = kMaxMessageBytes,
+          .max_message_bytes = kMaxMessageBytes,
           .reports_events = true};
 }
 

@@ -39,7 +39,7 @@ class CloudPublisherTest : public ::testing::Test {
   link::Socket subscriber(int queue = 1000, const std::string& topic = "c") {
     link::Socket socket(context, {.kind = link::SocketKind::subscribe,
                                   .receive_queue = queue,
-                                  .largest_message_bytes = std::int64_t{1} << 30});
+                                  .max_message_bytes = std::int64_t{1} << 30});
     socket.subscribe(topic);
     socket.connect(endpoint);
     return socket;

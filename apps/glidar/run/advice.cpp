@@ -236,17 +236,17 @@ void add_ratio_advice(const ViewGeometry& geometry, bool is_unit_assumed,
   }
 }
 
-/// True if a box from `least` to `most` is on zero or above it.
-bool is_on_zero(double least, double most) {
+/// True if a box from `min` to `max` is on zero or above it.
+bool is_on_zero(double min, double max) {
   constexpr double kSunk = 0.02;  // part of its height that may be below
-  return most > least && least >= -kSunk * (most - least);
+  return max > min && min >= -kSunk * (max - min);
 }
 
 /// True if zero is well inside.
-bool straddles_zero(double least, double most) {
+bool straddles_zero(double min, double max) {
   constexpr double kMinPart = 0.1;
-  const double part = kMinPart * (most - least);
-  return least < -part && most > part;
+  const double part = kMinPart * (max - min);
+  return min < -part && max > part;
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ link::CurveKeys make_file(const std::string& path, Console& console) {
 
 link::CurveKeys curve_keys(const std::string& path, Console& console) {
   if (!std::filesystem::exists(path)) return make_file(path, console);
-  const InputFileKind kind{.name = "a file of two keys", .largest_mib = 1, .remedy_if_larger = ""};
+  const InputFileKind kind{.name = "a file of two keys", .max_mib = 1, .remedy_if_larger = ""};
   std::istringstream file(read_input_file(path, kind));
   std::string first;
   std::string second;

@@ -150,7 +150,7 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const std::span<std::byte> to = room(1);
+    const std::span<std::byte> to = reserve_space(1);
     const std::size_t now = std::min(to.size(), bytes.size());
     std::memcpy(to.data(), bytes.data(), now);
     take(now);
@@ -158,9 +158,9 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
   }
 }
 
-std::span<std::byte> AtomicFile::room(std::size_t least) {
+std::span<std::byte> AtomicFile::reserve_space(std::size_t min_size) {
   write_whole_pieces();
-  if (buffer_.size() - filled_ < least) buffer_.resize(filled_ + least);
+  if (buffer_.size() - filled_ < min_size) buffer_.resize(filled_ + min_size);
   return std::span(buffer_).subspan(filled_);
 }
 

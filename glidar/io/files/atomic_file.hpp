@@ -42,9 +42,9 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Buffer space for at least `least` bytes, to be filled in place; take() then appends
+  /// Buffer space for at least `min_size` bytes, to be filled in place; take() then appends
   /// the first `count`. Throws as write() does.
-  std::span<std::byte> room(std::size_t least);
+  std::span<std::byte> reserve_space(std::size_t min_size);
   void take(std::size_t count);
 
   /// Moves to a byte offset from the start. Throws Error when the file cannot seek.

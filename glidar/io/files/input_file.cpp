@@ -35,8 +35,8 @@ namespace fs = std::filesystem;
 }
 
 void check_size(const fs::path& path, std::uintmax_t size, const InputFileKind& kind) {
-  if (size <= kind.largest_mib << 20U) return;
-  const std::string limit = std::to_string(kind.largest_mib) + " MiB";
+  if (size <= kind.max_mib << 20U) return;
+  const std::string limit = std::to_string(kind.max_mib) + " MiB";
   fail(path, "a file of more than " + limit, kind.name + " of at most " + limit,
        kind.remedy_if_larger);
 }

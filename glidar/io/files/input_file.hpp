@@ -16,7 +16,7 @@ namespace glidar {
 /// The expected type of a file, for errors.
 struct InputFileKind {
   std::string name;  ///< "a YAML file"
-  std::uintmax_t largest_mib = 1;
+  std::uintmax_t max_mib = 1;
   std::string remedy_if_larger;
 };
 
@@ -26,7 +26,7 @@ struct InputFile {
   std::size_t size = 0;  ///< bytes, when it was opened
 };
 
-/// Opens a regular file of at most kind.largest_mib. A pipe or device is rejected
+/// Opens a regular file of at most kind.max_mib. A pipe or device is rejected
 /// without blocking. Throws Error: missing (with the nearest name in its folder), not a
 /// regular file, too large, not readable.
 InputFile open_input_file(const std::filesystem::path& path, const InputFileKind& kind);

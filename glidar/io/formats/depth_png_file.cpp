@@ -25,10 +25,10 @@ double fitting_scale(double depth_m) {
 }
 
 void check_depths(const std::vector<double>& depths_m, double units_per_m, const AtomicFile& file) {
-  double largest_m = 0.0;
+  double max_m = 0.0;
   double smallest_m = 0.0;
   for (const double depth_m : depths_m) {
-    if (depth_m > largest_m) largest_m = depth_m;
+    if (depth_m > max_m) max_m = depth_m;
     if (depth_m < smallest_m) smallest_m = depth_m;
   }
   if (smallest_m < 0.0) {
@@ -36,16 +36,16 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
                  fmt::format("a depth of {:.9g} m, behind the sensor", smallest_m),
                  "depths above 0", "write .npy or .depth.tiff, which can store any depth"});
   }
-  if (std::round(largest_m * units_per_m) > kMaxDepthGrey) {
+  if (std::round(max_m * units_per_m) > kMaxDepthGrey) {
     throw Error(
         {file.path().string(),
          fmt::format("the largest depth, {:.9g} m, does not fit 16 bits at {:.9g} units per "
                      "metre",
-                     largest_m, units_per_m),
+                     max_m, units_per_m),
          fmt::format("up to {:.9g} m", kMaxDepthGrey / units_per_m),
          fmt::format("use {:.9g} units per metre (--depth-scale, depth_units_per_m in Python), or "
                      "write .npy or .depth.tiff",
-                     fitting_scale(largest_m))});
+                     fitting_scale(max_m))});
   }
 }
 

@@ -255,7 +255,7 @@ void write_binary_rows(std::span<const PointField> fields, std::size_t count, At
   const std::size_t stride = row_bytes(fields);
   if (stride == 0) return;
   for (std::size_t first = 0; first < count;) {
-    const std::span<std::byte> rows = file.room(kBlockRows * stride);
+    const std::span<std::byte> rows = file.reserve_space(kBlockRows * stride);
     const std::size_t now = std::min(count - first, rows.size() / stride);
     pack_rows(fields, first, now, rows);
     file.take(now * stride);

@@ -44,14 +44,14 @@ std::uint8_t coded(double component) {
 
 double steepest(const Texture& image) {
   const Heights heights(image);
-  double most = 0.0;
+  double max_slope = 0.0;
   for (std::size_t row = 0; row < image.height; ++row) {
     for (std::size_t column = 0; column < image.width; ++column) {
       const Slope s = heights.slope(row, column);
-      most = std::max({most, std::abs(s.x), std::abs(s.y)});
+      max_slope = std::max({max_slope, std::abs(s.x), std::abs(s.y)});
     }
   }
-  return most;
+  return max_slope;
 }
 
 }  // namespace
@@ -59,8 +59,8 @@ double steepest(const Texture& image) {
 HeightNormals normals_from_heights(const Texture& heights) {
   HeightNormals result;
   result.texture = {heights.name, heights.width, heights.height, 3, {}};
-  const double most = steepest(heights);
-  const double gain = most > 0.0 ? 1.0 / most : 1.0;
+  const double max_slope = steepest(heights);
+  const double gain = max_slope > 0.0 ? 1.0 / max_slope : 1.0;
   result.normal_scale = static_cast<float>(1.0 / gain);
   auto& texels = result.texture.texels;
   texels.reserve(std::size_t{heights.width} * heights.height * 3);

@@ -67,15 +67,15 @@ struct Steps {
 };
 
 /// The step is 0 without beams.
-Steps usual_steps(const Angles& angles) {
+Steps typical_steps(const Angles& angles) {
   const std::vector<double> steps = steps_of(angles);
-  const double usual_rad = median(steps);
+  const double typical_rad = median(steps);
   Steps found{0.0, angles.cols - 1};
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (std::isnan(steps[i])) continue;
-    if (std::abs(steps[i] - usual_rad) > std::abs(usual_rad)) {
+    if (std::abs(steps[i] - typical_rad) > std::abs(typical_rad)) {
       found.jump_col = i % angles.cols;
       continue;
     }
@@ -189,7 +189,7 @@ void place_beams(const Angles& angles, const std::vector<Row>& rows, const Exten
 std::optional<BeamPicture> make_grid_picture(const Beams& beams, std::uint32_t first_beam) {
   Angles angles = angles_of(beams, first_beam);
   if (angles.rows < 2 || angles.cols < 2) return std::nullopt;
-  const auto [step_rad, jump_col] = usual_steps(angles);
+  const auto [step_rad, jump_col] = typical_steps(angles);
   const double size_rad = std::abs(step_rad);
   const bool is_more_than_a_turn =
       size_rad * (static_cast<double>(angles.cols) - 1.0) > kFullTurn_rad;

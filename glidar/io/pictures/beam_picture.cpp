@@ -77,9 +77,9 @@ void draw_marks(BeamPicture& picture, std::vector<Mark>& marks, std::int64_t dot
   }
 }
 
-/// Numbers with a margin, and minimum of the shorter side, pixels `least` apart.
-std::pair<double, double> edges_of(double low, double high, double least) {
-  const double margin = std::max(0.03 * (high - low), 0.5 * (least - (high - low)));
+/// Numbers with a margin, and minimum of the shorter side, pixels `min_side` apart.
+std::pair<double, double> edges_of(double low, double high, double min_side) {
+  const double margin = std::max(0.03 * (high - low), 0.5 * (min_side - (high - low)));
   return {low - margin, high + margin};
 }
 
@@ -123,9 +123,9 @@ BeamPicture make_top_picture(const Beams& beams, std::span<const double> range_m
   const ColourScale across = make_colour_scale(x, ColourScale::Start::zero);
   const ColourScale upright = make_colour_scale(y, ColourScale::Start::zero);
   BeamPicture picture{.kind = BeamPicture::Kind::top, .beams = {}, .row_elevations_deg = {}};
-  const double least_m = marks.empty() ? 2.0 : 0.1 * std::max(across.span(), upright.span());
-  std::tie(picture.left, picture.right) = edges_of(across.low, across.high, least_m);
-  std::tie(picture.bottom, picture.top) = edges_of(upright.low, upright.high, least_m);
+  const double min_side_m = marks.empty() ? 2.0 : 0.1 * std::max(across.span(), upright.span());
+  std::tie(picture.left, picture.right) = edges_of(across.low, across.high, min_side_m);
+  std::tie(picture.bottom, picture.top) = edges_of(upright.low, upright.high, min_side_m);
   size_picture(picture);
   constexpr std::int64_t kDot = 5;
   draw_marks(picture, marks, kDot);

@@ -16,15 +16,15 @@ namespace {
 using Align = TextPlace::Align;
 
 /// The next round number: 1, 2 or 5 times a power of ten, or a round angle.
-double round_step(double least, bool in_degrees) {
+double round_step(double min_step, bool in_degrees) {
   constexpr std::array kParts = {10.0, 15.0, 30.0, 45.0, 60.0, 90.0};
-  if (in_degrees && least > 5.0) {
-    const auto* const part = std::lower_bound(kParts.begin(), kParts.end(), least);
+  if (in_degrees && min_step > 5.0) {
+    const auto* const part = std::lower_bound(kParts.begin(), kParts.end(), min_step);
     return part == kParts.end() ? 180.0 : *part;
   }
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  const double power = std::pow(10.0, std::floor(std::log10(min_step)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= least) return factor * power;
+    if (factor * power >= min_step) return factor * power;
   }
   return 10.0 * power;
 }

@@ -96,9 +96,9 @@ TopView fit_top_view(std::span<const Eigen::Vector3d> points_m, const Eigen::Vec
   const Eigen::Vector2d low(std::min(across.low, also_m.x()), std::min(upright.low, also_m.y()));
   const Eigen::Vector2d high(std::max(across.high, also_m.x()), std::max(upright.high, also_m.y()));
   constexpr double kMargin = 1.04;
-  const double least_m = points_m.empty() ? 2.0 : 0.1;
-  const double width =
-      std::max({kMargin * (high.x() - low.x()), kMargin * shape * (high.y() - low.y()), least_m});
+  const double min_side_m = points_m.empty() ? 2.0 : 0.1;
+  const double width = std::max(
+      {kMargin * (high.x() - low.x()), kMargin * shape * (high.y() - low.y()), min_side_m});
   const Eigen::Vector2d middle = 0.5 * (low + high);
   const Eigen::Vector2d half(0.5 * width, 0.5 * width / shape);
   return {middle.x() - half.x(), middle.x() + half.x(), middle.y() - half.y(),

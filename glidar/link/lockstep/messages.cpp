@@ -117,9 +117,9 @@ struct Counts {
   std::uint32_t reserved = 0;
 };
 
-void check_count(const char* what, std::uint32_t found, std::uint32_t least, std::uint32_t most) {
-  if (found >= least && found <= most) return;
-  refuse(what, std::to_string(found), std::to_string(least) + " to " + std::to_string(most));
+void check_count(const char* what, std::uint32_t found, std::uint32_t min, std::uint32_t max) {
+  if (found >= min && found <= max) return;
+  refuse(what, std::to_string(found), std::to_string(min) + " to " + std::to_string(max));
 }
 
 void check(const Counts& counts, std::size_t size) {

@@ -26,7 +26,7 @@ link::SocketOptions socket_options(const ServerOptions& options, link::ErrorLog&
   const auto queue = static_cast<int>(limits.requests);
   return {.send_queue = 2 * queue,  // replies, and errors for requests beyond the limit
           .receive_queue = queue,
-          .largest_message_bytes = static_cast<std::int64_t>(request_bytes),
+          .max_message_bytes = static_cast<std::int64_t>(request_bytes),
           .linger = kLinger,
           .curve = options.curve,
           .protection = link::Protection{

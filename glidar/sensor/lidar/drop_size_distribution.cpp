@@ -38,8 +38,8 @@ DropSizes snow_sizes(double mm_per_h, Weather::SnowModel model) {
           .reflectance = kIce};
 }
 
-double drops_per_m3(const DropSizes& sizes, double least_diameter_m) {
-  const double depth = sizes.slope_per_m * least_diameter_m;
+double drops_per_m3(const DropSizes& sizes, double min_diameter_m) {
+  const double depth = sizes.slope_per_m * min_diameter_m;
   constexpr double kNoDrops = 600.0;  // e^-600
   return depth < kNoDrops ? sizes.number_per_m4 / sizes.slope_per_m * portable_exp(-depth) : 0.0;
 }

@@ -27,7 +27,7 @@ DropSizes rain_sizes(double mm_per_h);
 DropSizes snow_sizes(double mm_per_h, Weather::SnowModel model);
 
 /// Number of drops per cubic metre that are larger than a diameter.
-double drops_per_m3(const DropSizes& sizes, double least_diameter_m);
+double drops_per_m3(const DropSizes& sizes, double min_diameter_m);
 
 /// Twice the sum of the cross-sections, because large drops remove light by blocking and by
 /// diffraction (van de Hulst, "Light scattering by small particles", 8.22). The integral of

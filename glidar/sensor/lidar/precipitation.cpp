@@ -39,7 +39,7 @@ double brightest(const LidarEquation& light, const LidarEquation& without_overla
 }
 
 /// The diameter of the smallest drop that can reach the minimum signal; infinite if none can.
-double least_diameter_m(const DropField& field, double brightest, double range_m) {
+double min_diameter_m(const DropField& field, double brightest, double range_m) {
   const double share = field.min_signal / (field.sizes.reflectance * brightest);
   if (!(share <= 1.0)) return std::numeric_limits<double>::infinity();
   return std::max(kMinDrop_m, beam_diameter_m(field.beam, range_m) * std::sqrt(share));
@@ -107,8 +107,8 @@ DropField drop_field(const LidarEquation& light, const DropSizes& sizes, const B
     DropShell shell{
         .from_m = from_m, .volume_before_m3 = beam_volume_m3(beam, from_m), .mean_before = mean};
     const double most = brightest(light, without_overlap, from_m, edges_m[i + 1]);
-    shell.least_diameter_m = least_diameter_m(field, most, from_m);
-    shell.drops_per_m3 = drops_per_m3(sizes, shell.least_diameter_m);
+    shell.min_diameter_m = min_diameter_m(field, most, from_m);
+    shell.drops_per_m3 = drops_per_m3(sizes, shell.min_diameter_m);
     const double volume_m3 = beam_volume_m3(beam, edges_m[i + 1]) - shell.volume_before_m3;
     mean += shell.drops_per_m3 * volume_m3;
     field.shells.push_back(shell);
@@ -135,7 +135,7 @@ void sample_drops(const LidarEquation& light, const DropField& field, double har
         shell.volume_before_m3 + (mean - shell.mean_before) / shell.drops_per_m3;
     const double range_m = range_of_volume_m(field.beam, volume_m3, shell.from_m);
     const double beyond_m = -portable_log(uniform(words[1])) / field.sizes.slope_per_m;
-    const double diameter_m = shell.least_diameter_m + beyond_m;
+    const double diameter_m = shell.min_diameter_m + beyond_m;
     const double signal = drop_signal(light, field, range_m, diameter_m);
     if (signal >= field.min_signal) take({range_m, signal, diameter_m});
   }

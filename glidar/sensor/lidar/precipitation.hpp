@@ -27,8 +27,8 @@ struct DropShell {
   double from_m = 0.0;
   double volume_before_m3 = 0.0;  ///< beam_volume_m3(from_m)
   double mean_before = 0.0;       ///< mean number of drops in all shells before
-  double drops_per_m3 = 0.0;      ///< of least_diameter_m and larger
-  double least_diameter_m = 0.0;  ///< no smaller drop in this shell can reach the least signal
+  double drops_per_m3 = 0.0;      ///< of min_diameter_m and larger
+  double min_diameter_m = 0.0;    ///< no smaller drop in this shell can reach the minimum signal
 };
 
 /// The detectable drops of a beam. Drops are a Poisson process over range and diameter. So are

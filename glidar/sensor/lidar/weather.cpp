@@ -32,7 +32,7 @@ double rain_extinction_per_m(const Weather& weather) {
 }  // namespace
 
 void validate(const Weather& weather) {
-  const auto within = [](double x, double least, double most) { return x >= least && x <= most; };
+  const auto within = [](double x, double min, double max) { return x >= min && x <= max; };
   require_number(weather.visibility_m == 0.0 || within(weather.visibility_m, 1.0, kMaxVisibility_m),
                  "weather, visibility_m", weather.visibility_m,
                  "metres from 1 to 1e6, or 0 for clear air");

@@ -241,9 +241,10 @@ void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch)
   add_errors(batch.key, waves.count, sigma_turns, phases);
   unwrap(waves, phases, found, batch.range_m);
   finish_range(waves, sigma_turns, batch);
-  const double most = step.max_phase_residual * step.max_phase_residual;
+  const double max_residual = step.max_phase_residual * step.max_phase_residual;
   for (std::size_t i = 0; i < batch.count; ++i) {
-    const bool is_clear = phases.coherence[i] >= step.min_coherence && found.residual[i] <= most;
+    const bool is_clear =
+        phases.coherence[i] >= step.min_coherence && found.residual[i] <= max_residual;
     if (!is_clear && is_hit(batch, i)) invalidate_return(batch, i, Status::phase_ambiguous);
   }
 }
