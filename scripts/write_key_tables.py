@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of keys in docs/ and the schema in sensors/ from the descriptions in the program.
+"""Writes the tables of keys in docs/ and the schemas beside the examples from the descriptions in the program.
 
 usage: write_key_tables.py GLIDAR [ROOT]; GLIDAR is the program, ROOT the folder of the sources.
 A table is between the lines `<!-- keys: PATH -->` and `<!-- end of keys -->`. PATH is the kind of schema and
@@ -14,7 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-SCHEMA_FILE = "sensors/sensor.schema.json"
+SCHEMA_FILES = {"sensor": "sensors/sensor.schema.json", "scene": "examples/scene.schema.json"}
 MARKED = re.compile(r"(<!-- keys: ([^\n]*) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 
 
@@ -33,6 +33,7 @@ def find(schema, steps):
         key, _, name = step.partition("=")
         schema = schema.get("properties", {}).get(key, schema)
         schema = schema.get("items", schema)
+        schema = next((form for form in schema.get("anyOf", []) if "properties" in form), schema)
         if name:
             schema = next(one for one in schema["oneOf"] if type_of(one)[1]["const"] == name)
     return schema
@@ -59,6 +60,8 @@ def allowed_of(schema):
         return schema["x-allowed"]
     if "enum" in schema:
         return ", ".join(f"`{word}`" for word in schema["enum"])
+    if "$ref" in schema:
+        return "a map"
     if "anyOf" in schema:
         return " or ".join(allowed_of(form) for form in schema["anyOf"])
     if schema["type"] == "integer":
@@ -149,11 +152,12 @@ def main():
         if new != old:
             page.write_text(new, encoding="utf-8")
             print("wrote", page)
-    schema_file = root / SCHEMA_FILE
-    new = schema_text(program, "sensor")
-    if not schema_file.exists() or schema_file.read_text(encoding="utf-8") != new:
-        schema_file.write_text(new, encoding="utf-8")
-        print("wrote", schema_file)
+    for kind, name in SCHEMA_FILES.items():
+        schema_file = root / name
+        new = schema_text(program, kind)
+        if not schema_file.exists() or schema_file.read_text(encoding="utf-8") != new:
+            schema_file.write_text(new, encoding="utf-8")
+            print("wrote", schema_file)
 
 
 if __name__ == "__main__":

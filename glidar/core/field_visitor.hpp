@@ -42,6 +42,7 @@ struct KeyChoice {
   const char* allowed;            ///< for errors
   const char* missing = nullptr;  ///< error when there is none; null: none is fine
   const char* remedy = nullptr;   ///< of that error
+  const char* conflict_remedy = "remove one of them";
 };
 
 struct KeyNeed {
@@ -58,6 +59,13 @@ struct ListAccess {
   const char* allowed;  ///< for errors about the size
   std::size_t size;
   FunctionRef<void(std::size_t)> resize;
+};
+
+/// A map by names of the user's own, to which a reader adds entries.
+struct NamesAccess {
+  std::size_t size;
+  FunctionRef<const std::string&(std::size_t)> name;
+  FunctionRef<void(const std::string&)> add;
 };
 
 /// A word of files for a value.
@@ -140,14 +148,24 @@ class FieldVisitor {
     key(field);
     return is_present;
   }
+  /// A text, or a nested map in its place; `allowed` is for errors. The text of a map is empty.
+  virtual void text_or_object(const FieldInfo& field, const char* /*allowed*/,
+                              std::string& /*value*/, Describe /*describe*/) {
+    key(field);
+  }
   virtual void list(const FieldInfo& field, const ListAccess& /*access*/, DescribeAt /*describe*/) {
+    key(field);
+  }
+  /// A map of maps by names of the user's own.
+  virtual void by_name(const FieldInfo& field, const NamesAccess& /*access*/,
+                       DescribeAt /*describe*/) {
     key(field);
   }
   /// Alternatives by the word of a key, each with keys of its own in the same map.
   virtual void variant(const FieldInfo& field, std::span<const TypeInfo> types, std::size_t chosen,
                        DescribeAt describe) = 0;
-  /// A key whose value is read elsewhere: a "map", "list" or "text".
-  virtual void other(const FieldInfo& field, const char* /*kind*/) { key(field); }
+  /// Where numbers come from: a map of texts by other keys of this map, or a list of such keys.
+  virtual void provenance(const FieldInfo& field, bool /*is_map*/) { key(field); }
 
   /// Keys of which a map has at most one.
   virtual void at_most_one(const KeyChoice& /*choice*/) {}
@@ -156,6 +174,12 @@ class FieldVisitor {
 
   /// Whether the file has the key; only readers know.
   [[nodiscard]] virtual bool has(const char* /*key*/) const { return false; }
+  /// Whether the value of a key of the file is a list; only readers know.
+  [[nodiscard]] virtual bool is_list(const char* /*key*/) const { return false; }
+  /// The file that is read; empty: none.
+  [[nodiscard]] virtual std::string file() const { return ""; }
+  /// The place of a key in it, or of its map where the key is missing, for later errors.
+  [[nodiscard]] virtual std::string where(const char* /*key*/) const { return ""; }
   /// Throws Error at a key of the file, or at its map where the key is missing. "{}" in `found`
   /// is replaced by the value. Only readers know the place.
   [[noreturn]] void reject(const char* key, const std::string& found, const std::string& allowed,
@@ -181,6 +205,16 @@ void visit_choice(FieldVisitor& visitor, const FieldInfo& field,
   if (visitor.is_reading()) value = names[chosen].value;
 }
 
+/// The same for an enumerator that may be absent.
+template <class Value, std::size_t kCount>
+void visit_choice(FieldVisitor& visitor, const FieldInfo& field,
+                  const std::array<Named<Value>, kCount>& names, std::optional<Value>& value) {
+  if (visitor.is_writing() && !value) return;
+  Value chosen = value.value_or(names.front().value);
+  visit_choice(visitor, field, names, chosen);
+  if (visitor.is_reading() && visitor.has(field.key)) value = chosen;
+}
+
 /// A struct as a nested map.
 template <class Struct>
 void visit_object(FieldVisitor& visitor, const FieldInfo& field, Struct& value) {
@@ -196,11 +230,11 @@ void visit_object(FieldVisitor& visitor, const FieldInfo& field, std::optional<S
   if (visitor.is_reading() && is_present) value = std::move(content);
 }
 
-/// A list of structs.
+/// A list of structs; those that a reader adds are copies of `item`.
 template <class Struct>
 void visit_list(FieldVisitor& visitor, const FieldInfo& field, const WholeRule& size,
-                const char* allowed, std::vector<Struct>& values) {
-  const auto resize = [&](std::size_t count) { values.resize(count); };
+                const char* allowed, std::vector<Struct>& values, const Struct& item = {}) {
+  const auto resize = [&](std::size_t count) { values.resize(count, item); };
   const auto body = [&](std::size_t i, FieldVisitor& nested) { describe(values[i], nested); };
   visitor.list(field,
                {size.min, size.max, allowed, values.size(), FunctionRef<void(std::size_t)>(resize)},

@@ -8,6 +8,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 /// The coordinate frame of a twist.
 enum class TwistFrame : std::uint8_t {
   body,   ///< the moving body: linear is the velocity of its origin, in its own axes
@@ -27,5 +29,8 @@ struct ConstantTwist {
 };
 
 Pose pose_at(const ConstantTwist& twist, std::int64_t t_ns);
+
+/// Keys of `twist`; files have the pose beside it, at time 0.
+void describe(ConstantTwist& twist, FieldVisitor& visitor);
 
 }  // namespace glidar

@@ -8,6 +8,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 /// Rotation in place at a constant rate: the rates of --object-rate and --sensor-rate, as in the
 /// original GLIDAR. The rate is an angular velocity in the body's own axes (right-handed, axis
 /// times rad/s), as in the kinematics that the original cites: Markley, "Attitude error
@@ -20,5 +22,8 @@ struct Spin {
 };
 
 Pose pose_at(const Spin& spin, std::int64_t t_ns);
+
+/// Keys of `spin`; files have the pose beside it, at time 0.
+void describe(Spin& spin, FieldVisitor& visitor);
 
 }  // namespace glidar

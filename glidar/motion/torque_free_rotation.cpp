@@ -3,9 +3,12 @@
 #include <glidar/motion/torque_free_rotation.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
+#include <glidar/core/pose_keys.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/motion/elliptic.hpp>
 #include <glidar/motion/integral_table.hpp>
+#include <glidar/motion/rate_keys.hpp>
 #include <glidar/motion/times.hpp>
 
 #include <algorithm>
@@ -23,27 +26,6 @@ using Eigen::Vector3d;
 
 [[noreturn]] void refuse(const std::string& field, std::string found, std::string allowed) {
   throw Error({"tumbling, " + field, std::move(found), std::move(allowed), ""});
-}
-
-void check(const InitialRotation& start) {
-  const Vector3d& moments = start.moments_kg_m2;
-  if (!moments.allFinite() || !(moments.minCoeff() > 0.0)) {
-    refuse("moments of inertia", "one is not above 0", "three finite numbers above 0");
-  }
-  constexpr double kThinnest = 1e-9;
-  if (moments.minCoeff() < kThinnest * moments.maxCoeff()) {
-    refuse("moments of inertia", "one is more than 1e9 times another", "ratios up to 1e9");
-  }
-  constexpr double kRounding = 1e-6;  // for moments in decimals: a thin plate is at the limit
-  if (moments.maxCoeff() > (1.0 + kRounding) * (moments.sum() - moments.maxCoeff())) {
-    refuse("moments of inertia", "one exceeds the sum of the other two",
-           "moments of a rigid body: none above the sum of the other two");
-  }
-  if (!start.rate_rad_s.allFinite()) refuse("rates", "not finite", "three finite numbers");
-  if (!start.velocity_m_s.allFinite()) refuse("velocity", "not finite", "three finite numbers");
-  if (!is_rigid(start.world_from_body) || !is_rigid(start.body_from_principal)) {
-    refuse("pose", "not a rigid transform", "finite numbers and a rotation");
-  }
 }
 
 /// Euler's equations without torque: moment of inertia times angular acceleration, for each axis.
@@ -133,6 +115,49 @@ double size_of(const Vector3d& numbers) {
 }
 
 }  // namespace
+
+void validate(const InitialRotation& start) {
+  const Vector3d& moments = start.moments_kg_m2;
+  if (!moments.allFinite() || !(moments.minCoeff() > 0.0)) {
+    refuse("moments of inertia", "one is not above 0", "three finite numbers above 0");
+  }
+  constexpr double kThinnest = 1e-9;
+  if (moments.minCoeff() < kThinnest * moments.maxCoeff()) {
+    refuse("moments of inertia", "one is more than 1e9 times another", "ratios up to 1e9");
+  }
+  constexpr double kRounding = 1e-6;  // for moments in decimals: a thin plate is at the limit
+  if (moments.maxCoeff() > (1.0 + kRounding) * (moments.sum() - moments.maxCoeff())) {
+    refuse("moments of inertia", "one exceeds the sum of the other two",
+           "moments of a rigid body: none above the sum of the other two");
+  }
+  if (!start.rate_rad_s.allFinite()) refuse("rates", "not finite", "three finite numbers");
+  if (!start.velocity_m_s.allFinite()) refuse("velocity", "not finite", "three finite numbers");
+  if (!is_rigid(start.world_from_body) || !is_rigid(start.body_from_principal)) {
+    refuse("pose", "not a rigid transform", "finite numbers and a rotation");
+  }
+}
+
+void describe(InitialRotation& start, FieldVisitor& visitor) {
+  visitor.vector({"moments_kg_m2",
+                  "principal moments of inertia; only ratios matter, none may exceed the sum of "
+                  "the others",
+                  {"kg m²"},
+                  kRequired},
+                 kAboveZero, visitor.is_writing(), start.moments_kg_m2);
+  visit_rate(visitor, true, start.rate_rad_s);
+  visit_velocity(visitor, "`[x, y, z]`, of the centre of mass in the world", start.velocity_m_s);
+  visit_pose(visitor,
+             {"principal",
+              "pose of the centre of mass and of the principal axes in the object, after `scale`",
+              kNoUnit, false, "identity"},
+             visitor.is_writing(), start.body_from_principal);
+  if (!visitor.is_reading()) return;
+  try {
+    validate(start);
+  } catch (const Error& error) {
+    visitor.reject("moments_kg_m2", error.parts().found, error.parts().allowed);
+  }
+}
 
 /// The solution in ordered axes, see ordered_axes(), with rates in units of `unit`. The rates are
 /// those of Landau and Lifshitz, section 37. The attitude is the shortest rotation that maps the
@@ -237,7 +262,7 @@ TorqueFreeRotation::Solution::Solution(const Vector3d& principal_moments,
 }
 
 TorqueFreeRotation::TorqueFreeRotation(const InitialRotation& start) : start_(start) {
-  check(start_);
+  validate(start_);
   if (start_.rate_rad_s.isZero(0.0)) return;
   // Powers of two, so that nothing is rounded and no square overflows or underflows.
   const double unit = size_of(start_.rate_rad_s);

@@ -9,6 +9,8 @@
 
 namespace glidar {
 
+class FieldVisitor;
+
 /// The state at t0 of a rigid body without torque.
 struct InitialRotation {
   Eigen::Vector3d moments_kg_m2 =
@@ -20,6 +22,14 @@ struct InitialRotation {
   std::int64_t t0_ns = 0;
 };
 
+/// Throws Error with the invalid field if a number is not finite, a moment of inertia is not
+/// positive or is more than 1e9 times another, one exceeds the sum of the other two (impossible
+/// for a body), or a pose is not rigid.
+void validate(const InitialRotation& start);
+
+/// Keys of `tumbling`; files have the pose of the body beside it, at time 0.
+void describe(InitialRotation& start, FieldVisitor& visitor);
+
 /// The free motion of a rigid body in closed form, by Jacobi's elliptic functions: Landau and
 /// Lifshitz, "Mechanics" (3rd ed.), section 37, with an attitude that is regular near every axis.
 /// Every time has the same cost; nothing is integrated stepwise. The attitude is exact to 1e-13 rad
@@ -29,9 +39,7 @@ struct InitialRotation {
 /// about 343 of the elliptic functions' units of time.
 class TorqueFreeRotation {
  public:
-  /// Throws Error with the invalid field if a number is not finite, a moment of inertia is not
-  /// positive or is more than 1e9 times another, one exceeds the sum of the other two (impossible
-  /// for a body), or the pose is not rigid.
+  /// Throws Error as validate() does.
   explicit TorqueFreeRotation(const InitialRotation& start);
 
   [[nodiscard]] Pose pose_at(std::int64_t t_ns) const;

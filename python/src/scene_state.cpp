@@ -3,6 +3,7 @@
 #include "scene_state.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/io/files/content_hash.hpp>
 
 #include <nanobind/eigen/dense.h>
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <stdexcept>
 #include <type_traits>
 
 namespace glidar::python {
@@ -69,27 +71,35 @@ void add(const Mesh& mesh, Digest& digest) {
   }
 }
 
+/// Adds the numbers of a described struct.
+class DigestFields final : public FieldVisitor {
+ public:
+  explicit DigestFields(Digest& digest) : digest_(digest) {}
+
+  [[nodiscard]] Mode mode() const override { return Mode::report; }
+
+  void number(const FieldInfo& /*field*/, const NumberRule& /*rule*/, double& value) override {
+    digest_.add(value);
+  }
+  void variant(const FieldInfo& /*field*/, std::span<const TypeInfo> types, std::size_t chosen,
+               DescribeAt describe) override {
+    digest_.add(std::string(types[chosen].name));
+    describe(chosen, *this);
+  }
+
+ protected:
+  void key(const FieldInfo& field) override {
+    throw std::logic_error(std::string("no digest of the key ") + field.key);
+  }
+
+ private:
+  Digest& digest_;
+};
+
 void add(const Brdf& backscatter, Digest& digest) {
-  struct Adder {
-    Digest& to;
-    void operator()(const Lambert& /*none*/) const {}
-    void operator()(const PhongLike& s) const {
-      to.add(s.specular_fraction);
-      to.add(s.exponent);
-    }
-    void operator()(const OrenNayar& s) const { to.add(s.roughness_rad); }
-    void operator()(const RetroReflector& s) const {
-      to.add(s.gain);
-      to.add(s.width_rad);
-    }
-    void operator()(const Glossy& s) const {
-      to.add(s.diffuse_fraction);
-      to.add(s.lobe_gain);
-      to.add(s.width_rad);
-    }
-  };
-  digest.add(backscatter.index());
-  std::visit(Adder{digest}, backscatter);
+  Brdf described = backscatter;
+  DigestFields fields(digest);
+  describe(described, fields);
 }
 
 void add(const Texture& texture, Digest& digest) {

@@ -3,6 +3,7 @@
 #include "trajectory_state.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/config/motion_document.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/string.h>
@@ -26,22 +27,25 @@ nb::dict state_of(const ConstantPose& constant) {
   return state;
 }
 
-nb::dict state_of(const ConstantTwist& twist) {
-  nb::dict state = of_kind("twist");
-  state["pose"] = matrix_of(twist.pose);
-  state["angular_rad_s"] = twist.angular_rad_s;
-  state["linear_m_s"] = twist.linear_m_s;
-  state["in_world"] = twist.frame == TwistFrame::world;
-  state["t0_ns"] = twist.t0_ns;
+/// A spin, a twist or a torque-free rotation: its start, and its numbers with the keys of files.
+nb::dict motion_state(const Trajectory& motion, const Pose& start, std::int64_t t0_ns) {
+  nb::dict state = of_kind("motion");
+  state["pose"] = matrix_of(start);
+  state["t0_ns"] = t0_ns;
+  state["document"] = motion_document(motion);
   return state;
 }
 
+nb::dict state_of(const ConstantTwist& twist) {
+  return motion_state(twist, twist.pose, twist.t0_ns);
+}
+
 nb::dict state_of(const Spin& spin) {
-  nb::dict state = of_kind("spin");
-  state["pose"] = matrix_of(spin.pose);
-  state["rate_rad_s"] = spin.rate_rad_s;
-  state["t0_ns"] = spin.t0_ns;
-  return state;
+  return motion_state(spin, spin.pose, spin.t0_ns);
+}
+
+nb::dict state_of(const TorqueFreeRotation& tumbling) {
+  return motion_state(tumbling, tumbling.start().world_from_body, tumbling.start().t0_ns);
 }
 
 nb::dict state_of(const TimedPoses& timed) {
@@ -63,31 +67,11 @@ nb::dict state_of(const TimedPoses& timed) {
   return state;
 }
 
-nb::dict state_of(const TorqueFreeRotation& tumbling) {
-  const InitialRotation& start = tumbling.start();
-  nb::dict state = of_kind("tumbling");
-  state["moments_kg_m2"] = start.moments_kg_m2;
-  state["rate_rad_s"] = start.rate_rad_s;
-  state["world_from_body"] = matrix_of(start.world_from_body);
-  state["body_from_principal"] = matrix_of(start.body_from_principal);
-  state["velocity_m_s"] = start.velocity_m_s;
-  state["t0_ns"] = start.t0_ns;
-  return state;
-}
-
 nb::dict state_of(const Mounted& mounted) {
   nb::dict state = of_kind("mounted");
   state["carrier"] = std::visit([](const auto& c) { return state_of(c); }, mounted.carrier);
   state["carrier_from_body"] = matrix_of(mounted.carrier_from_body);
   return state;
-}
-
-Eigen::Vector3d vector_in(const nb::dict& state, const char* key) {
-  return nb::cast<Eigen::Vector3d>(state[key]);
-}
-
-std::int64_t t0_in(const nb::dict& state) {
-  return nb::cast<std::int64_t>(state["t0_ns"]);
 }
 
 Pose pose_in(const nb::dict& state, const char* key) {
@@ -113,19 +97,15 @@ TimedPoses timed_from(const nb::dict& state) {
   return TimedPoses::restored(std::move(poses));
 }
 
-TorqueFreeRotation tumbling_from(const nb::dict& state) {
-  return TorqueFreeRotation({.moments_kg_m2 = vector_in(state, "moments_kg_m2"),
-                             .rate_rad_s = vector_in(state, "rate_rad_s"),
-                             .world_from_body = pose_in(state, "world_from_body"),
-                             .body_from_principal = pose_in(state, "body_from_principal"),
-                             .velocity_m_s = vector_in(state, "velocity_m_s"),
-                             .t0_ns = t0_in(state)});
+Trajectory motion_from(const nb::dict& state) {
+  return parse_motion(nb::cast<std::string>(state["document"]), pose_in(state, "pose"),
+                      nb::cast<std::int64_t>(state["t0_ns"]));
 }
 
 [[noreturn]] void refuse_kind(const std::string& kind) {
   throw Error({.where = "trajectory",
                .found = "the kind '" + kind + "'",
-               .allowed = "constant, twist, spin, timed, tumbling, mounted",
+               .allowed = "constant, motion, timed, mounted",
                .remedy = ""});
 }
 
@@ -134,28 +114,15 @@ Mounted mounted_from(const nb::dict& state) {
   const auto kind = nb::cast<std::string>(carrier["kind"]);
   const Pose part = pose_in(state, "carrier_from_body");
   if (kind == "timed") return {timed_from(carrier), part};
-  if (kind == "tumbling") return {tumbling_from(carrier), part};
+  if (kind == "motion") return {std::get<TorqueFreeRotation>(motion_from(carrier)), part};
   refuse_kind(kind);
 }
 
 Trajectory trajectory_from(const nb::dict& state) {
   const auto kind = nb::cast<std::string>(state["kind"]);
   if (kind == "constant") return ConstantPose{pose_in(state, "pose")};
-  if (kind == "twist") {
-    const bool in_world = nb::cast<bool>(state["in_world"]);
-    return ConstantTwist{.pose = pose_in(state, "pose"),
-                         .angular_rad_s = vector_in(state, "angular_rad_s"),
-                         .linear_m_s = vector_in(state, "linear_m_s"),
-                         .frame = in_world ? TwistFrame::world : TwistFrame::body,
-                         .t0_ns = t0_in(state)};
-  }
-  if (kind == "spin") {
-    return Spin{.pose = pose_in(state, "pose"),
-                .rate_rad_s = vector_in(state, "rate_rad_s"),
-                .t0_ns = t0_in(state)};
-  }
+  if (kind == "motion") return motion_from(state);
   if (kind == "timed") return timed_from(state);
-  if (kind == "tumbling") return tumbling_from(state);
   if (kind == "mounted") return mounted_from(state);
   refuse_kind(kind);
 }

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of keys in docs/ and the schema in sensors/ are those of the program."""
+"""The tables of keys in docs/ and the schemas beside the examples are those of the program."""
 
 import importlib.util
 import json
@@ -26,10 +26,11 @@ class Schema(unittest.TestCase):
     def schemas(self, kind):
         return json.loads(run(kind).stdout)
 
-    def test_the_schema_beside_the_presets_is_up_to_date(self):
-        kept = (ROOT / "sensors/sensor.schema.json").read_text(encoding="utf-8")
-        self.assertEqual(kept, run("sensor").stdout, "run scripts/write_key_tables.py GLIDAR")
-        self.assertEqual(kept, run().stdout)
+    def test_the_schemas_beside_presets_and_examples_are_up_to_date(self):
+        for kind, name in load_script().SCHEMA_FILES.items():
+            kept = (ROOT / name).read_text(encoding="utf-8")
+            self.assertEqual(kept, run(kind).stdout, "run scripts/write_key_tables.py GLIDAR")
+        self.assertEqual(run().stdout, run("sensor").stdout)
 
     def test_tables_in_the_documentation_are_up_to_date(self):
         script = load_script()
@@ -38,7 +39,7 @@ class Schema(unittest.TestCase):
             text = page.read_text(encoding="utf-8")
             tables += text.count("<!-- keys:")
             self.assertEqual(text, script.written(text, self.schemas), f"{page}: run scripts/write_key_tables.py GLIDAR")
-        self.assertGreaterEqual(tables, 15)
+        self.assertGreaterEqual(tables, 24)
 
     def test_a_table_that_differs_is_written_again(self):
         script = load_script()
@@ -52,10 +53,19 @@ class Schema(unittest.TestCase):
             first = preset.read_text(encoding="utf-8").splitlines()[0]
             self.assertEqual(first, "# yaml-language-server: $schema=sensor.schema.json", preset)
 
+    def test_every_example_scene_refers_to_the_schema(self):
+        scenes = [path for path in sorted((ROOT / "examples").glob("*.yaml"))
+                  if "\nmodels:" in path.read_text(encoding="utf-8")]
+        self.assertEqual(len(scenes), 3)
+        for scene in scenes:
+            first = scene.read_text(encoding="utf-8").splitlines()[0]
+            self.assertEqual(first, "# yaml-language-server: $schema=scene.schema.json", scene)
+
     def test_an_unknown_kind_is_an_error_with_the_nearest(self):
         result = run("sensors")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("'sensors' has no schema; allowed: sensor, materials, surfaces; did you mean 'sensor'?", result.stderr)
+        self.assertIn("'sensors' has no schema; allowed: sensor, scene, pose, motion, materials, surfaces; "
+                      "did you mean 'sensor'?", result.stderr)
 
 
 if __name__ == "__main__":

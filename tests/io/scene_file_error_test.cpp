@@ -22,7 +22,7 @@ std::string with_model(const std::string& rest) {
   return "models: [{model: a}]\n" + rest + "\n";
 }
 
-const std::string kPoseKeys = "position, orientation, rotation_vector, euler_deg";
+const std::string kPoseKeys = "position, orientation, rotation_vector, euler_deg, matrix";
 
 const BadFile kBadScenes[] = {
     {"NoModels", "sensor: c.yaml\n", "s.yaml:1:1: the key 'models' is missing; add 'models: ...'"},
@@ -34,10 +34,10 @@ const BadFile kBadScenes[] = {
      "s.yaml:3:9: sensor: given beside 'sensors'; allowed: sensors, rig_pose, rig_motion; a rig of "
      "sensors has poses of its own: rig_pose and the 'pose' of each sensor"},
     {"RigPoseWithoutSensors", with_model("rig_pose: {position: [0, 0, 0]}"),
-     "s.yaml:2:11: rig_pose: there are no 'sensors'; allowed: sensor, sensor_pose, sensor_motion; "
+     "s.yaml:2:11: rig_pose: given without 'sensors'; allowed: sensor, sensor_pose, sensor_motion; "
      "list the sensors of the rig: 'sensors: [{name: ..., sensor: ..., pose: ...}]'"},
     {"NoSensors", with_model("sensors: []"),
-     "s.yaml:2:10: sensors: 0 sensors; allowed: 1 to 256 sensors"},
+     "s.yaml:2:10: sensors: an empty list; allowed: 1 to 256 sensors"},
     {"SensorsIsAName", with_model("sensors: VLP-16"),
      "s.yaml:2:10: sensors: 'VLP-16'; allowed: a list"},
     {"RigSensorWithoutName", with_model("sensors: [{sensor: VLP-16}]"),
@@ -118,6 +118,14 @@ const BadFile kBadScenes[] = {
     {"TwoRotations", model("pose: {orientation: {w: 1, x: 0, y: 0, z: 0}, euler_deg: {yaw: 1}}"),
      "s.yaml:3:62: models[0].pose.euler_deg: given beside 'orientation'; allowed: one of "
      "orientation, rotation_vector, euler_deg; remove one of them"},
+    {"MatrixBesidePosition", model("pose: {position: [0, 0, 1], matrix: [1]}"),
+     "s.yaml:3:41: models[0].pose.matrix: given beside 'position'; allowed: matrix alone, or a "
+     "position and a rotation; remove one of them"},
+    {"MatrixOfFourRows", model("pose: {matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}"),
+     "s.yaml:3:20: models[0].pose.matrix: a list of 16; allowed: a list of 12 numbers"},
+    {"MatrixMirrors", model("pose: {matrix: [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, -1, 7]}"),
+     "s.yaml:3:20: models[0].pose.matrix: not a rotation; allowed: a rotation within 0.001, with "
+     "its position"},
     {"QuaternionAsAList", model("pose: {orientation: [1, 0, 0, 0]}"),
      "s.yaml:3:25: models[0].pose.orientation: a list of 4; allowed: a map with the keys w, x, y, "
      "z; name the parts: {w: 1, x: 0, y: 0, z: 0}; their order in a list is ambiguous"},
@@ -147,10 +155,22 @@ const BadFile kBadScenes[] = {
      "did you "
      "mean 'diffuse'?"},
     {"TwoMotions", model("motion: {spin: {rate_rad_s: [0, 0, 1]}, trajectory: t.tum}"),
-     "s.yaml:3:13: models[0].motion: 2 kinds of motion; allowed: one of spin, twist, tumbling, "
-     "trajectory"},
+     "s.yaml:3:56: models[0].motion.trajectory: given beside 'spin'; allowed: one of spin, twist, "
+     "tumbling, trajectory; remove one of them"},
+    {"NoMotion", model("motion: {}"),
+     "s.yaml:3:13: models[0].motion: the kind of motion is missing; allowed: one of spin, twist, "
+     "tumbling, trajectory; add 'spin: ...', for example"},
+    {"TrajectoryIsAList", model("motion: {trajectory: [t.tum]}"),
+     "s.yaml:3:26: models[0].motion.trajectory: a list of 1; allowed: a map, or the path of a "
+     "trajectory file"},
+    {"TrajectoryUnknownKey", model("motion: {trajectory: {file: t.tum, rate: 1}}"),
+     "s.yaml:3:40: models[0].motion.trajectory.rate: unknown key 'rate'; allowed: file, rate_hz, "
+     "times, start_s"},
+    {"SizeIsAMap", model("size: {x: 1}"),
+     "s.yaml:3:11: models[0].size: a map; allowed: a number, or a list of 3"},
     {"SpinWithoutRate", model("motion: {spin: {}}"),
-     "s.yaml:3:20: models[0].motion.spin: the rate is missing; allowed: rate_rad_s or rate_deg_s; "
+     "s.yaml:3:20: models[0].motion.spin: the rate is missing; allowed: one of rate_rad_s, "
+     "rate_deg_s; "
      "add 'rate_rad_s: [0, 0, 0.1]'"},
     {"SpinInTwoUnits", model("motion: {spin: {rate_rad_s: [0, 0, 1], rate_deg_s: [0, 0, 1]}}"),
      "s.yaml:3:56: models[0].motion.spin.rate_deg_s: given beside 'rate_rad_s'; allowed: one of "
@@ -181,7 +201,7 @@ const BadFile kBadScenes[] = {
      "fov_deg, fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
     {"LookAtBesidePosition",
      with_model("sensor_pose: {position: [0, 0, 0], look_at: {eye: [0, 0, 0], target: [1, 0, 0]}}"),
-     "s.yaml:2:45: sensor_pose.look_at: given beside other keys; allowed: look_at alone, or a "
+     "s.yaml:2:45: sensor_pose.look_at: given beside 'position'; allowed: look_at alone, or a "
      "position and a rotation; remove one of them"},
     {"LookAtFromBeyondReach",
      with_model("sensor_pose: {look_at: {eye: [1e16, 0, 0], target: [0, 0, 0]}}"),

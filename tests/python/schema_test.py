@@ -4,6 +4,7 @@
 
 import copy
 import json
+import pickle
 import re
 import subprocess
 from pathlib import Path
@@ -132,3 +133,157 @@ def test_errors_are_found_by_the_schema_and_by_the_reader(sensor_schema, path, v
     assert not sensor_schema.is_valid(broken)
     with pytest.raises(glidar.Error):
         glidar.Sensor.from_dict(broken)
+
+
+SCENES = [path for path in sorted((ROOT / "examples").glob("*.yaml")) if "\nmodels:" in path.read_text(encoding="utf-8")]
+CORPUS = [ROOT / "tests/fuzz/corpus/scene" / name for name in ("models", "motion", "rig")]
+#: Blocks of documentation that are scene files.
+DOCUMENTED = [
+    (page, block)
+    for page in sorted((ROOT / "docs").rglob("*.md"))
+    for block in re.findall(r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    if re.search(r"^models:", block, re.MULTILINE)
+]
+
+
+@pytest.fixture(scope="module")
+def scene_schema():
+    return validator("scene")
+
+
+@pytest.mark.parametrize("path", SCENES + CORPUS, ids=lambda path: path.stem)
+def test_scene_files_are_valid(scene_schema, path):
+    scene_schema.validate(load(path))
+
+
+@pytest.mark.parametrize("page, block", DOCUMENTED, ids=lambda part: part.stem if isinstance(part, Path) else "block")
+def test_scenes_in_the_documentation_are_valid(scene_schema, page, block):
+    scene_schema.validate(yaml.load(block, Loader=Loader))  # noqa: S506 (a safe loader)
+
+
+def test_there_are_scenes_to_check():
+    assert len(SCENES) == 3
+    assert len(DOCUMENTED) >= 4
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda path: path.stem)
+def test_presets_are_valid_as_a_part_of_a_scene(scene_schema, preset):
+    scene_schema.validate({"models": [{"model": "builtin:box"}], "sensor": load(preset)})
+
+
+SCENE = {
+    "models": [
+        {
+            "model": "builtin:box",
+            "name": "plate",
+            "unit": "mm",
+            "up": "y",
+            "centre": True,
+            "size": [2, 1, 0.5],
+            "scale": 2,
+            "pose": {"position": [1, 2, 3], "orientation": {"w": 1, "x": 0, "y": 0, "z": 1}},
+            "id": 7,
+            "class": "target",
+            "materials": {"*": {"diffuse": [0.5, 0.5, 0.5]}},
+            "motion": {"tumbling": {"moments_kg_m2": [1, 2, 2.5], "rate_deg_s": [1, 2, 3], "principal": {"position": [0, 0, 1]}}},
+        },
+        {"model": "builtin:sphere", "radius": 2, "scale": [1, 2, 3], "pose": {"rotation_vector": [0, 0, 1]},
+         "motion": {"twist": {"velocity_m_s": [1, 0, 0], "frame": "world"}}},
+        {"model": "builtin:torus", "radius": 2, "tube_radius": 0.1, "motion": {"spin": {"rate_rad_s": [0, 0, 1]}},
+         "pose": {"matrix": [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7]}},
+    ],
+    "sensors": [
+        {"name": "lidar", "sensor": "VLP-16", "pose": {"euler_deg": {"yaw": 90}}},
+        {"name": "camera", "sensor": {"optics": {"width": 4, "height": 3, "fov_deg": 20}}},
+    ],
+    "rig_pose": {"position": [0, 0, 9]},
+    "rig_motion": {"twist": {"rate_deg_s": [0, 0, 1]}},
+}
+SINGLE = {
+    "models": [{"model": "builtin:box"}],
+    "sensor": "VLP-16",
+    "sensor_pose": {"look_at": {"eye": [9, 0, 0], "target": [0, 0, 0]}},
+    "sensor_motion": {"spin": {"rate_deg_s": [0, 0, 1]}},
+}
+
+
+def changed_scene(scene, path, value):
+    """The scene with a value replaced, or removed where it is None."""
+    broken = copy.deepcopy(scene)
+    part = broken
+    for key in path[:-1]:
+        part = part[key] if isinstance(part, list) else part.setdefault(key, {})
+    if value is None:
+        del part[path[-1]]
+    else:
+        part[path[-1]] = value
+    return broken
+
+
+@pytest.mark.parametrize("scene", [SCENE, SINGLE], ids=["rig", "single"])
+def test_scenes_with_all_keys_are_valid_and_survive_pickling(scene_schema, scene):
+    scene_schema.validate(scene)
+    loaded = glidar.Scene.from_dict(scene)
+    assert pickle.loads(pickle.dumps(loaded)) == loaded
+    assert glidar.Scene.from_dict(json.loads(json.dumps(scene))) == loaded
+    assert list(loaded.rig) == [one["name"] for one in scene.get("sensors", [{"name": ""}])]
+
+
+@pytest.mark.parametrize(
+    "scene, path, value",
+    [
+        (SCENE, ["models"], None),
+        (SCENE, ["models"], []),
+        (SCENE, ["model"], "builtin:box"),
+        (SCENE, ["models", 0, "model"], None),
+        (SCENE, ["models", 0, "modle"], "a"),
+        (SCENE, ["models", 0, "unit"], "inch"),
+        (SCENE, ["models", 0, "up"], "w"),
+        (SCENE, ["models", 0, "centre"], 1),
+        (SCENE, ["models", 0, "size"], [1, 2, 0]),
+        (SCENE, ["models", 0, "scale"], 0),
+        (SCENE, ["models", 0, "scale"], [1, 2]),
+        (SCENE, ["models", 0, "id"], -1),
+        (SCENE, ["models", 0, "id"], 4294967295),
+        (SCENE, ["models", 0, "materials"], [1]),
+        (SCENE, ["models", 0, "materials", "*", "difuse"], [1, 1, 1]),
+        (SCENE, ["models", 0, "pose", "orientation"], [1, 0, 0, 0]),
+        (SCENE, ["models", 0, "pose", "orientation"], {"w": 1, "x": 0, "y": 0}),
+        (SCENE, ["models", 0, "pose", "euler_deg"], {"yaw": 1}),
+        (SCENE, ["models", 0, "pose", "position"], [1, 2]),
+        (SCENE, ["models", 0, "pose", "look_at"], {"eye": [1, 2, 3], "target": [0, 0, 0]}),
+        (SCENE, ["models", 2, "pose", "matrix"], [1, 0, 0]),
+        (SCENE, ["models", 2, "pose", "position"], [1, 0, 0]),
+        (SCENE, ["models", 0, "motion"], {}),
+        (SCENE, ["models", 0, "motion", "spin"], {"rate_deg_s": [1, 0, 0]}),
+        (SCENE, ["models", 0, "motion", "tumbling", "rate_deg_s"], None),
+        (SCENE, ["models", 0, "motion", "tumbling", "rate_rad_s"], [1, 0, 0]),
+        (SCENE, ["models", 0, "motion", "tumbling", "moments_kg_m2"], [1, 2, 0]),
+        (SCENE, ["models", 1, "motion", "twist", "frame"], "wrld"),
+        (SCENE, ["models", 1, "motion"], {"trajectory": {"rate_hz": 1}}),
+        (SCENE, ["sensors"], []),
+        (SCENE, ["sensors", 0, "name"], None),
+        (SCENE, ["sensors", 1, "sensor", "optics", "widht"], 4),
+        (SCENE, ["sensor"], "VLP-16"),
+        (SCENE, ["sensors"], None),
+        (SINGLE, ["rig_pose"], {}),
+        (SINGLE, ["sensor"], ["VLP-16"]),
+        (SINGLE, ["sensor_pose", "position"], [0, 0, 0]),
+        (SINGLE, ["sensor_pose", "look_at", "target"], None),
+    ],
+    ids=str,
+)
+def test_errors_in_scenes_are_found_by_the_schema_and_by_the_reader(scene_schema, scene, path, value):
+    broken = changed_scene(scene, path, value)
+    assert not scene_schema.is_valid(broken)
+    with pytest.raises(glidar.Error):
+        glidar.Scene.from_dict(broken)
+
+
+def test_parts_of_scenes_have_schemas_of_their_own():
+    poses, motions = validator("pose"), validator("motion")
+    for model in SCENE["models"]:
+        poses.validate(model["pose"])
+        motions.validate(model["motion"])
+    assert not poses.is_valid({"positon": [0, 0, 0]})
+    assert not motions.is_valid({"spin": {}})

@@ -14,10 +14,13 @@ namespace {
 
 constexpr const char* kSchemaExamples = R"(Examples:
   glidar schema sensor > sensor.schema.json
+  glidar schema scene > scene.schema.json
 
-Editors with the YAML language server complete and check the keys of a sensor file with the line
+Editors with the YAML language server complete and check the keys of a sensor or scene file with
+the line
   # yaml-language-server: $schema=sensor.schema.json
-The schema of the bundled sensors is beside them, in the folder sensors.
+The schema of the bundled sensors is beside them, in the folder sensors; that of scenes is in the
+folder examples.
 Exit codes: 0 done, 2 no such schema.)";
 
 }  // namespace
@@ -27,7 +30,8 @@ Command add_schema(CLI::App& program) {
       *program.add_subcommand("schema", "Print the JSON Schema of YAML files, for editors");
   const auto name = std::make_shared<std::string>("sensor");
   command.footer(kSchemaExamples);
-  command.add_option("KIND", *name, "sensor (default), materials or surfaces");
+  command.add_option("KIND", *name,
+                     "sensor (default), scene, surfaces; pose, motion, materials: parts of scenes");
   return [name] {
     fmt::print("{}\n", json_schema(*name));
     return kDone;

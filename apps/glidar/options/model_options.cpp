@@ -11,7 +11,7 @@ namespace glidar::app {
 void add_model_options(CLI::App& command, ModelOptions& options) {
   const OptionGroup group(command, "Model");
   std::vector<std::pair<std::string, double>> units;
-  for (const LengthUnit& unit : kLengthUnits) units.emplace_back(unit.name, unit.metres);
+  for (const Named<double>& unit : kLengthUnits) units.emplace_back(unit.name, unit.value);
   group.add("--unit", "UNIT", "Unit of the file: mm, cm, m or in [as the file declares, or m]",
             options.metres_per_unit, one_of(units));
   group.add("--up", "AXIS", "Axis that points up: x, y or z [as the file declares, or z]",

@@ -24,8 +24,10 @@ class FieldWriter final : public FieldVisitor {
     if (is_report() || value != 0 || rule.min == 0) json_[field.key] = value;
   }
   void boolean(const FieldInfo& field, bool& value) override { json_[field.key] = value; }
-  void text(const FieldInfo& field, std::string& value) override { json_[field.key] = value; }
-  void path(const FieldInfo& field, std::string& value) override { json_[field.key] = value; }
+  void text(const FieldInfo& field, std::string& value) override {
+    if (is_report() || !value.empty()) json_[field.key] = value;
+  }
+  void path(const FieldInfo& field, std::string& value) override { text(field, value); }
   void word(const FieldInfo& field, std::span<const char* const> words,
             std::size_t& value) override {
     json_[field.key] = words[value];
@@ -76,6 +78,11 @@ class FieldWriter final : public FieldVisitor {
     }
     return is_present;
   }
+  void text_or_object(const FieldInfo& field, const char* /*allowed*/, std::string& value,
+                      Describe describe) override {
+    json_[field.key] =
+        value.empty() ? write_fields(mode_, describe) : nlohmann::ordered_json(value);
+  }
   void list(const FieldInfo& field, const ListAccess& access, DescribeAt describe) override {
     auto list = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < access.size; ++i) {
@@ -83,6 +90,15 @@ class FieldWriter final : public FieldVisitor {
       list.push_back(write_fields(mode_, Describe(body)));
     }
     json_[field.key] = std::move(list);
+  }
+  void by_name(const FieldInfo& field, const NamesAccess& access, DescribeAt describe) override {
+    if (access.size == 0 && !is_report()) return;
+    auto entries = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < access.size; ++i) {
+      const auto body = [&](FieldVisitor& visitor) { describe(i, visitor); };
+      entries[access.name(i)] = write_fields(mode_, Describe(body));
+    }
+    json_[field.key] = std::move(entries);
   }
   void variant(const FieldInfo& field, std::span<const TypeInfo> types, std::size_t chosen,
                DescribeAt describe) override {

@@ -5,11 +5,16 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/pose_keys.hpp>
 #include <glidar/core/unit_conversion.hpp>
 #include <glidar/io/config/material_keys.hpp>
+#include <glidar/io/config/motion_keys.hpp>
+#include <glidar/io/config/scene_plan.hpp>
 #include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -137,11 +142,23 @@ class SchemaBuilder final : public FieldVisitor {
     add(field, nested.result());
     return is_present;
   }
+  void text_or_object(const FieldInfo& field, const char* /*allowed*/, std::string& /*value*/,
+                      Describe describe) override {
+    SchemaBuilder nested;
+    describe(nested);
+    add(field, {{"anyOf", {{{"type", "string"}, {"minLength", 1}}, nested.result()}}});
+  }
   void list(const FieldInfo& field, const ListAccess& access, DescribeAt describe) override {
     access.resize(1);
     SchemaBuilder item;
     describe(0, item);
     add(field, list_schema(item.result(), access.min_size, access.max_size));
+  }
+  void by_name(const FieldInfo& field, const NamesAccess& access, DescribeAt describe) override {
+    access.add("*");
+    SchemaBuilder item;
+    describe(0, item);
+    add(field, {{"type", "object"}, {"additionalProperties", item.result()}});
   }
   void variant(const FieldInfo& field, std::span<const TypeInfo> types, std::size_t chosen,
                DescribeAt describe) override {
@@ -153,8 +170,7 @@ class SchemaBuilder final : public FieldVisitor {
       alternatives_.push_back(alternative.result());
     }
   }
-  void other(const FieldInfo& field, const char* kind) override {
-    const bool is_map = std::string(kind) == "map";
+  void provenance(const FieldInfo& field, bool is_map) override {
     add(field, {{"type", is_map ? "object" : "array"}, {"x-default", "none"}});
   }
   void at_most_one(const KeyChoice& choice) override {
@@ -208,14 +224,35 @@ Schema materials_schema() {
   return by_name(schema_of<MaterialOverride>());
 }
 
+/// Replaces copies of a schema by references to one copy.
+void share(Schema& part, const Schema& copied, const Schema& reference) {
+  if (part == copied) {
+    part = reference;
+  } else if (part.is_structured()) {
+    for (Schema& inner : part) share(inner, copied, reference);
+  }
+}
+
+/// A scene may contain sensors at several places.
+Schema scene_schema() {
+  const Schema sensor = schema_of<SensorKeys>();
+  Schema scene = schema_of<ScenePlan>();
+  share(scene, sensor, {{"$ref", "#/definitions/sensor"}});
+  scene["definitions"] = {{"sensor", sensor}};
+  return scene;
+}
+
 struct NamedSchema {
   const char* name;
   const char* title;
   Schema (*make)();
 };
 
-constexpr std::array<NamedSchema, 3> kSchemas = {
+constexpr std::array<NamedSchema, 6> kSchemas = {
     {{"sensor", "GLIDAR sensor file", schema_of<SensorKeys>},
+     {"scene", "GLIDAR scene file", scene_schema},
+     {"pose", "a pose in a GLIDAR scene file", schema_of<PoseKeys>},
+     {"motion", "a motion in a GLIDAR scene file", schema_of<MotionKeys>},
      {"materials", "'materials' of a model in a GLIDAR scene file", materials_schema},
      {"surfaces", "GLIDAR surface presets", surfaces_schema}}};
 
@@ -237,7 +274,7 @@ std::string json_schema(const std::string& name) {
   const std::string nearest = closest_match(name, schema_names());
   throw Error({.where = "schema",
                .found = "'" + excerpt(name) + "' has no schema",
-               .allowed = "sensor, materials, surfaces",
+               .allowed = fmt::format("{}", fmt::join(schema_names(), ", ")),
                .remedy = nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
 }
 

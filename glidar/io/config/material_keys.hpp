@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -30,6 +31,9 @@ struct MaterialOverride {
 
 /// Keys of one entry of `materials` in scene files.
 void describe(MaterialOverride& change, FieldVisitor& visitor);
+
+/// Moves the changes of all materials, "*", to the front: those of one material take precedence.
+void sort_overrides(std::vector<MaterialOverride>& changes);
 
 /// `spectrum`: pairs of wavelength and reflectance.
 void visit_spectrum(FieldVisitor& visitor, bool is_required, LookupTable& spectrum);

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/model/png_texture.hpp>
 
 #include <algorithm>
@@ -136,6 +137,16 @@ ClassPlaces places_of(const std::vector<std::string>& names) {
     places.try_emplace(name, static_cast<std::uint32_t>(places.size()));
   }
   return places;
+}
+
+std::vector<MaterialOverride> read_overrides(const YamlField& root) {
+  std::vector<MaterialOverride> changes;
+  for (const auto& [material, field] : entries(root)) {
+    changes.emplace_back().material = material;
+    read_struct(field, changes.back());
+  }
+  sort_overrides(changes);
+  return changes;
 }
 
 }  // namespace

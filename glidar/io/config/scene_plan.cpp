@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/scene_plan.hpp>
+
 #include <glidar/core/excerpt.hpp>
 #include <glidar/core/hits.hpp>
+#include <glidar/core/pose_keys.hpp>
 #include <glidar/io/config/length_unit.hpp>
-#include <glidar/io/config/motion_yaml.hpp>
-#include <glidar/io/config/pose_yaml.hpp>
-#include <glidar/io/config/rig_yaml.hpp>
-#include <glidar/io/config/scene_builder.hpp>
+#include <glidar/io/config/motion_keys.hpp>
+#include <glidar/io/config/rig_keys.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 
-#include <algorithm>
 #include <map>
 #include <string>
 #include <unordered_map>
@@ -21,14 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr NumberRule kScale = {kMinScale, kMaxScale, false, "a number from 1e-15 to 1e15"};
-constexpr NumberRule kSize_m = {0.0, kMaxCoordinate_m, true, "metres above 0 and below 1e15"};
-
-std::string resolved(const YamlField& field) {
-  const std::string source = text(field);
-  return source.starts_with(kBuiltinPrefix) ? source : path_beside(field);
-}
-
 std::string stem(const std::string& source) {
   if (source.starts_with(kBuiltinPrefix)) {
     const std::string name = source.substr(kBuiltinPrefix.size());
@@ -37,100 +29,100 @@ std::string stem(const std::string& source) {
   return fs::path(source).stem().string();
 }
 
-ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) {
-  ModelOptions options = defaults;
-  if (const auto unit = find(model, "unit")) {
-    options.metres_per_unit = kLengthUnits[one_of(*unit, length_unit_names())].metres;
-  }
-  if (const auto up = find(model, "up")) {
-    options.up = static_cast<Axis>(one_of(*up, {"x", "y", "z"}));
-  }
-  if (const auto centre = find(model, "centre")) options.centre = boolean(*centre);
-  return options;
+void visit_options(FieldVisitor& visitor, ModelOptions& options) {
+  constexpr std::array<Named<Axis>, 3> kAxes = {{{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}};
+  visit_choice(visitor,
+               {"unit", "unit of the model file", kNoUnit, false,
+                "`--unit`, else that of the model file, else `m`"},
+               kLengthUnits, options.metres_per_unit);
+  visit_choice(visitor,
+               {"up", "axis of the model file that becomes z", kNoUnit, false,
+                "`--up`, else that of the model file, else `z`"},
+               kAxes, options.up);
+  visitor.boolean({"centre",
+                   "`true`: moves the centre of the bounding box to the origin, after `unit` and "
+                   "`up`"},
+                  options.centre);
 }
 
-/// One factor, or one for each of the model's own axes.
-Eigen::Vector3d read_scale(const YamlField& field) {
-  if (field.node.IsSequence()) return triple(field, kScale);
-  return Eigen::Vector3d::Constant(number(field, kScale));
-}
-
-/// A size of a built-in model as its source names it.
-std::string size_text(const YamlField& field) {
-  if (!field.node.IsSequence()) return number_text(number(field, kSize_m));
+/// A size of a built-in model, which becomes part of its source. Documents have it there.
+void visit_size(FieldVisitor& visitor, const FieldInfo& field, std::size_t max_size,
+                std::string& source) {
+  if (visitor.is_writing()) return;
+  std::vector<double> sizes;
+  visitor.numbers(field,
+                  {.number = {0.0, kMaxCoordinate_m, true, "metres above 0 and below 1e15"},
+                   .min_size = 1,
+                   .max_size = max_size,
+                   .takes_one = true,
+                   .allowed = max_size == 1 ? "a number" : "a number, or a list of 3"},
+                  sizes);
+  if (!visitor.is_reading() || sizes.empty()) return;
+  if (!source.starts_with(kBuiltinPrefix)) {
+    visitor.reject(field.key, "given for a model file", "sizes of built-in models alone",
+                   "change the size of a model file with 'scale' or 'unit'");
+  }
   std::string numbers;
-  for (const YamlField& one : items(field)) {
-    numbers += (numbers.empty() ? "" : ",") + number_text(number(one, kSize_m));
-  }
-  return numbers;
+  for (const double size : sizes) numbers += (numbers.empty() ? "" : ",") + number_text(size);
+  source += std::string(":") + field.key + "=" + numbers;
 }
 
-/// The model's source with the sizes that a built-in model is given beside its name.
-std::string read_source(const YamlField& field) {
-  const YamlField model = need(field, "model");
-  std::string source = resolved(model);
-  for (const char* key : {"size", "radius", "tube_radius"}) {
-    const auto size = find(field, key);
-    if (!size) continue;
-    if (!source.starts_with(kBuiltinPrefix)) {
-      reject(*size, "given for a model file", "sizes of built-in models alone",
-             "change the size of a model file with 'scale' or 'unit'");
-    }
-    source += std::string(":") + key + "=" + size_text(*size);
-  }
-  return source;
+void visit_sizes(FieldVisitor& visitor, std::string& source) {
+  const char* const by_model = "see [models](models.md#built-in-models)";
+  visit_size(visitor, {"size", "of a built-in model", kUnitMetre, false, by_model}, 3, source);
+  visit_size(visitor, {"radius", "of a built-in model", kUnitMetre, false, by_model}, 1, source);
+  visit_size(visitor, {"tube_radius", "of a built-in model", kUnitMetre, false, by_model}, 1,
+             source);
 }
 
-MaterialOverride read_override(const std::string& material, const YamlField& field) {
-  MaterialOverride change;
-  change.material = material;
-  change.where = where(field);
-  read_struct(field, change);
-  if (const auto texture = find(field, "noise_texture")) {
-    change.where_noise_texture = where(*texture);
-  }
-  return change;
+void visit_scale(FieldVisitor& visitor, Eigen::Vector3d& scale) {
+  std::vector<double> factors = {scale.x(), scale.y(), scale.z()};
+  visitor.numbers(
+      {"scale", "along the model's own axes: one factor, or `[x, y, z]`", kNoUnit, false, "1"},
+      {.number = {kMinScale, kMaxScale, false, "a number from 1e-15 to 1e15"},
+       .min_size = 3,
+       .max_size = 3,
+       .takes_one = true,
+       .allowed = "a list of 3 numbers"},
+      factors);
+  if (visitor.is_reading()) scale = Eigen::Vector3d(factors[0], factors[1], factors[2]);
 }
 
-/// Where the model is at time 0, and how it moves.
-void read_placing(const YamlField& field, PlannedInstance& planned,
-                  std::vector<std::string>& files) {
-  std::optional<Pose> start;
-  if (const auto pose = find(field, "pose")) start = read_pose(*pose);
-  planned.world_from_object = start.value_or(Pose::Identity());
-  const auto motion = find(field, "motion");
-  if (!motion) return;
-  planned.motion = read_motion(*motion, start, files);
-  planned.world_from_object = pose_at(*planned.motion, 0);
+void visit_materials(FieldVisitor& visitor, std::vector<MaterialOverride>& changes) {
+  const auto name = [&](std::size_t i) -> const std::string& { return changes[i].material; };
+  const auto add = [&](const std::string& material) { changes.emplace_back().material = material; };
+  const auto body = [&](std::size_t i, FieldVisitor& nested) { describe(changes[i], nested); };
+  visitor.by_name(
+      {"materials", "[changes](materials.md) by the name of a material; `\"*\"`: of all", kNoUnit,
+       false, "none"},
+      {changes.size(), FunctionRef<const std::string&(std::size_t)>(name),
+       FunctionRef<void(const std::string&)>(add)},
+      FieldVisitor::DescribeAt(body));
+  if (visitor.is_reading()) sort_overrides(changes);
 }
 
-PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults,
-                           std::vector<std::string>& files) {
-  require_map(field, {"model", "name", "unit", "up", "centre", "size", "radius", "tube_radius",
-                      "scale", "pose", "id", "class", "materials", "motion"});
-  PlannedInstance planned;
-  planned.source = read_source(field);
-  planned.where = where(need(field, "model"));
-  planned.options = read_options(field, defaults);
-  if (const auto scale = find(field, "scale")) planned.scale = read_scale(*scale);
-  read_placing(field, planned, files);
-  if (const auto name = find(field, "class")) planned.class_name = text(*name);
-  if (const auto materials = find(field, "materials")) {
-    planned.overrides = read_overrides(*materials);
-  }
-  return planned;
+/// Where the model is at time 0, and its class and surface. `motion` follows the other keys.
+void visit_attributes(FieldVisitor& visitor, PlannedInstance& model, MotionKeys& motion) {
+  const FieldInfo pose = {"pose", "world_from_object at time 0, a [pose](motion.md#poses)", kNoUnit,
+                          false, "identity"};
+  if (visitor.is_writing() && model.motion) model.world_from_object = start_pose(*model.motion);
+  const bool has_pose = visit_pose(visitor, pose, visitor.is_writing(), model.world_from_object);
+  if (has_pose) motion.start = model.world_from_object;
+  visitor.whole_number(
+      {"id", "unique; clouds contain it", kNoUnit, false, "position in the list, from 1"},
+      {0, kInvalidId - 1}, model.id);
+  visitor.text({"class", "semantic class", kNoUnit, false, "`unlabelled`"}, model.class_name);
+  visit_materials(visitor, model.overrides);
 }
 
-/// Keeps names given in the file; the others get the name of their model file, with a number where
-/// it is taken.
-void read_names(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
+/// Names that the file gives are kept; the others get their file's name, with a number if it is
+/// taken.
+void complete_names(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
   std::unordered_set<std::string> taken;
   std::unordered_map<std::string, std::uint64_t> counted;  // by file: how many names it has given
   for (std::size_t i = 0; i < models.size(); ++i) {
     const auto field = find(models[i], "name");
-    if (!field) continue;
-    planned[i].name = text(*field);
-    if (taken.insert(planned[i].name).second) continue;
+    if (!field || taken.insert(planned[i].name).second) continue;
     reject(*field, "the name '" + excerpt(planned[i].name) + "' is given twice", "each name once",
            "choose another name");
   }
@@ -144,13 +136,12 @@ void read_names(const std::vector<YamlField>& models, std::vector<PlannedInstanc
   }
 }
 
-/// Without an id of its own, a model gets its position in the list, counted from 1.
-void read_ids(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
+/// A model without an id gets its position in the list, counted from 1.
+void complete_ids(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
   std::map<std::uint32_t, std::size_t> taken;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const auto field = find(models[i], "id");
-    planned[i].id =
-        field ? whole_number(*field, 0, kInvalidId - 1) : static_cast<std::uint32_t>(i + 1);
+    if (!field) planned[i].id = static_cast<std::uint32_t>(i + 1);
     const auto [other, is_new] = taken.try_emplace(planned[i].id, i);
     if (is_new) continue;
     reject(field ? *field : models[i],
@@ -161,28 +152,50 @@ void read_ids(const std::vector<YamlField>& models, std::vector<PlannedInstance>
   }
 }
 
-std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOptions& defaults,
-                                         std::vector<std::string>& files) {
-  const std::vector<YamlField> models = items(field);
-  if (models.empty()) reject(field, "an empty list", "at least one model");
-  std::vector<PlannedInstance> planned;
-  for (const YamlField& model : models) planned.push_back(read_model(model, defaults, files));
-  read_names(models, planned);
-  read_ids(models, planned);
-  return planned;
+/// The trajectories and textures that the models name.
+std::vector<std::string> files_of(const std::vector<PlannedInstance>& instances) {
+  std::vector<std::string> files;
+  for (const PlannedInstance& one : instances) {
+    files.insert(files.end(), one.motion_files.begin(), one.motion_files.end());
+  }
+  for (const PlannedInstance& one : instances) {
+    for (const MaterialOverride& change : one.overrides) {
+      if (!change.noise_texture.empty()) files.push_back(change.noise_texture);
+    }
+  }
+  return files;
 }
 
 }  // namespace
 
-std::vector<MaterialOverride> read_overrides(const YamlField& field) {
-  std::vector<MaterialOverride> changes;
-  for (const auto& [material, value] : entries(field)) {
-    changes.push_back(read_override(material, value));
-  }
-  // Changes of one material have priority over changes of all, in any order.
-  std::stable_partition(changes.begin(), changes.end(),
-                        [](const MaterialOverride& change) { return change.material == "*"; });
-  return changes;
+void describe(PlannedInstance& model, FieldVisitor& visitor) {
+  visitor.path(
+      {"model", "a path, or a [built-in model](models.md#built-in-models)", kNoUnit, kRequired},
+      model.source);
+  if (visitor.is_reading()) model.where = visitor.where("model");
+  visitor.text({"name", "unique in the scene", kNoUnit, false,
+                "file name without folder and suffix; `_2`, `_3` ... if it is taken"},
+               model.name);
+  visit_options(visitor, model.options);
+  visit_sizes(visitor, model.source);
+  visit_scale(visitor, model.scale);
+  MotionKeys motion;
+  visit_attributes(visitor, model, motion);
+  if (visitor.is_writing()) motion.trajectory = model.motion;
+  const FieldInfo field = {"motion", "[motion](motion.md#motion)", kNoUnit, false, "stationary"};
+  if (!visit_motion(visitor, field, motion) || !visitor.is_reading()) return;
+  model.motion = std::move(motion.trajectory);
+  model.motion_files = std::move(motion.files);
+  model.world_from_object = pose_at(*model.motion, 0);
+}
+
+void describe(ScenePlan& plan, FieldVisitor& visitor) {
+  PlannedInstance model;
+  model.options = plan.defaults;
+  visit_list(visitor, {"models", "at least one", kNoUnit, kRequired}, {1, 0xFFFFFFFF},
+             "at least one model", plan.instances, model);
+  if (visitor.is_reading()) plan.files = files_of(plan.instances);
+  visit_rig(visitor, plan);
 }
 
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
@@ -192,16 +205,12 @@ ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
 }
 
 ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults) {
-  require_map(root, {"models", "sensor", "sensor_pose", "sensor_motion", "sensors", "rig_pose",
-                     "rig_motion"});
   ScenePlan plan;
-  plan.instances = read_models(need(root, "models"), defaults, plan.files);
-  for (const PlannedInstance& planned : plan.instances) {
-    for (const MaterialOverride& change : planned.overrides) {
-      if (!change.noise_texture.empty()) plan.files.push_back(change.noise_texture);
-    }
-  }
-  read_rig(root, plan);
+  plan.defaults = defaults;
+  read_struct(root, plan);
+  const std::vector<YamlField> models = items(need(root, "models"));
+  complete_names(models, plan.instances);
+  complete_ids(models, plan.instances);
   return plan;
 }
 

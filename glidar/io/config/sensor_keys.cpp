@@ -26,7 +26,9 @@ void visit_optics(SensorKeys& keys, FieldVisitor& visitor) {
   }
   visitor.object({"optics", "the rays, see [optics](optics.md)", kNoUnit, is_required}, is_present,
                  FieldVisitor::Describe(optics));
-  if (visitor.is_reading()) keys.sensor.optics = optics_of(std::move(keys.optics));
+  if (!visitor.is_reading()) return;
+  if (std::string file = file_of(keys.optics); !file.empty()) keys.sensor.files = {std::move(file)};
+  keys.sensor.optics = optics_of(std::move(keys.optics));
 }
 
 /// Defaults that depend on the optics.
@@ -98,21 +100,10 @@ void visit_projector(Sensor& sensor, FieldVisitor& visitor) {
 }  // namespace
 
 SensorKeys sensor_keys(const Sensor& sensor) {
-  SensorKeys keys;
-  keys.optics = optics_keys(sensor.optics);
-  keys.has_table = std::holds_alternative<RayTable>(sensor.optics);
-  keys.sensor.name = sensor.name;
-  keys.sensor.rate_hz = sensor.rate_hz;
-  keys.sensor.wavelength_m = sensor.wavelength_m;
-  keys.sensor.limits = sensor.limits;
-  keys.sensor.light = sensor.light;
-  keys.sensor.lidar_equation = sensor.lidar_equation;
-  keys.sensor.footprint = sensor.footprint;
-  keys.sensor.weather = sensor.weather;
-  keys.sensor.receiver = sensor.receiver;
-  keys.sensor.projector_origin_m = sensor.projector_origin_m;
-  keys.sensor.noise = sensor.noise;
-  keys.sensor.cull_back_faces = sensor.cull_back_faces;
+  SensorKeys keys = {.sensor = sensor,
+                     .optics = optics_keys(sensor.optics),
+                     .has_table = std::holds_alternative<RayTable>(sensor.optics)};
+  keys.sensor.optics = {};  // a table can be large, and keys are copied
   return keys;
 }
 
@@ -141,9 +132,9 @@ void describe(SensorKeys& keys, FieldVisitor& visitor) {
   visitor.boolean(
       {"cull_back_faces", "`true`: beams pass through triangles that are seen from behind"},
       sensor.cull_back_faces);
-  visitor.other({"source", "where the numbers come from: text for keys of this file"}, "map");
-  visitor.other({"unverified", "keys that were not checked against the manufacturer's documents"},
-                "list");
+  visitor.provenance({"source", "where the numbers come from: text for keys of this file"}, true);
+  visitor.provenance(
+      {"unverified", "keys that were not checked against the manufacturer's documents"}, false);
 }
 
 }  // namespace glidar

@@ -16,10 +16,6 @@ namespace {
 SurfacePreset read_surface(const std::string& name, const YamlField& field) {
   SurfacePreset surface{.name = name, .about = "", .spectrum = {}, .source = ""};
   read_struct(field, surface);
-  if (const auto unverified = find(field, "unverified")) {
-    for (const YamlField& key : items(*unverified)) one_of(key, {"spectrum", "backscatter"});
-    surface.verified = false;
-  }
   return surface;
 }
 
@@ -30,7 +26,8 @@ void describe(SurfacePreset& surface, FieldVisitor& visitor) {
   visit_spectrum(visitor, kRequired, surface.spectrum);
   visit_object(visitor, {"backscatter", "how the surface reflects pulses"}, surface.backscatter);
   visitor.text({"source", "where the numbers come from", kNoUnit, kRequired}, surface.source);
-  visitor.other({"unverified", "keys whose numbers are not published"}, "list");
+  visitor.provenance({"unverified", "keys whose numbers are not published"}, false);
+  if (visitor.is_reading()) surface.verified = !visitor.has("unverified");
 }
 
 std::vector<SurfacePreset> load_surfaces() {

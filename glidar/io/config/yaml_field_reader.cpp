@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/yaml_field_reader.hpp>
 
+#include <glidar/io/config/provenance.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 
 #include <algorithm>
@@ -99,10 +100,16 @@ class FieldReader final : public FieldVisitor {
     if (given) read_fields(*given, describe);
     return given.has_value() || is_present;
   }
+  void text_or_object(const FieldInfo& field, const char* allowed, std::string& value,
+                      Describe describe) override;
   void list(const FieldInfo& field, const ListAccess& access, DescribeAt describe) override;
+  void by_name(const FieldInfo& field, const NamesAccess& access, DescribeAt describe) override;
   void variant(const FieldInfo& field, std::span<const TypeInfo> types, std::size_t chosen,
                DescribeAt describe) override {
     describe(read_type(map_, field, types, chosen), *this);
+  }
+  void provenance(const FieldInfo& field, bool is_map) override {
+    if (has(field.key)) (is_map ? check_sources : check_unverified)(map_);
   }
   void at_most_one(const KeyChoice& choice) override;
   void needs(const KeyNeed& need) override {
@@ -110,6 +117,13 @@ class FieldReader final : public FieldVisitor {
     reject(need.key, "given without '" + std::string(need.needed) + "'", need.allowed, need.remedy);
   }
   [[nodiscard]] bool has(const char* key) const override { return find(map_, key).has_value(); }
+  [[nodiscard]] bool is_list(const char* key) const override {
+    return place_of(key).node.IsSequence();
+  }
+  [[nodiscard]] std::string file() const override { return map_.file; }
+  [[nodiscard]] std::string where(const char* key) const override {
+    return glidar::where(place_of(key));
+  }
 
  protected:
   [[nodiscard]] Error error_at(const ErrorParts& parts) const override;
@@ -117,6 +131,9 @@ class FieldReader final : public FieldVisitor {
  private:
   [[nodiscard]] std::optional<YamlField> value_of(const FieldInfo& field) const {
     return field.is_required ? need(map_, field.key) : find(map_, field.key);
+  }
+  [[nodiscard]] YamlField place_of(const std::string& key) const {
+    return find(map_, key).value_or(map_);
   }
 
   const YamlField& map_;
@@ -181,6 +198,17 @@ void FieldReader::numbers(const FieldInfo& field, const NumberListRule& rule,
   for (double& value : values) value *= field.unit.size;
 }
 
+void FieldReader::text_or_object(const FieldInfo& field, const char* allowed, std::string& value,
+                                 Describe describe) {
+  const auto given = value_of(field);
+  if (!given) return;
+  if (given->node.IsMap()) return read_fields(*given, describe);
+  if (!given->node.IsScalar() || given->node.Scalar().empty()) {
+    glidar::reject(*given, content_text(*given), allowed);
+  }
+  value = given->node.Scalar();
+}
+
 void FieldReader::list(const FieldInfo& field, const ListAccess& access, DescribeAt describe) {
   const auto given = value_of(field);
   if (!given) return;
@@ -196,13 +224,25 @@ void FieldReader::list(const FieldInfo& field, const ListAccess& access, Describ
   if (all.size() > access.max_size) glidar::reject(*given, content_text(*given), access.allowed);
 }
 
+void FieldReader::by_name(const FieldInfo& field, const NamesAccess& access, DescribeAt describe) {
+  const auto given = value_of(field);
+  if (!given) return;
+  std::size_t count = 0;
+  for (const auto& [name, value] : entries(*given)) {
+    access.add(name);
+    const auto body = [&](FieldVisitor& visitor) { describe(count, visitor); };
+    read_fields(value, Describe(body));
+    ++count;
+  }
+}
+
 void FieldReader::at_most_one(const KeyChoice& choice) {
   const char* chosen = nullptr;
   for (const char* key : choice.keys) {
     if (!has(key)) continue;
     if (chosen != nullptr) {
       reject(key, "given beside '" + std::string(chosen) + "'", choice.allowed,
-             "remove one of them");
+             choice.conflict_remedy);
     }
     chosen = key;
   }
@@ -213,12 +253,12 @@ void FieldReader::at_most_one(const KeyChoice& choice) {
 }
 
 Error FieldReader::error_at(const ErrorParts& parts) const {
-  const YamlField at = find(map_, parts.where).value_or(map_);
+  const YamlField at = place_of(parts.where);
   std::string found = parts.found;
   if (const std::size_t place = found.find("{}"); place != std::string::npos) {
     found.replace(place, 2, content_text(at));
   }
-  return Error({where(at), found, parts.allowed, parts.remedy});
+  return Error({glidar::where(at), found, parts.allowed, parts.remedy});
 }
 
 }  // namespace

@@ -155,7 +155,8 @@ std::string content_text(const YamlField& field) {
     case YAML::NodeType::Map:
       return "a map";
     case YAML::NodeType::Sequence:
-      return "a list of " + std::to_string(field.node.size());
+      return field.node.size() == 0 ? "an empty list"
+                                    : "a list of " + std::to_string(field.node.size());
     default:
       break;
   }

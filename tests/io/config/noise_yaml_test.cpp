@@ -148,7 +148,7 @@ const BadFile kBadSteps[] = {
     {"GateEndsBeforeItBegins", "{type: false_alarms, rate_hz: 1, near_m: 2, far_m: 1}",
      "s.yaml:2:60: noise[0].far_m: 1, not beyond near_m; allowed: a finite number above near_m"},
     {"NoFrequency", "{type: continuous_wave, electrons_at_full_scale: 1, frequencies_hz: []}",
-     "s.yaml:2:77: noise[0].frequencies_hz: a list of 0; allowed: 1 to 8 frequencies"},
+     "s.yaml:2:77: noise[0].frequencies_hz: an empty list; allowed: 1 to 8 frequencies"},
     {"OddFrequencies",
      "{type: continuous_wave, electrons_at_full_scale: 1, frequencies_hz: [80e6, 16000001]}",
      "s.yaml:2:77: noise[0].frequencies_hz: their greatest common divisor is below a thousandth of "

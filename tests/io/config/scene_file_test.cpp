@@ -166,6 +166,15 @@ TEST(SceneFile, EulerAnglesTurnAboutFixedAxesXThenYThenZ) {
   EXPECT_TRUE((yawed * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d::UnitY(), 1e-15));
 }
 
+TEST(SceneFile, MatricesKeepTheirBitsUnlessTheyAreRounded) {
+  const Pose exact = pose("matrix: [0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7]");
+  EXPECT_EQ(exact.translation(), Eigen::Vector3d(5, 6, 7));
+  EXPECT_EQ(exact * Eigen::Vector3d::UnitX(), Eigen::Vector3d(5, 7, 7));
+  const Pose rounded = pose("matrix: [0.866, -0.5, 0, 0, 0.5, 0.866, 0, 0, 0, 0, 1, 0]");
+  EXPECT_TRUE(is_rigid(rounded));
+  EXPECT_TRUE(rounded.isApprox(pose("euler_deg: {yaw: 30}"), 1e-4));
+}
+
 TEST(SceneFile, QuaternionsOfAnyLengthAreNormalised) {
   const Pose plain = pose("orientation: {w: 1, x: 2, y: 3, z: 4}");
   EXPECT_TRUE(pose("orientation: {w: 1e300, x: 2e300, y: 3e300, z: 4e300}").isApprox(plain, 1e-15));

@@ -7,7 +7,7 @@
 namespace glidar {
 namespace {
 
-TEST(RigYaml, ARigHasItsSensorsWithNamesAndPosesInTheOrderOfTheList) {
+TEST(RigKeys, ARigHasItsSensorsWithNamesAndPosesInTheOrderOfTheList) {
   const TestFolder folder;
   const ScenePlan scene = read_scene_plan(
       folder.write(
@@ -29,7 +29,7 @@ TEST(RigYaml, ARigHasItsSensorsWithNamesAndPosesInTheOrderOfTheList) {
   EXPECT_EQ(pose_at(*scene.rig_motion, 1'000'000'000).translation(), Eigen::Vector3d(1, 3, 0));
 }
 
-TEST(RigYaml, ASingleSensorIsARigWithoutAName) {
+TEST(RigKeys, ASingleSensorIsARigWithoutAName) {
   const TestFolder folder;
   const ScenePlan scene = read_scene_plan(
       folder.write("scene.yaml",

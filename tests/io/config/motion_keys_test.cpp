@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/config/motion_yaml.hpp>
+#include <glidar/io/config/motion_keys.hpp>
 
 #include <glidar/io/config/scene_file.hpp>
 
@@ -22,14 +22,14 @@ Trajectory motion(const std::string& content) {
   return load_scene_file(file, {}, {}).world_from_instance.at(0);
 }
 
-TEST(MotionYaml, SpinStartsAtThePose) {
+TEST(MotionKeys, SpinStartsAtThePose) {
   const auto spin = std::get<Spin>(
       motion("pose: {position: [1, 2, 3]}, motion: {spin: {rate_deg_s: [0, 0, 90]}}"));
   EXPECT_EQ(spin.pose.translation(), Eigen::Vector3d(1.0, 2.0, 3.0));
   EXPECT_DOUBLE_EQ(spin.rate_rad_s.z(), std::numbers::pi / 2.0);
 }
 
-TEST(MotionYaml, TwistTakesEveryKey) {
+TEST(MotionKeys, TwistTakesEveryKey) {
   const auto twist = std::get<ConstantTwist>(
       motion("motion: {twist: {rate_rad_s: [1, 2, 3], velocity_m_s: [4, 5, 6], frame: world}}"));
   EXPECT_EQ(twist.angular_rad_s, Eigen::Vector3d(1.0, 2.0, 3.0));
@@ -41,7 +41,7 @@ TEST(MotionYaml, TwistTakesEveryKey) {
   EXPECT_EQ(straight.frame, TwistFrame::body);
 }
 
-TEST(MotionYaml, TumblingTakesEveryKey) {
+TEST(MotionKeys, TumblingTakesEveryKey) {
   const auto body = std::get<TorqueFreeRotation>(
       motion("motion: {tumbling: {moments_kg_m2: [1, 2, 2.5], rate_rad_s: [0.1, 0.2, 0.3], "
              "velocity_m_s: [1, 0, 0], principal: {position: [0.5, 0, 0]}}}"));
@@ -51,7 +51,7 @@ TEST(MotionYaml, TumblingTakesEveryKey) {
   EXPECT_EQ(body.start().body_from_principal.translation(), Eigen::Vector3d(0.5, 0.0, 0.0));
 }
 
-TEST(MotionYaml, TrajectoryIsAPathOrAMap) {
+TEST(MotionKeys, TrajectoryIsAPathOrAMap) {
   EXPECT_EQ(pose_at(motion("motion: {trajectory: orbit.tum}"), 11 * kSecond_ns).translation().x(),
             3.0);
   EXPECT_EQ(pose_at(motion("motion: {trajectory: {file: orbit.tum, start_s: 0}}"), kSecond_ns)
@@ -64,7 +64,7 @@ TEST(MotionYaml, TrajectoryIsAPathOrAMap) {
             4.0);
 }
 
-TEST(MotionYaml, SceneShowsEverythingAtTimeZero) {
+TEST(MotionKeys, SceneShowsEverythingAtTimeZero) {
   const TestFolder folder;
   (void)folder.write("orbit.tum", "-1 1 2 3 0 0 0 1\n1 5 2 3 0 0 0 1\n");
   const auto file = folder.write("s.yaml",
@@ -83,7 +83,7 @@ TEST(MotionYaml, SceneShowsEverythingAtTimeZero) {
   EXPECT_EQ(std::filesystem::path(scene.files[1]).filename(), "orbit.tum");
 }
 
-TEST(MotionYaml, AStillSceneHasNoTrajectories) {
+TEST(MotionKeys, AStillSceneHasNoTrajectories) {
   const TestFolder folder;
   const auto file = folder.write("s.yaml", "models: [{model: builtin:box}]\n");
   EXPECT_TRUE(load_scene_file(file, {}, {}).world_from_instance.empty());

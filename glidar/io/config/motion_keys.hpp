@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: motion as scene files describe it.
+
+#include <glidar/core/field.hpp>
+#include <glidar/motion/motion.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// `motion` of a scene file. It starts at the pose that the file gives in another key.
+struct MotionKeys {
+  std::optional<Pose> start;  ///< at t0_ns; empty: the file gives none
+  std::int64_t t0_ns = 0;
+  std::optional<Trajectory> trajectory;  ///< empty: stationary
+  std::vector<std::string> files;        ///< those that were read
+};
+
+/// {spin: ...}, {twist: ...} or {tumbling: ...} from the start, or {trajectory: ...}, which
+/// contains the poses and is an error if there is a start.
+void describe(MotionKeys& keys, FieldVisitor& visitor);
+
+/// The pose from which a motion starts; of other trajectories the pose at time 0.
+Pose start_pose(const Trajectory& trajectory);
+
+/// A motion as a nested map. Returns whether it is present.
+bool visit_motion(FieldVisitor& visitor, const FieldInfo& field, MotionKeys& keys);
+
+}  // namespace glidar

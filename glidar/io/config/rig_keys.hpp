@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io.
+
+#include <glidar/io/config/scene_plan.hpp>
+
+namespace glidar {
+
+/// The sensors of a scene file and where they are: `sensor`, `sensor_pose` and `sensor_motion`, or
+/// `sensors`, `rig_pose` and `rig_motion`.
+void visit_rig(FieldVisitor& visitor, ScenePlan& plan);
+
+}  // namespace glidar

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: a scene file as plain data.
+
+#include <glidar/io/config/material_keys.hpp>
+#include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/config/yaml_reader.hpp>
+#include <glidar/io/model/model.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// One entry of `models`.
+struct PlannedInstance {
+  std::string source;  ///< as load_model() accepts it; relative paths are resolved
+  std::string where;   ///< the key `model`, for errors
+  ModelOptions options;
+  std::string name;                                 ///< unique in the scene
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< along the model's own axes
+  Pose world_from_object = Pose::Identity();        ///< at time 0
+  std::optional<Trajectory> motion;                 ///< empty: stationary
+  std::vector<std::string> motion_files;            ///< trajectory files that were read
+  std::uint32_t id = 0;
+  std::string class_name;                   ///< empty: unlabelled
+  std::vector<MaterialOverride> overrides;  ///< those for "*" first
+};
+
+/// The contents of a scene file, checked, before any model is loaded.
+struct ScenePlan {
+  ModelOptions defaults;  ///< of models without such keys
+  std::vector<PlannedInstance> instances;
+  std::vector<RigSensor> sensors;
+  std::optional<Pose> world_from_rig;
+  bool looks_at = false;                 ///< see SceneFile
+  std::optional<Trajectory> rig_motion;  ///< empty: stationary
+  std::vector<std::string> files;  ///< the scene file, and the files that it names except models
+};
+
+void describe(PlannedInstance& model, FieldVisitor& visitor);
+void describe(ScenePlan& plan, FieldVisitor& visitor);
+
+/// Reads a scene file and the sensor files that it names; loads no model.
+ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
+/// The same for the contents of such a file; `files` lacks the file itself.
+ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults);
+
+}  // namespace glidar
