@@ -29,13 +29,33 @@ std::string position(const std::string& file, const YAML::Mark& mark) {
   return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
 }
 
-/// The advice for a syntax error: a tab in the indentation is the one most people cannot see.
-std::string advice(const std::string& content, int line) {
+std::string line_at(const std::string& content, int line) {
   std::istringstream lines(content);
   std::string text;
   for (int i = 0; i <= line; ++i) std::getline(lines, text);
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;  // columns do not count it
+}
+
+/// The advice for a syntax error: a tab in the indentation is the one most people cannot see.
+std::string advice(const std::string& content, int line) {
+  const std::string text = line_at(content, line);
   const std::string indentation = text.substr(0, text.find_first_not_of(" \t"));
   return indentation.find('\t') != std::string::npos ? "indent with spaces, not with tabs" : "";
+}
+
+/// The name of the alias at this place.
+std::string alias_at(const std::string& content, const YAML::Mark& mark) {
+  const std::string line = line_at(content, mark.line);
+  const std::size_t star = line.find('*', static_cast<std::size_t>(mark.column));
+  if (star == std::string::npos) return "";
+  const std::size_t end = std::min(line.find_first_of(" \t\r,[]{}", star), line.size());
+  return excerpt(line.substr(star + 1, end - star - 1));
+}
+
+/// yaml-cpp's own text for this error depends on its version.
+[[noreturn]] void reject_alias(const std::string& where, const std::string& name) {
+  throw Error({where, "the alias '*" + name + "' has no anchor", "",
+               "write '&" + name + "' before the value that it repeats"});
 }
 
 std::vector<YAML::Node> parse(const std::string& file, const std::string& content) {
@@ -45,6 +65,9 @@ std::vector<YAML::Node> parse(const std::string& file, const std::string& conten
   } catch (const YAML::DeepRecursion& error) {
     throw Error({position(file, error.mark), "nested too deeply", "a sensor or scene file", ""});
   } catch (const YAML::Exception& error) {
+    if (error.msg.starts_with(YAML::ErrorMsg::UNKNOWN_ANCHOR)) {
+      reject_alias(position(file, error.mark), alias_at(content, error.mark));
+    }
     throw Error({position(file, error.mark), "not YAML: " + excerpt(error.msg), "",
                  advice(content, error.mark.line)});
   }

@@ -281,7 +281,8 @@ const BadFile kBadFiles[] = {
     {"BrokenSyntax", "optics:\n  width: [1, 2\nheight: 3\n",
      "s.yaml:3:7: not YAML: end of sequence flow not found"},
     {"UnknownAnchor", "name: *nobody\n",
-     "s.yaml:1:7: not YAML: the referenced anchor is not defined"},
+     "s.yaml:1:7: the alias '*nobody' has no anchor; write '&nobody' before the value that it "
+     "repeats"},
     {"TabInIndentation", "optics:\n\twidth: 4\n",
      "s.yaml:2:7: not YAML: illegal map value; indent with spaces, not with tabs"},
     {"TabAfterSpaces", "optics:\n  width: 4\n\theight: 4\n",
