@@ -8,6 +8,7 @@
 #include <import/gltf_extensions.hpp>
 #include <import/gltf_transforms.hpp>
 #include <import/loaded_libraries.hpp>
+#include <import/ply_header.hpp>
 #include <import/read_materials.hpp>
 
 #include <assimp/importerdesc.h>
@@ -106,6 +107,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   FileLog log;
   const auto own = files.content(canonical_model.string());  // the first of the files
   if (own == nullptr) throw Refusal{"cannot be opened", "check its read permission"};
+  const PlyHeader ply = read_ply_header(*own);
   replace_gltf_extensions(canonical_model, folder, files, log);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
@@ -116,6 +118,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   }
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene* scene = importer.GetOrphanedScene();
+  add_ply_texture(ply, *scene);
   ImportedModel imported;
   Model& model = imported.model;
   model.format = importer_name(importer);

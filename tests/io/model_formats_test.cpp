@@ -65,10 +65,37 @@ TEST(ModelFormats, APlyTruncatedInItsHeaderIsRejectedBeforeTheTimeLimit) {
     const ImportRequest request{fs::canonical(temp.write("a.ply", text)), 0.7, 30.0, 0};
     const ImportRun run = run_import(request, {});
     EXPECT_EQ(run.end, ImportEnd::answered) << text;
-    EXPECT_THAT(testing::load_error(request.model.string()),
-                AllOf(HasSubstr("the file ends too early"), HasSubstr("damaged")))
+    EXPECT_THAT(
+        testing::load_error(request.model.string()),
+        AllOf(HasSubstr("has no line 'end_header': the file ends too early"), HasSubstr("damaged")))
         << text;
   }
+}
+
+TEST(ModelFormats, ThePlyCommentTextureFileNamesTheTexture) {
+  const TestFolder temp;
+  temp.write("red paint.ppm", testing::ppm(1, 1, "abc"));
+  const Model model = load(temp.write("a.ply", R"(ply
+format ascii 1.0
+comment VCGLIB generated
+comment TextureFile   red paint.ppm 
+element vertex 3
+property float x
+property float y
+property float z
+property float s
+property float t
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0 0 0
+1 0 0 1 0
+0 1 0 0 1
+3 0 1 2
+)"));
+  ASSERT_EQ(model.textures.size(), 1U);
+  EXPECT_EQ(model.textures[0].name, "red paint.ppm");
+  EXPECT_TRUE(model.materials.at(0).diffuse_texture.used());
 }
 
 TEST(ModelFormats, ATextureInASiblingFolderIsReportedWithARemedy) {
