@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/decode_image.hpp>
 
+#include <import/image_size.hpp>
+
 #include <assimp/texture.h>
 #include <fmt/format.h>
 #include <stb/stb_image.h>
@@ -94,6 +96,10 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
     return no_image(
         "a KTX2 image (KHR_texture_basisu), which GLIDAR does not read: export the model "
         "with PNG or JPEG textures");
+  }
+  if (const auto declared = declared_size(bytes)) {
+    std::string refused = too_large(declared->width, declared->height, 4, budget);
+    if (!refused.empty()) return no_image(std::move(refused));
   }
   if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
     return no_image("not an image that can be read (PNG, JPEG, BMP, TGA, GIF, PSD, HDR, PNM)");

@@ -98,6 +98,26 @@ end_header
   EXPECT_TRUE(model.materials.at(0).diffuse_texture.used());
 }
 
+TEST(ModelFormats, TexturesBeyondTheLimitAreMissingWithTheirSize) {
+  const auto reason = [](const std::string& image) {
+    const TestFolder temp;
+    temp.write("paint.ppm", image);
+    temp.write("a.mtl", "newmtl paint\nmap_Kd paint.ppm\n");
+    const Model model = load(temp.write("a.obj", testing::quad_obj("a.mtl")));
+    return model.missing_textures.size() == 1 ? model.missing_textures[0].reason : "";
+  };
+  const std::string png = "\x89PNG\r\n\x1A\n" + std::string("\0\0\0\x0DIHDR", 8);
+  EXPECT_EQ(reason("P6 20000 1 255\n"), "too large: 20000 x 1, allowed 16384 per side");
+  EXPECT_EQ(reason("P6\n# a comment\n2000000000 3000000000 255\n"),
+            "too large: 2000000000 x 3000000000, allowed 16384 per side");
+  EXPECT_EQ(reason("P5 1 99999999999999999999999 255\n"),
+            "too large: 1 x 18446744073709551615, allowed 16384 per side");
+  EXPECT_EQ(reason(png + std::string("\x7F\xFF\xFF\xFF\0\0\0\x02\x08\x02\0\0\0", 13)),
+            "too large: 2147483647 x 2, allowed 16384 per side");
+  EXPECT_EQ(reason("P6 0 4 255\n"), "it has no pixels");
+  EXPECT_EQ(reason("P6 abc"), "it has no pixels");
+}
+
 TEST(ModelFormats, ATextureInASiblingFolderIsReportedWithARemedy) {
   const TestFolder temp;
   temp.write("pictures/paint.ppm", testing::ppm(1, 1, "abc"));
