@@ -10,6 +10,7 @@
 #include <import/loaded_libraries.hpp>
 #include <import/ply_header.hpp>
 #include <import/read_materials.hpp>
+#include <import/split_polygons.hpp>
 
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
@@ -27,19 +28,22 @@ namespace glidar::import {
 namespace {
 
 // Identical vertices are merged later, exactly: Assimp's own step merges nearly equal ones.
-constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
-                            aiProcess_SortByPType | aiProcess_GenUVCoords;
+constexpr unsigned kStepsOnPolygons = aiProcess_ValidateDataStructure | aiProcess_GenUVCoords;
+constexpr unsigned kStepsToTriangles = aiProcess_Triangulate | aiProcess_SortByPType;
 
 class AssimpProgress : public Assimp::ProgressHandler {
  public:
   explicit AssimpProgress(std::function<void(double)> report) : report_(std::move(report)) {}
   bool Update(float fraction) override {
-    if (fraction >= 0.0F) report_(fraction);
+    if (fraction < fraction_) return true;
+    fraction_ = fraction;
+    report_(fraction);
     return true;
   }
 
  private:
   std::function<void(double)> report_;
+  float fraction_ = 0.0F;  ///< the largest one; the second group of steps starts again
 };
 
 std::string importer_name(const Assimp::Importer& importer) {
@@ -67,6 +71,22 @@ std::string importer_name(const Assimp::Importer& importer) {
   }
   throw Refusal{"cannot be read: " + (why.empty() ? "unknown error" : why),
                 "the file is damaged or of a kind that the importer does not know"};
+}
+
+/// The scene with triangles, lines and points only. The caller owns it.
+aiScene* read_scene(Assimp::Importer& importer, const std::string& model, FileLog& log) {
+  const aiScene* scene = importer.ReadFile(model, kStepsOnPolygons);
+  if (scene == nullptr) refuse(importer.GetErrorString(), log);
+  // The importer owns the scene until its last step, and only lends it.
+  const std::size_t intersecting = split_polygons(*const_cast<aiScene*>(scene));
+  if (intersecting > 0) {
+    log.notes.push_back(fmt::format(
+        "polygons that intersect themselves, parts of which are left out: {}", intersecting));
+  }
+  if (importer.ApplyPostProcessing(kStepsToTriangles) == nullptr) {
+    refuse(importer.GetErrorString(), log);
+  }
+  return importer.GetOrphanedScene();
 }
 
 /// Reads the used materials, in the file's order, and assigns slots.
@@ -113,11 +133,8 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
   importer.SetProgressHandler(new AssimpProgress(progress));
-  if (importer.ReadFile(canonical_model.string(), kSteps) == nullptr) {
-    refuse(importer.GetErrorString(), log);
-  }
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
-  aiScene* scene = importer.GetOrphanedScene();
+  aiScene* scene = read_scene(importer, canonical_model.string(), log);
   add_ply_texture(ply, *scene);
   ImportedModel imported;
   Model& model = imported.model;
