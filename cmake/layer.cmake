@@ -17,8 +17,8 @@ target_compile_options(
             $<$<BOOL:${GLIDAR_WARNINGS_AS_ERRORS}>:-Werror>
             # GCC 14 takes the content of empty std::optionals for uninitialised
             $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>
-            # GCC 14 takes references that outlive an argument for references into it
-            $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-reference>)
+            # GCC 14 takes references that outlive an argument for references into it; GCC 12 has no such warning
+            $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>)
 glidar_harden(glidar_settings INTERFACE)
 
 # glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,
