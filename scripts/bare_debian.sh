@@ -4,11 +4,14 @@
 # A bare Debian or Ubuntu in a folder, to try what a newcomer's machine would do. Needs root and debootstrap.
 # usage: bare_debian.sh make SUITE FOLDER        a fresh system with apt and nothing else; replaces FOLDER
 #        bare_debian.sh run FOLDER COMMAND...    as root in it, with an empty environment and processes of its own
+#        bare_debian.sh test SUITE FOLDER        makes it, clones the last commit there, runs ./dev demo and ./dev test
 # The suite, its downloaded packages and its compiler cache are kept in $GLIDAR_BARE_DEBIAN (default: build/bare),
-# so that a second run is quick. GLIDAR_MIRROR chooses the mirror of make.
+# so that a second run is quick. GLIDAR_MIRROR chooses the mirror of make. test passes on GLIDAR_DATA, read-only, and
+# the certificates in /usr/local/share/ca-certificates.
 set -euo pipefail
 root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 kept=${GLIDAR_BARE_DEBIAN:-$root/build/bare}
+data=  # folder that is mounted at /data; empty: none
 
 fail() {
   printf 'bare_debian: %s\n' "$*" >&2
@@ -53,17 +56,38 @@ run_in_tree() {
     set -euo pipefail
     mount -t proc proc "$1/proc"
     mount -t tmpfs tmpfs "$1/dev/shm"
+    mount -t devpts devpts "$1/dev/pts"
     mount --bind "$2" "$1/var/cache/apt/archives"
     mkdir -p "$1/var/cache/apt/archives/partial" "$1/root/.cache/ccache"
     mount --bind "$3" "$1/root/.cache/ccache"
-    exec chroot "$1" env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-      PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "${@:4}"' \
-    bash "$folder" "$kept/packages-$suite" "$kept/ccache-$suite" "$@"
+    [[ -z $4 ]] || { mkdir -p "$1/data" && mount --bind -o ro "$4" "$1/data"; }
+    exec chroot "$1" env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive ${4:+GLIDAR_DATA=/data} \
+      PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "${@:5}"' \
+    bash "$folder" "$kept/packages-$suite" "$kept/ccache-$suite" "$data" "$@"
+}
+
+# What a newcomer does: installs git, clones, builds, tests.
+test_tree() {
+  local suite=$1 folder=$2
+  data=${GLIDAR_DATA:-}
+  make_tree "$suite" "$folder"
+  git clone --quiet --no-hardlinks "$root" "$folder/root/glidar"
+  mkdir -p "$folder/usr/local/share/ca-certificates"
+  find /usr/local/share/ca-certificates -name '*.crt' -exec cp -t "$folder/usr/local/share/ca-certificates" {} +
+  run_in_tree "$folder" bash -euc '
+    apt-get update -q
+    apt-get install -q -y --no-install-recommends ca-certificates git
+    update-ca-certificates
+    export {SSL_CERT_FILE,PIP_CERT,REQUESTS_CA_BUNDLE}=/etc/ssl/certs/ca-certificates.crt
+    cd /root/glidar
+    ./dev demo
+    ./dev test'
 }
 
 ((EUID == 0)) || fail "must be run as root, because it mounts and changes root (sudo $0 $*)"
 case ${1:-} in
   make) (($# == 3)) || fail "usage: bare_debian.sh make SUITE FOLDER"; make_tree "$2" "$3" ;;
   run) (($# >= 3)) || fail "usage: bare_debian.sh run FOLDER COMMAND..."; run_in_tree "${@:2}" ;;
-  *) fail "usage: bare_debian.sh make SUITE FOLDER, or bare_debian.sh run FOLDER COMMAND..." ;;
+  test) (($# == 3)) || fail "usage: bare_debian.sh test SUITE FOLDER"; test_tree "$2" "$3" ;;
+  *) fail "usage: bare_debian.sh make|test SUITE FOLDER, or bare_debian.sh run FOLDER COMMAND..." ;;
 esac
