@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace glidar {
 
@@ -19,5 +20,18 @@ struct HitBlock {
   bool is_one_triangle = false;  ///< surely all lanes of the mask hit the same one
   bool is_run = false;           ///< surely all lanes hit, and their beams follow each other
 };
+
+/// Writes value_of(lane) to the beams of these lanes; `column` has one entry per beam.
+template <class T, class ValueOf>
+void write_lanes(const HitBlock& block, std::uint32_t lanes, const ValueOf& value_of,
+                 std::vector<T>& column) {
+  constexpr std::uint32_t kAll = (1U << kLanes) - 1U;
+  if (block.is_run && lanes == kAll) {  // a loop that vectorises
+    T* const first = column.data() + block.beam[0];
+    for (unsigned i = 0; i < kLanes; ++i) first[i] = value_of(i);
+    return;
+  }
+  for_lanes(lanes, [&](unsigned i) { column[block.beam[i]] = value_of(i); });
+}
 
 }  // namespace glidar

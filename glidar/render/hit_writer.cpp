@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/hit_writer.hpp>
 
+#include <glidar/math/simd.hpp>
 #include <glidar/render/uncertain_hits.hpp>
 
 #include <algorithm>
@@ -22,9 +23,9 @@ struct PixelBatch {
   ExactHits exact;
   Lanes<double> x;  ///< where the beams cross the plane at depth 1
   Lanes<double> y;
-  std::array<std::uint32_t, kLanes> triangle_id;  ///< of the pixel
-  std::uint32_t certain = 0;                      ///< bit i: lane i certainly hits its triangle
-  std::uint32_t contested = 0;                    ///< bit i: lane i may hit another triangle first
+  Lanes<std::uint32_t> triangle_id;  ///< of the pixel
+  std::uint32_t certain = 0;         ///< bit i: lane i certainly hits its triangle
+  std::uint32_t contested = 0;       ///< bit i: lane i may hit another triangle first
   unsigned used = 0;
 };
 
@@ -44,10 +45,16 @@ std::uint32_t reported_primitive(const HitWriter& w, const PrimitiveRef& ref) {
                                    : w.resolver.canonical_primitive(ref.instance, ref.primitive);
 }
 
-bool is_close(const HitWriter& w, const PrimitiveRef& ref) {
-  return w.close_triangles != nullptr &&
-         w.close_triangles->is_close(ref.instance,
-                                     w.resolver.canonical_primitive(ref.instance, ref.primitive));
+/// The lanes that hit one of the close triangles.
+std::uint32_t close_lanes(const HitWriter& w, const HitBlock& block) {
+  std::uint32_t lanes = 0;
+  for_lanes(block.mask, [&](unsigned lane) {
+    const std::uint32_t instance = block.instance[lane];
+    const std::uint32_t primitive = w.resolver.canonical_primitive(instance, block.primitive[lane]);
+    const bool is_close = w.close_triangles->is_close(instance, primitive);
+    lanes |= static_cast<std::uint32_t>(is_close) << lane;
+  });
+  return lanes;
 }
 
 /// Re-tests these lanes by the hit rule; true when that changed the block.
@@ -70,6 +77,8 @@ bool recast_lanes(const HitWriter& w, std::uint32_t lanes, const BeamBlock& beam
     block.instance[lane] = exact.instance[lane];
     block.primitive[lane] = exact.primitive[lane];
   }
+  block.is_one_triangle = block.is_one_triangle && !changed;
+  block.is_run = block.is_run && !changed;
   return changed;
 }
 
@@ -115,22 +124,61 @@ void finish(const HitWriter& w, PixelBatch& batch) {
   w.resolver.write(w.request.beams, w.request.hit_columns, block, batch.exact, w.hits);
 }
 
-/// Sets instance and primitive of the hits from the triangle ids.
-void decode_triangles(const HitWriter& w, PixelBatch& batch) {
-  batch.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << batch.used) - 1);
-  batch.certain = 0;
-  batch.contested = 0;
-  const bool with_corners = needs_corners(w.request.hit_columns);
-  for (unsigned lane = 0; lane < batch.used; ++lane) {
-    batch.certain |= static_cast<std::uint32_t>((batch.triangle_id[lane] & kCertainFlag) != 0)
-                     << lane;
-    const PrimitiveRef ref = w.triangles.decode(batch.triangle_id[lane]);
-    const bool is_contested = (batch.triangle_id[lane] & kContestedFlag) != 0 || is_close(w, ref);
-    batch.contested |= static_cast<std::uint32_t>(is_contested) << lane;
-    batch.block.instance[lane] = ref.instance;
-    batch.block.primitive[lane] = reported_primitive(w, ref);
-    w.resolver.prefetch(batch.block, lane, with_corners);
+/// What the ids of a batch have in common.
+struct IdSummary {
+  std::uint32_t certain;    ///< bit i: lane i has kCertainFlag
+  std::uint32_t contested;  ///< bit i: lane i has kContestedFlag
+  bool is_one_triangle;
+};
+
+GLIDAR_SIMD IdSummary summarize(const Lanes<std::uint32_t>& ids) {
+  const std::uint32_t first = ids[0];
+  Lanes<std::uint32_t> certain;
+  Lanes<std::uint32_t> contested;
+  std::uint32_t differing = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    certain[i] = static_cast<std::uint32_t>((ids[i] & kCertainFlag) != 0) << i;
+    contested[i] = static_cast<std::uint32_t>((ids[i] & kContestedFlag) != 0) << i;
+    differing |= (ids[i] ^ first) & kTriangleIdMask;
   }
+  IdSummary summary{.certain = 0, .contested = 0, .is_one_triangle = differing == 0};
+  for (unsigned i = 0; i < kLanes; ++i) summary.certain |= certain[i];
+  for (unsigned i = 0; i < kLanes; ++i) summary.contested |= contested[i];
+  return summary;
+}
+
+/// Sets instance and primitive of a lane from its triangle id.
+void decode_lane(const HitWriter& w, unsigned lane, PixelBatch& batch) {
+  const PrimitiveRef ref = w.triangles.decode(batch.triangle_id[lane]);
+  batch.block.instance[lane] = ref.instance;
+  batch.block.primitive[lane] = reported_primitive(w, ref);
+}
+
+/// Sets instance and primitive of the hits from the triangle ids, and prefetches the triangles.
+void decode_triangles(const HitWriter& w, PixelBatch& batch) {
+  HitBlock& block = batch.block;
+  block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << batch.used) - 1);
+  if (block.mask == 0) return;
+  block.is_run = batch.used == kLanes && block.beam[kLanes - 1] - block.beam[0] == kLanes - 1;
+  for (unsigned lane = batch.used; lane < kLanes; ++lane) {
+    batch.triangle_id[lane] = batch.triangle_id[0];
+  }
+  const IdSummary ids = summarize(batch.triangle_id);
+  batch.certain = ids.certain;
+  batch.contested = ids.contested;
+  block.is_one_triangle = ids.is_one_triangle;
+  const bool with_corners = needs_corners(w.request.hit_columns);
+  decode_lane(w, 0, batch);
+  w.resolver.prefetch(block, 0, with_corners);
+  if (block.is_one_triangle) {
+    block.instance.fill(block.instance[0]);
+    block.primitive.fill(block.primitive[0]);
+  }
+  for (unsigned lane = 1; lane < batch.used && !block.is_one_triangle; ++lane) {
+    decode_lane(w, lane, batch);
+    w.resolver.prefetch(block, lane, with_corners);
+  }
+  if (w.close_triangles != nullptr) batch.contested |= close_lanes(w, block);
 }
 
 /// Decodes the collected batch, prefetches the corners of the batch before, and finishes the
@@ -159,15 +207,25 @@ std::uint32_t list_filled(const std::uint32_t* triangle_ids, std::uint32_t begin
   return count;
 }
 
-void collect(const HitWriter& w, std::uint32_t row, std::uint32_t col, std::uint32_t triangle_id,
+/// A row of `written`.
+struct RowPixels {
+  const std::uint32_t* triangle_ids;  ///< per column of `written`
+  std::size_t first_beam;
+  std::uint32_t first_col;  ///< of the image
+  double y;                 ///< where its beams cross the plane at depth 1
+};
+
+/// Adds the pixels in these columns of a row to a batch.
+void collect(const HitWriter& w, const RowPixels& row, std::span<const std::uint32_t> cols,
              PixelBatch& batch) {
-  const std::uint32_t image_row = w.drawn.first_row + row;
-  const std::uint32_t image_col = w.drawn.first_col + col;
-  const unsigned lane = batch.used++;
-  batch.triangle_id[lane] = triangle_id;
-  batch.x[lane] = w.points.x[image_col];
-  batch.y[lane] = w.points.y[image_row];
-  batch.block.beam[lane] = std::size_t{image_row} * w.request.beams.cols + image_col;
+  const unsigned first = batch.used;
+  const auto count = static_cast<unsigned>(cols.size());
+  const double* const x = w.points.x.data() + row.first_col;
+  for (unsigned i = 0; i < count; ++i) batch.triangle_id[first + i] = row.triangle_ids[cols[i]];
+  for (unsigned i = 0; i < count; ++i) batch.x[first + i] = x[cols[i]];
+  for (unsigned i = 0; i < count; ++i) batch.y[first + i] = row.y;
+  for (unsigned i = 0; i < count; ++i) batch.block.beam[first + i] = row.first_beam + cols[i];
+  batch.used += count;
 }
 
 /// The beams of a row of `written`.
@@ -178,24 +236,27 @@ BeamRange beams_of(const HitWriter& w, std::uint32_t row) {
 }
 
 void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchQueue& queue) {
-  const std::size_t first = beams_of(w, row).begin;
   const std::uint32_t drawn_row = w.written.first_row - w.drawn.first_row + row;
   const std::uint32_t drawn_col = w.written.first_col - w.drawn.first_col;
-  const std::uint32_t* triangle_ids =
-      w.triangle_ids.data() + std::size_t{drawn_row} * w.drawn.cols + drawn_col;
+  const RowPixels pixels = {
+      .triangle_ids = w.triangle_ids.data() + std::size_t{drawn_row} * w.drawn.cols + drawn_col,
+      .first_beam = beams_of(w, row).begin,
+      .first_col = w.written.first_col,
+      .y = w.points.y[w.written.first_row + row]};
   std::array<std::uint32_t, kColumnsPerStep> cols;
   for (std::uint32_t begin = 0; begin < w.written.cols; begin += kColumnsPerStep) {
     const std::uint32_t end = std::min(begin + kColumnsPerStep, w.written.cols);
-    const std::uint32_t count = list_filled(triangle_ids, begin, end, cols);
+    const std::uint32_t count = list_filled(pixels.triangle_ids, begin, end, cols);
     // Misses are written in long runs, and hits over them.
-    if (count < end - begin)
-      write_misses(w.request.hit_columns, first + begin, end - begin, w.hits);
-    PixelBatch* batch = &queue.filling();
-    for (std::uint32_t i = 0; i < count; ++i) {
-      collect(w, drawn_row, drawn_col + cols[i], triangle_ids[cols[i]], *batch);
-      if (batch->used < kLanes) continue;
-      advance(w, queue);
-      batch = &queue.filling();
+    if (count < end - begin) {
+      write_misses(w.request.hit_columns, pixels.first_beam + begin, end - begin, w.hits);
+    }
+    for (std::uint32_t done = 0; done < count;) {
+      PixelBatch& batch = queue.filling();
+      const std::uint32_t added = std::min(kLanes - batch.used, count - done);
+      collect(w, pixels, std::span(cols).subspan(done, added), batch);
+      if (batch.used == kLanes) advance(w, queue);
+      done += added;
     }
   }
 }

@@ -17,6 +17,7 @@ namespace {
 
 /// The lanes that did not hit this instance.
 std::uint32_t lanes_not_on(const HitBlock& block, std::uint32_t instance) {
+  if (block.is_one_triangle && block.instance[0] == instance) return 0;
   std::uint32_t others = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
     others |= static_cast<std::uint32_t>(block.instance[i] != instance) << i;
@@ -48,6 +49,19 @@ void repeat_plane(const TrianglePlane& plane, ExactHits& exact) {
   exact.normal.y.at.fill(plane.normal.y());
   exact.normal.z.at.fill(plane.normal.z());
   exact.offset.at.fill(plane.offset);
+}
+
+void repeat_first(Lanes3<float>& lanes) {
+  lanes.x.at.fill(lanes.x[0]);
+  lanes.y.at.fill(lanes.y[0]);
+  lanes.z.at.fill(lanes.z[0]);
+}
+
+/// Sets the corners of lane 0 for all lanes.
+void repeat_first(CornerBlock& corners) {
+  repeat_first(corners.c0);
+  repeat_first(corners.c1);
+  repeat_first(corners.c2);
 }
 
 /// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
@@ -189,7 +203,8 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
 void Resolver::prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const {
   if (!needs_corners(hit_columns)) return;
   const bool with_normals = needs_normals(hit_columns);
-  for_lanes(block.mask, [&](unsigned i) {
+  const std::uint32_t lowest = block.mask & (~block.mask + 1U);
+  for_lanes(block.is_one_triangle ? lowest : block.mask, [&](unsigned i) {
     const InstanceData& of = instances_[block.instance[i]];
     for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
       __builtin_prefetch(of.positions_m + vertex);
@@ -227,21 +242,14 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
 }
 
 void Resolver::write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const {
-  if (block.is_run && is_one_instance(block)) {
-    const auto first = static_cast<std::ptrdiff_t>(block.beam[0]);
-    const double scale = views_[block.instance[0]].scale;
-    std::transform(exact.distance.at.begin(), exact.distance.at.end(), hits.range_m.begin() + first,
-                   [&](double distance) { return distance * scale; });
-    std::copy(block.instance.begin(), block.instance.end(), hits.instance.begin() + first);
-    std::copy(block.primitive.begin(), block.primitive.end(), hits.primitive.begin() + first);
-    return;
-  }
-  for_lanes(block.mask, [&](unsigned i) {
-    const std::size_t beam = block.beam[i];
-    hits.range_m[beam] = exact.distance[i] * views_[block.instance[i]].scale;
-    hits.instance[beam] = block.instance[i];
-    hits.primitive[beam] = block.primitive[i];
-  });
+  const auto range_m = [&](unsigned i) {
+    return exact.distance[i] * views_[block.instance[i]].scale;
+  };
+  const auto instance = [&](unsigned i) { return block.instance[i]; };
+  const auto primitive = [&](unsigned i) { return block.primitive[i]; };
+  write_lanes(block, block.mask, range_m, hits.range_m);
+  write_lanes(block, block.mask, instance, hits.instance);
+  write_lanes(block, block.mask, primitive, hits.primitive);
 }
 
 void Resolver::write(const Beams& beams, const HitColumnMask& hit_columns, const HitBlock& block,
@@ -278,7 +286,8 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
     Lanes3<float> in_sensor;
     orient_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine,
                      in_sensor);
-    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = in_sensor.get(i); });
+    const auto normal = [&](unsigned i) { return in_sensor.get(i); };
+    write_lanes(block, block.mask, normal, column);
     return;
   }
   for_lanes(block.mask, [&](unsigned i) {
@@ -289,16 +298,23 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
 }
 
 void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners) const {
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const InstanceData& of = instances_[block.instance[i]];
-    const Triangle& triangle = of.triangles[block.primitive[i]];
-    corners.position_m.set(i, of.positions_m, triangle);
-    if (!with_normals) continue;
-    // Zero normals have no length, so the flat normal is used.
-    static const Eigen::Vector3f kNone = Eigen::Vector3f::Zero();
-    corners.normal.set(i, of.normals == nullptr ? &kNone : of.normals,
+  // Zero normals have no length, so the flat normal is used.
+  static const Eigen::Vector3f kNone = Eigen::Vector3f::Zero();
+  const auto set = [&](unsigned lane) {
+    const InstanceData& of = instances_[block.instance[lane]];
+    const Triangle& triangle = of.triangles[block.primitive[lane]];
+    corners.position_m.set(lane, of.positions_m, triangle);
+    if (!with_normals) return;
+    corners.normal.set(lane, of.normals == nullptr ? &kNone : of.normals,
                        of.normals == nullptr ? Triangle{} : triangle);
+  };
+  if (block.is_one_triangle) {
+    set(0);
+    repeat_first(corners.position_m);
+    if (with_normals) repeat_first(corners.normal);
+    return;
   }
+  for (unsigned i = 0; i < kLanes; ++i) set(i);
 }
 
 void Resolver::write_shading(const HitColumnMask& hit_columns, const HitBlock& block,
@@ -309,7 +325,8 @@ void Resolver::write_shading(const HitColumnMask& hit_columns, const HitBlock& b
   if (hit_columns.shading) {
     Lanes<float> cosine;
     cosines(exact, smooth, cosine);
-    for_lanes(block.mask, [&](unsigned i) { hits.cos_shading[block.beam[i]] = cosine[i]; });
+    const auto value = [&](unsigned i) { return cosine[i]; };
+    write_lanes(block, block.mask, value, hits.cos_shading);
   }
   if (hit_columns.shading_normal)
     write_directions(block, smooth, exact.cosine, hits.shading_normal);

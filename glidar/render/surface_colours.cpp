@@ -15,15 +15,25 @@ struct CornerValues {
   Lanes<float> at_2;
 };
 
-/// Collects a component of a vertex attribute at the corners of triangles.
+/// Collects a component of a vertex attribute at the corners of triangles; `is_one`: all are the
+/// same.
 template <class Vector>
 void gather(const std::vector<Vector>& of_vertex, Eigen::Index component,
-            const std::array<const Triangle*, kLanes>& triangles, CornerValues& values) {
+            const std::array<const Triangle*, kLanes>& triangles, bool is_one,
+            CornerValues& values) {
+  const auto at = [&](unsigned lane, std::size_t corner) {
+    return of_vertex[(*triangles[lane])[corner]][component];
+  };
+  if (is_one) {
+    values.at_0.at.fill(at(0, 0));
+    values.at_1.at.fill(at(0, 1));
+    values.at_2.at.fill(at(0, 2));
+    return;
+  }
   for (unsigned i = 0; i < kLanes; ++i) {
-    const Triangle& corners = *triangles[i];
-    values.at_0[i] = of_vertex[corners[0]][component];
-    values.at_1[i] = of_vertex[corners[1]][component];
-    values.at_2[i] = of_vertex[corners[2]][component];
+    values.at_0[i] = at(i, 0);
+    values.at_1[i] = at(i, 1);
+    values.at_2[i] = at(i, 2);
   }
 }
 
@@ -56,6 +66,14 @@ GLIDAR_SIMD void luminances(const Eigen::Vector3f& colour, const Lanes3<float>& 
     out[i] = 0.2126F * (red * tint.x[i]) + 0.7152F * (green * tint.y[i]) +
              0.0722F * (blue * tint.z[i]);  // as luminance()
   }
+}
+
+/// Writes a value to the beams of these lanes.
+template <class T>
+void write_same(const HitBlock& block, std::uint32_t lanes, const T& value,
+                std::vector<T>& column) {
+  const auto same = [value](unsigned /*lane*/) { return value; };
+  write_lanes(block, lanes, same, column);
 }
 
 bool has_tint(const Material& material, const Mesh& mesh) {
@@ -100,6 +118,11 @@ const SurfaceColours::Slot& SurfaceColours::slot_of(std::uint32_t instance,
 
 void SurfaceColours::write(const HitColumnMask& hit_columns, const HitBlock& block,
                            const Lanes<float>& w1, const Lanes<float>& w2, Hits& hits) const {
+  if (block.is_one_triangle) {
+    const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
+    const Slot& slot = slot_of(block.instance[first], block.primitive[first]);
+    return write(hit_columns, {slot, block.mask, block, w1, w2}, hits);
+  }
   std::array<const Slot*, kLanes> slots{};
   for_lanes(block.mask,
             [&](unsigned i) { slots[i] = &slot_of(block.instance[i], block.primitive[i]); });
@@ -120,12 +143,9 @@ void SurfaceColours::write(const HitColumnMask& hit_columns, const Group& group,
   if (slot.has_tint || slot.material->specular_texture.used()) {
     return write_tinted(hit_columns, group, hits);
   }
-  for_lanes(group.lanes, [&](unsigned i) {
-    const std::size_t beam = group.block.beam[i];
-    if (hit_columns.diffuse) hits.diffuse[beam] = slot.plain.diffuse;
-    if (hit_columns.colour) hits.colour[beam] = slot.material->diffuse;
-    if (hit_columns.reflectance) hits.reflectance[beam] = slot.plain;
-  });
+  if (hit_columns.diffuse) write_same(group.block, group.lanes, slot.plain.diffuse, hits.diffuse);
+  if (hit_columns.colour) write_same(group.block, group.lanes, slot.material->diffuse, hits.colour);
+  if (hit_columns.reflectance) write_same(group.block, group.lanes, slot.plain, hits.reflectance);
 }
 
 void SurfaceColours::write_tinted(const HitColumnMask& hit_columns, const Group& group,
@@ -139,7 +159,8 @@ void SurfaceColours::write_tinted(const HitColumnMask& hit_columns, const Group&
   Lanes<float> diffuse;
   luminances(material.diffuse, tint, diffuse);
   if (hit_columns.diffuse) {
-    for_lanes(group.lanes, [&](unsigned i) { hits.diffuse[group.block.beam[i]] = diffuse[i]; });
+    const auto value = [&](unsigned i) { return diffuse[i]; };
+    write_lanes(group.block, group.lanes, value, hits.diffuse);
   }
   if (hit_columns.colour) {
     for_lanes(group.lanes, [&](unsigned i) {
@@ -154,25 +175,26 @@ void SurfaceColours::write_tinted(const HitColumnMask& hit_columns, const Group&
   Lanes<float> specular;
   luminances(material.ambient, tint, ambient);
   luminances(material.specular, gloss, specular);
-  for_lanes(group.lanes, [&](unsigned i) {
-    hits.reflectance[group.block.beam[i]] = {diffuse[i], ambient[i], specular[i],
-                                             material.shininess};
-  });
+  const auto reflectance = [&](unsigned i) {
+    return Reflectance{diffuse[i], ambient[i], specular[i], material.shininess};
+  };
+  write_lanes(group.block, group.lanes, reflectance, hits.reflectance);
 }
 
 void SurfaceColours::write_noise_scale(const Group& group, Hits& hits) const {
   const Material& material = *group.slot.material;
+  const HitBlock& block = group.block;
+  if (!material.noise_texture.used()) {
+    write_same(block, group.lanes, material.noise_scale, hits.noise_scale);
+    return;
+  }
   for_lanes(group.lanes, [&](unsigned i) {
-    const HitBlock& block = group.block;
-    float& scale = hits.noise_scale[block.beam[i]];
-    scale = material.noise_scale;
-    if (!material.noise_texture.used()) return;
     const SurfacePoint surface_point{*group.slot.mesh,
                                      scene_.instances[block.instance[i]],
                                      block.primitive[i],
                                      {group.w1[i], group.w2[i]}};
-    scale = noise_scale_at(material, scene_.textures,
-                           uv_at(surface_point, material.noise_texture.uv_set));
+    hits.noise_scale[block.beam[i]] = noise_scale_at(
+        material, scene_.textures, uv_at(surface_point, material.noise_texture.uv_set));
   });
 }
 
@@ -195,9 +217,9 @@ void SurfaceColours::multiply_by_texture(const Group& group, const TextureUse& u
   if (!uvs.empty()) {
     const std::array<const Triangle*, kLanes> triangles = triangles_of(group);
     CornerValues values;
-    gather(uvs, 0, triangles, values);
+    gather(uvs, 0, triangles, group.block.is_one_triangle, values);
     interpolate(values, group.w1, group.w2, u);
-    gather(uvs, 1, triangles, values);
+    gather(uvs, 1, triangles, group.block.is_one_triangle, values);
     interpolate(values, group.w1, group.w2, v);
   }
   Lanes3<float> texels;
@@ -213,7 +235,7 @@ void SurfaceColours::multiply_by_vertex_colours(const Group& group, Lanes3<float
   Lanes<float>* components[] = {&blended.x, &blended.y, &blended.z};
   for (Eigen::Index k = 0; k < 3; ++k) {
     CornerValues values;
-    gather(colours, k, triangles, values);
+    gather(colours, k, triangles, group.block.is_one_triangle, values);
     interpolate(values, group.w1, group.w2, *components[k]);
   }
   multiply(blended, rgb);
