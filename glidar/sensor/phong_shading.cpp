@@ -45,29 +45,50 @@ GLIDAR_SIMD bool shade_diffuse(const PhongHeadlight& light, BeamRange range, Fra
   return specular != 0;
 }
 
-GLIDAR_SIMD void raise(Batch<double>& base, const Batch<double>& exponent) {
-  for (std::size_t k = 0; k < kSampleBatch; ++k) base[k] = portable_pow(base[k], exponent[k]);
+/// Raises the first `count` numbers, rounded up to whole vectors.
+GLIDAR_SIMD void raise(std::size_t count, const Batch<double>& exponent, Batch<double>& base) {
+  constexpr std::size_t kWidth = 8;
+  for (std::size_t first = 0; first < count; first += kWidth) {
+    for (std::size_t k = first; k < first + kWidth; ++k) {
+      base[k] = portable_pow(base[k], exponent[k]);
+    }
+  }
 }
 
-/// Equations (3) to (5) for the surfaces of a batch that have a specular term.
-void measure_specular(const PhongHeadlight& light, BeamRange range, Frame& frame) {
+/// What the specular term raises to a power, and the exponents.
+GLIDAR_SIMD void find_lobes(BeamRange range, const Hits& hits, Batch<double>& lobe,
+                            Batch<double>& shininess) {
+  const float* const cos_shading = hits.cos_shading.data() + range.begin;
+  const Reflectance* const surface = hits.reflectance.data() + range.begin;
+  for (std::size_t k = 0; k < range.end - range.begin; ++k) {
+    lobe[k] = clamped_cosine(cos_shading[k]);
+    shininess[k] = surface[k].shininess;
+  }
+}
+
+/// Equations (3) to (5) where a surface has a specular term.
+GLIDAR_SIMD void shade_specular(const PhongHeadlight& light, BeamRange range,
+                                const Batch<double>& lobe, Frame& frame) {
   const Hits& hits = frame.ground_truth;
   const auto ambient = static_cast<float>(light.ambient);
-  Batch<double> lobe{};
-  Batch<double> shininess{};
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    lobe[i - range.begin] = clamped_cosine(hits.cos_shading[i]);
-    shininess[i - range.begin] = hits.reflectance[i].shininess;
-  }
-  raise(lobe, shininess);
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Reflectance& surface = hits.reflectance[i];
-    if (frame.status[i] != Status::hit || !(surface.specular > 0.0F)) continue;
     const float colour =
         ambient_and_diffuse(surface, ambient, clamped_cosine(hits.cos_shading[i])) +
         surface.specular * static_cast<float>(lobe[i - range.begin]);
-    frame.intensity[i] = static_cast<float>(attenuation(light, hits.range_m[i])) * colour;
+    const float received = static_cast<float>(attenuation(light, hits.range_m[i])) * colour;
+    const bool is_lit = frame.status[i] == Status::hit && surface.specular > 0.0F;
+    frame.intensity[i] = is_lit ? received : frame.intensity[i];
   }
+}
+
+/// Equations (3) to (5) for a batch with surfaces that have a specular term.
+void measure_specular(const PhongHeadlight& light, BeamRange range, Frame& frame) {
+  Batch<double> lobe{};
+  Batch<double> shininess{};
+  find_lobes(range, frame.ground_truth, lobe, shininess);
+  raise(range.end - range.begin, shininess, lobe);
+  shade_specular(light, range, lobe, frame);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <glidar/simulate/simulate.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/math/gaussian.hpp>
+#include <glidar/math/simd.hpp>
 #include <glidar/motion/beam_poses.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
 #include <glidar/simulate/pulse_cast.hpp>
@@ -69,20 +71,57 @@ void cast_beams(std::span<const Simulation> frames, const MeasureTile& measure) 
   cast(s, beam_request(s, on_tile_done), s.frame.ground_truth);
 }
 
+/// What the limits apply to: depths, or ranges as reported.
+GLIDAR_SIMD void find_distances(const Limits& limits, const Beams& beams, BeamRange range,
+                                const Hits& hits, Batch<double>& distance_m) {
+  const std::size_t count = range.end - range.begin;
+  const double* const range_m = hits.range_m.data() + range.begin;
+  if (limits.along == Limits::Along::range) {
+    const double offset_m = beams.range_offset_m;
+    for (std::size_t k = 0; k < count; ++k) distance_m[k] = range_m[k] + offset_m;
+    return;
+  }
+  const Eigen::Vector3d boresight = beams.boresight;
+  const Eigen::Vector3d* const directions = beams.directions.data() + range.begin;
+  for (std::size_t k = 0; k < count; ++k) {
+    distance_m[k] = range_m[k] * directions[k].dot(boresight);  // as depth_m()
+  }
+  if (beams.origins_m.empty()) return;
+  const Eigen::Vector3d* const origins_m = beams.origins_m.data() + range.begin;
+  for (std::size_t k = 0; k < count; ++k) distance_m[k] += origins_m[k].dot(boresight);
+}
+
+/// Ranges and statuses, as check_limits() of each hit.
+GLIDAR_SIMD void apply_limits(const Limits& limits, const Batch<double>& distance_m,
+                              BeamRange range, Frame& frame) {
+  const double near_m = limits.near_m > 0.0 ? limits.near_m : -kInfinity;
+  const double far_m = limits.far_m;
+  const double* const true_range_m = frame.ground_truth.range_m.data() + range.begin;
+  double* const range_m = frame.range_m.data() + range.begin;
+  Status* const status = frame.status.data() + range.begin;
+  for (std::size_t k = 0; k < range.end - range.begin; ++k) {
+    const bool is_near = distance_m[k] < near_m;
+    const bool is_far = distance_m[k] > far_m;
+    const bool is_miss = true_range_m[k] != true_range_m[k];
+    const Status limited = is_near ? Status::too_near : (is_far ? Status::too_far : Status::hit);
+    status[k] = is_miss ? Status::miss : limited;
+    range_m[k] = is_near || is_far ? kNaN : true_range_m[k];
+  }
+}
+
 /// Range and status of a tile of beams from the ground truth.
 void check_limits(const Limits& limits, const Beams& beams, BeamRange tile, Frame& frame) {
   const bool is_unlimited = limits.near_m <= 0.0 && std::isinf(limits.far_m);
-  const bool may_lack_beams = !beams.pinhole;
+  Batch<double> distance_m{};
+  for (std::size_t begin = tile.begin; begin < tile.end; begin += kSampleBatch) {
+    const BeamRange run{begin, std::min(begin + kSampleBatch, tile.end)};
+    if (!is_unlimited) find_distances(limits, beams, run, frame.ground_truth, distance_m);
+    apply_limits(limits, distance_m, run, frame);
+  }
+  if (beams.pinhole) return;
   for (std::size_t i = tile.begin; i < tile.end; ++i) {
-    const double range_m = frame.ground_truth.range_m[i];
-    frame.range_m[i] = range_m;
-    if (!std::isnan(range_m)) {
-      frame.status[i] = is_unlimited ? Status::hit : check_limits(limits, beams, i, range_m);
-      if (frame.status[i] != Status::hit) frame.range_m[i] = kNaN;
-    } else {
-      const bool has_beam = !may_lack_beams || !std::isnan(beams.directions[i].x());
-      frame.status[i] = has_beam ? Status::miss : Status::invalid_pixel;
-    }
+    if (frame.status[i] != Status::miss) continue;
+    if (std::isnan(beams.directions[i].x())) frame.status[i] = Status::invalid_pixel;
   }
 }
 
