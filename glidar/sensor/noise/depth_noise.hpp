@@ -34,7 +34,7 @@ struct KinectV1 {
   static constexpr TypeInfo kType = {
       "kinect_v1", "normal error of K/z, shared over window x window pixels, then rounded",
       "OpenNI's table; noise of real frames"};
-  static constexpr StepTraits kTraits = {.reads_depth = true};
+  static constexpr StepTraits kTraits = {.reads_depth = true, .prepares_without_columns = true};
   double k_m = 9.0 / 0.02605;
   double offset_steps = 0.40787;
   double sigma_steps = 0.44;

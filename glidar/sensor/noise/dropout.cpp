@@ -17,23 +17,35 @@ GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) 
   for (std::size_t i = 0; i < kSampleBatch; ++i) x[i] = near_m - portable_log(x[i]) * metres;
 }
 
-}  // namespace
+/// The incidence angles of a batch.
+GLIDAR_SIMD void find_angles(const Batch<double>& cosine, Batch<double>& angle_rad) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) angle_rad[i] = angle_of(cosine[i]);
+}
 
-double drop_probability(const Dropout& step, double range_m, double cos_incidence) {
+/// The probability at an incidence angle, which is not used without a table of angles.
+double probability_at(const Dropout& step, double range_m, double incidence_rad) {
   double kept = 1.0 - step.probability;
   kept *= 1.0 - interpolate(step.by_range_m, range_m);
   if (!step.by_incidence_rad.empty()) {
-    kept *= 1.0 - interpolate(step.by_incidence_rad, angle_of(cos_incidence));
+    kept *= 1.0 - interpolate(step.by_incidence_rad, incidence_rad);
   }
   return 1.0 - kept;
+}
+
+}  // namespace
+
+double drop_probability(const Dropout& step, double range_m, double cos_incidence) {
+  return probability_at(step, range_m, angle_of(cos_incidence));
 }
 
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> x;
   sample_shared_uniforms(batch.key, x);
+  Batch<double> incidence_rad{};
+  if (!step.by_incidence_rad.empty()) find_angles(batch.cosine, incidence_rad);
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i)) continue;
-    const double probability = drop_probability(step, batch.range_m[i], batch.cosine[i]);
+    const double probability = probability_at(step, batch.range_m[i], incidence_rad[i]);
     if (x[i] < probability) invalidate_return(batch, i, Status::dropped);
   }
 }

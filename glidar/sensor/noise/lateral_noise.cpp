@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/lateral_noise.hpp>
 
+#include <glidar/math/simd.hpp>
+
 namespace glidar {
 namespace {
 
@@ -33,6 +35,11 @@ double depth_between(const NoiseView& view, double row, double col) {
   return stored_depth(view, std::floor(row + 0.5), std::floor(col + 0.5));
 }
 
+/// sums[k] += values[k]
+GLIDAR_SIMD void add(const double* values, std::span<double> sums) {
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += values[k];
+}
+
 /// Sums of `window` rows around a row, at the columns [first, first + sums).
 std::size_t sum_rows(const NoiseView& view, std::size_t row, std::size_t reach, std::size_t first,
                      std::span<double> sums) {
@@ -40,10 +47,19 @@ std::size_t sum_rows(const NoiseView& view, std::size_t row, std::size_t reach, 
   const std::size_t end = std::min<std::size_t>(view.beams.rows, row + reach + 1);
   std::fill(sums.begin(), sums.end(), 0.0);
   for (std::size_t r = top; r < end; ++r) {
-    const double* line = view.workspace.before.data() + r * view.beams.cols + first;
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += line[k];
+    add(view.workspace.before.data() + r * view.beams.cols + first, sums);
   }
   return end - top;
+}
+
+/// means[k] = (sums[k] + ... + sums[k + width - 1]) / divisor, added from left to right.
+GLIDAR_SIMD void slide(const double* sums, std::size_t width, double divisor,
+                       std::span<double> means) {
+  for (std::size_t k = 0; k < means.size(); ++k) means[k] = 0.0;
+  for (std::size_t c = 0; c < width; ++c) {
+    for (std::size_t k = 0; k < means.size(); ++k) means[k] += sums[k + c];
+  }
+  for (std::size_t k = 0; k < means.size(); ++k) means[k] /= divisor;
 }
 
 }  // namespace
@@ -85,12 +101,16 @@ void mean_over_window(unsigned window, const NoiseView& view, const NoiseBatch& 
     const std::size_t left = begin - std::min(begin, reach);
     const std::size_t right = std::min(cols, end + reach);
     const std::size_t height = sum_rows(view, row, reach, left, {sums.data(), right - left});
-    for (std::size_t col = begin; col < end; ++col, ++i) {
+    for (std::size_t col = begin; col < end;) {
+      // pixels whose windows have the same width
+      const bool is_whole = col >= reach && col + reach < cols;
+      const std::size_t next = is_whole ? std::min(end, cols - reach) : col + 1;
       const std::size_t from = col - std::min(col, reach);
-      const std::size_t to = std::min(cols, col + reach + 1);
-      double sum = 0.0;
-      for (std::size_t c = from; c < to; ++c) sum += sums[c - left];
-      means[i] = sum / std::sqrt(static_cast<double>(height * (to - from)));
+      const std::size_t width = std::min(cols, col + reach + 1) - from;
+      slide(sums.data() + (from - left), width, std::sqrt(static_cast<double>(height * width)),
+            {means.data() + i, next - col});
+      i += next - col;
+      col = next;
     }
   }
 }

@@ -93,13 +93,18 @@ void load_column(const std::vector<From>& column, const NoiseBatch& batch, To re
   std::fill(out.begin() + static_cast<std::ptrdiff_t>(batch.count), out.end(), rest);
 }
 
+GLIDAR_SIMD void project(const Eigen::Vector3d* vectors, const Eigen::Vector3d& axis,
+                         std::size_t count, double* along_axis) {
+  const Eigen::Vector3d unit = axis;  // a copy, so that the loop vectorises
+  for (std::size_t i = 0; i < count; ++i) along_axis[i] = vectors[i].dot(unit);
+}
+
 void load_depth(const Beams& beams, NoiseBatch& batch) {
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const std::size_t beam = batch.first + i;
-    batch.depth_per_m[i] = beams.directions[beam].dot(beams.boresight);
-    batch.depth_at_zero[i] =
-        beams.origins_m.empty() ? 0.0 : beams.origins_m[beam].dot(beams.boresight);
-  }
+  project(beams.directions.data() + batch.first, beams.boresight, batch.count,
+          batch.depth_per_m.data());
+  if (beams.origins_m.empty()) return;
+  project(beams.origins_m.data() + batch.first, beams.boresight, batch.count,
+          batch.depth_at_zero.data());
 }
 
 void load(const NoisePlan& noise, const NoisePlan::Run& run, const NoiseView& view,
@@ -210,7 +215,11 @@ void apply_run(const NoisePlan& noise, const NoisePlan::Run& run, const NoiseVie
                ThreadPool& thread_pool) {
   const auto load_batch = [&](NoiseBatch& batch) { load(noise, run, view, batch); };
   if (run.reads_neighbours) {
-    for_batches(load_batch, view, thread_pool,
+    const bool needs_columns = !traits(noise.steps[run.begin]).prepares_without_columns;
+    const auto load_columns = [&](NoiseBatch& batch) {
+      if (needs_columns) load_batch(batch);
+    };
+    for_batches(load_columns, view, thread_pool,
                 [&](NoiseBatch& batch) { prepare_step(noise, run.begin, view, batch); });
   }
   const bool is_last = run.end == noise.steps.size();

@@ -10,6 +10,8 @@ struct StepTraits {
   bool reads_depth = false;
   bool reads_incidence = false;
   bool adds_returns = false;
+  /// Its prepare() stores random numbers alone, so no columns of the frame are loaded for it.
+  bool prepares_without_columns = false;
 };
 
 }  // namespace glidar
