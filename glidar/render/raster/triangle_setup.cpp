@@ -292,14 +292,13 @@ PixelBounds around(const Eigen::Matrix3d& corners, const PixelBounds& tile) {
 std::optional<TriangleSetup> set_up_triangle(const Eigen::Matrix3d& corners,
                                              const Nearness& nearness, const PixelBounds& tile,
                                              bool cull_back_faces) {
-  const double volume = volume_of(corners);
   const double depth = corners.row(2).maxCoeff();
-  if (!(depth > 0.0) || volume == 0.0 || (cull_back_faces && volume > 0.0)) {
-    return std::nullopt;
-  }
+  if (!(depth > 0.0)) return std::nullopt;
   TriangleSetup setup{};
   setup.rect = around(corners, tile);
   if (setup.rect.left > setup.rect.right || setup.rect.top > setup.rect.bottom) return std::nullopt;
+  const double volume = volume_of(corners);
+  if (volume == 0.0 || (cull_back_faces && volume > 0.0)) return std::nullopt;
   const Eigen::Vector3d first_pixel(setup.rect.left, setup.rect.top, 1.0);
   const double sign = volume > 0.0 ? 1.0 : -1.0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
