@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/kernels.hpp>
 
+#include <glidar/core/error.hpp>
+
+#include <string>
+
 namespace glidar {
 
 namespace rays::baseline {
@@ -19,13 +23,22 @@ extern const scan_raster::Kernel kScanKernel;
 namespace scan_raster {
 
 const Kernel& find_kernel(std::string_view name) {
+  const Kernel* const kernels[] = {
+      &rays::baseline::kScanKernel,
 #ifdef __x86_64__
-  for (const Kernel* kernel : {&rays::avx2::kScanKernel, &rays::avx512::kScanKernel}) {
-    if (name == kernel->name) return *kernel;
-  }
+      &rays::avx2::kScanKernel,
+      &rays::avx512::kScanKernel,
 #endif
-  static_cast<void>(name);
-  return rays::baseline::kScanKernel;
+  };
+  std::string names;
+  for (const Kernel* kernel : kernels) {
+    if (name == kernel->name) return *kernel;
+    names += (names.empty() ? "" : ", ") + std::string(kernel->name);
+  }
+  throw Error({.where = "scanner raster",
+               .found = "no kernel '" + std::string(name) + "'",
+               .allowed = names,
+               .remedy = ""});
 }
 
 }  // namespace scan_raster

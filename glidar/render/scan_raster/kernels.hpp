@@ -8,7 +8,8 @@
 
 namespace glidar::scan_raster {
 
-/// The kernel with the instruction set of the ray caster's kernel of this name.
+/// The kernel with the instruction set of the ray caster's kernel of this name. Throws Error for an
+/// unknown name.
 const Kernel& find_kernel(std::string_view name);
 
 }  // namespace glidar::scan_raster

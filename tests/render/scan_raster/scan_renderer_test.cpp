@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // The scanner raster returns the same bits as rays.
+#include <glidar/core/error.hpp>
 #include <glidar/render/rays/kernels.hpp>
+#include <glidar/render/scan_raster/kernels.hpp>
 #include <render/scan_raster/scanner.hpp>
 #include <render/scan_raster/scenes.hpp>
 
@@ -36,6 +38,13 @@ std::vector<Scanner> scanners() {
           {.rows = 40, .cols = 200, .start_rad = -0.8, .span_rad = 1.5, .uneven = 1.5},
           {.rows = 33, .cols = 700, .low_rad = -1.3, .high_rad = 1.35},
           {.rows = 21, .cols = 200, .span_rad = 3.0 * std::numbers::pi}};
+}
+
+TEST(ScanRenderer, HasTheKernelsOfTheRayCaster) {
+  for (const rays::Kernel* kernel : rays::usable_kernels()) {
+    EXPECT_EQ(std::string(scan_raster::find_kernel(kernel->name).name), kernel->name);
+  }
+  EXPECT_THROW(scan_raster::find_kernel("sse9"), Error);
 }
 
 TEST(ScanRenderer, EqualsRaysInsideAndOutsideOfASphere) {
