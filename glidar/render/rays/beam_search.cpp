@@ -55,7 +55,7 @@ struct HitFilterContext {
 class InstanceTrace {
  public:
   InstanceTrace(const CastView& cast, const Kernel& kernel, const HitBlock& block)
-      : cast_(cast), kernel_(kernel), stop_{cast, block, 0} {}
+      : cast_(cast), kernel_(kernel), hit_filter_{cast, block, 0} {}
 
   RayPacket packet;
 
@@ -66,11 +66,11 @@ class InstanceTrace {
     Lanes3<double> direction;
     rays_in(view, beams, origin, direction);
     set_rays(origin, direction, packet);
-    stop_.instance = instance;
+    hit_filter_.instance = instance;
     packet.tie_reach = cast_.trees.largest_reach_m() / view.scale;
     const bool filters_hits = cast_.request.cull_back_faces || cast_.resolver.is_masked(instance);
     packet.accepts_hit = filters_hits ? HitFilterContext::accepts : nullptr;
-    packet.context = &stop_;
+    packet.context = &hit_filter_;
     kernel_.start(packet, cast_.trees.of_instance(instance).sphere, lanes);
   }
 
@@ -81,11 +81,13 @@ class InstanceTrace {
   }
 
  private:
-  [[nodiscard]] const MeshTree& tree() const { return cast_.trees.of_instance(stop_.instance); }
+  [[nodiscard]] const MeshTree& tree() const {
+    return cast_.trees.of_instance(hit_filter_.instance);
+  }
 
   const CastView& cast_;
   const Kernel& kernel_;
-  HitFilterContext stop_;
+  HitFilterContext hit_filter_;
 };
 
 /// The nearest hit of a lane in all instances so far.
