@@ -3,10 +3,12 @@
 #include <glidar/render/rays/beam_search.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/math/simd.hpp>
 #include <glidar/render/common/rounding.hpp>
 #include <glidar/render/rays/exact_test.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -21,20 +23,27 @@ void set_rays(const Lanes3<double>& origin, const Lanes3<double>& direction, Ray
   std::memcpy(packet.exact_direction, &direction, sizeof(direction));
 }
 
-/// Lanes with finite directions and with origins within range.
-std::uint32_t usable_lanes(const BeamBlock& beams) {
+/// Per lane, bits of which some are set unless the direction is finite and the origin within range.
+GLIDAR_SIMD void find_defects(const BeamBlock& beams, Lanes<std::uint64_t>& defects) {
   const Lanes3<double>& d = beams.direction;
   const Lanes3<double>& o = beams.origin_m;
-  std::uint32_t lanes = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
     const double sum = d.x[i] + d.y[i] + d.z[i];
-    bool is_usable = sum - sum == 0.0;
-    if (beams.has_origins) {
-      const double size = std::abs(o.x[i]) + std::abs(o.y[i]) + std::abs(o.z[i]);
-      is_usable = is_usable && size <= 3.0 * kMaxCoordinate_m;
-    }
-    lanes |= static_cast<std::uint32_t>(is_usable) << i;
+    defects[i] = std::bit_cast<std::uint64_t>(sum - sum);
   }
+  if (!beams.has_origins) return;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double size = std::abs(o.x[i]) + std::abs(o.y[i]) + std::abs(o.z[i]);
+    defects[i] |= static_cast<std::uint64_t>(!(size <= 3.0 * kMaxCoordinate_m));
+  }
+}
+
+/// Lanes with finite directions and with origins within range.
+std::uint32_t usable_lanes(const BeamBlock& beams) {
+  Lanes<std::uint64_t> defects;
+  find_defects(beams, defects);
+  std::uint32_t lanes = 0;
+  for (unsigned i = 0; i < kLanes; ++i) lanes |= static_cast<std::uint32_t>(defects[i] == 0) << i;
   return lanes;
 }
 
