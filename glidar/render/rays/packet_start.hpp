@@ -12,6 +12,9 @@ inline constexpr float kFloatInfinity = __builtin_huge_valf();
 GLIDAR_INLINE double larger(double a, double b) {
   return a > b ? a : b;
 }
+GLIDAR_INLINE float larger(float a, float b) {
+  return a > b ? a : b;
+}
 
 /// The minimum of sixteen values.
 GLIDAR_INLINE float min_lane(const float* of_lane) {
@@ -50,7 +53,7 @@ GLIDAR_INLINE void set_shifts(RayPacket& p, const MeshSphere& sphere) {
 /// where u = 2^-24, |o| <= |c| + |o - c| and t <= |o - c| + R. Computing o + shift d in double adds
 /// 2^-53 of the numbers in it, and rounding o +- padding to single precision another u |o|.
 GLIDAR_INLINE void find_padding(const RayPacket& p, const MeshSphere& sphere, double* padding,
-                                double* rounding) {
+                                float* rounding) {
   double reach = 0.0;
   for (const double x : sphere.centre) reach = larger(reach, __builtin_fabs(x));
   reach += sphere.radius;
@@ -63,10 +66,10 @@ GLIDAR_INLINE void find_padding(const RayPacket& p, const MeshSphere& sphere, do
       distance += __builtin_fabs(moved - sphere.centre[axis]);
       size += __builtin_fabs(o);
     }
-    rounding[i] = 2.0 * p.shift[i] + size;
-    padding[i] = 0x1p-22 * (2.0 * distance + reach) + 0x1p-50 * rounding[i];
+    const double rounded = 2.0 * p.shift[i] + size;
+    padding[i] = 0x1p-22 * (2.0 * distance + reach) + 0x1p-50 * rounded;
     // Bounds of distances include ties: 12 u 2^-26 of it is at least kTiePart tie_reach.
-    rounding[i] += 0x1p4 * p.tie_reach;
+    rounding[i] = static_cast<float>((1.0 + 0x1p-22) * (rounded + 0x1p4 * p.tie_reach));
   }
 }
 
@@ -108,36 +111,47 @@ GLIDAR_INLINE bool have_common_origin(const RayPacket& p) {
   return others == 0;
 }
 
-/// The shifted origins relative to their middle.
+/// offset = shifted origins - from, along one axis.
+GLIDAR_INLINE void set_offsets(RayPacket& p, unsigned axis, double from) {
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    const double moved = p.exact_origin[axis][i] + p.shift[i] * p.exact_direction[axis][i];
+    p.offset[axis][i] = static_cast<float>(moved - from);
+  }
+}
+
+/// The shifted origins relative to their middle, along one axis. Their bounds are found in single
+/// precision, relative to the first one. Returns the maximum distance from the middle.
+GLIDAR_INLINE float find_offsets(RayPacket& p, unsigned axis) {
+  const float* offset = p.offset[axis];
+  const double first = p.exact_origin[axis][0] + p.shift[0] * p.exact_direction[axis][0];
+  set_offsets(p, axis, first);
+  const double middle = first + 0.5 * static_cast<double>(min_lane(offset) + max_lane(offset));
+  p.middle_origin[axis] = middle;
+  set_offsets(p, axis, middle);
+  return larger(max_lane(offset), -min_lane(offset));
+}
+
+GLIDAR_INLINE void find_moments(RayPacket& p, unsigned axis) {
+  const unsigned next = (axis + 1) % 3;
+  const unsigned last = (axis + 2) % 3;
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    p.moment[axis][i] =
+        p.direction[next][i] * p.offset[last][i] - p.direction[last][i] * p.offset[next][i];
+  }
+}
+
+/// Axis by axis without a loop: compilers unroll inner loops before they vectorise.
 GLIDAR_INLINE void find_offsets(RayPacket& p) {
   p.spread = 0.0;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    p.middle_origin[axis] = p.exact_origin[axis][0];
-    if (p.has_common_origin) continue;
-    alignas(64) double moved[kPacketSize];
-    double low = kFloatInfinity;
-    double high = -kFloatInfinity;
-    for (unsigned i = 0; i < kPacketSize; ++i) {
-      moved[i] = p.exact_origin[axis][i] + p.shift[i] * p.exact_direction[axis][i];
-      low = moved[i] < low ? moved[i] : low;
-      high = larger(high, moved[i]);
-    }
-    const double middle = 0.5 * low + 0.5 * high;
-    p.middle_origin[axis] = middle;
-    p.spread = larger(p.spread, larger(high - middle, middle - low));
-    for (unsigned i = 0; i < kPacketSize; ++i) {
-      p.offset[axis][i] = static_cast<float>(moved[i] - middle);
-    }
-  }
+  for (unsigned axis = 0; axis < 3; ++axis) p.middle_origin[axis] = p.exact_origin[axis][0];
   if (p.has_common_origin) return;
-  for (unsigned i = 0; i < kPacketSize; ++i) {
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      const unsigned next = (axis + 1) % 3;
-      const unsigned last = (axis + 2) % 3;
-      p.moment[axis][i] =
-          p.direction[next][i] * p.offset[last][i] - p.direction[last][i] * p.offset[next][i];
-    }
-  }
+  const float x = find_offsets(p, 0);
+  const float y = find_offsets(p, 1);
+  const float z = find_offsets(p, 2);
+  p.spread = (1.0 + 0x1p-22) * static_cast<double>(larger(larger(x, y), z));
+  find_moments(p, 0);
+  find_moments(p, 1);
+  find_moments(p, 2);
 }
 
 /// Inactive rays repeat the first active one, so that bounds of all rays are those of the active
@@ -167,12 +181,11 @@ inline void start(RayPacket& p, const MeshSphere& sphere, std::uint32_t active) 
   p.exact_tests = 0;
   p.tied = 0;
   alignas(64) double padding[kPacketSize];
-  alignas(64) double rounding[kPacketSize];
+  alignas(64) float rounding[kPacketSize];
   set_shifts(p, sphere);
   find_padding(p, sphere, padding, rounding);
   round_rays(p, padding);
-  p.rounding = 0.0;
-  for (const double r : rounding) p.rounding = larger(p.rounding, r);
+  p.rounding = static_cast<double>(max_lane(rounding));
   p.has_common_origin = have_common_origin(p);
   find_offsets(p);
   bound_directions(p);
