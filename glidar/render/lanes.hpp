@@ -43,9 +43,10 @@ void for_lanes(std::uint32_t mask, const Body& body) {
   for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
-/// out = matrix * in, lane by lane.
+/// out = matrix * in, lane by lane; they must not overlap.
 template <class T>
-inline void rotate(const Eigen::Matrix<T, 3, 3>& matrix, const Lanes3<T>& in, Lanes3<T>& out) {
+inline void rotate(const Eigen::Matrix<T, 3, 3>& matrix, const Lanes3<T>& in,
+                   Lanes3<T>& __restrict out) {
   const T* m = matrix.data();  // column by column
   for (unsigned i = 0; i < kLanes; ++i) {
     out.x[i] = m[0] * in.x[i] + m[3] * in.y[i] + m[6] * in.z[i];
