@@ -3,6 +3,7 @@
 #include <glidar/render/rays/rays_renderer.hpp>
 
 #include <glidar/core/progress_counter.hpp>
+#include <glidar/math/simd.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/plane_points.hpp>
 #include <glidar/render/rays/tiles.hpp>
@@ -10,6 +11,7 @@
 
 #include <array>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 namespace glidar {
@@ -44,11 +46,29 @@ void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, HitBatch&
   directions_through(x, y, batch.beams.direction);
 }
 
+/// Copies kLanes vectors. Whole vectors are written, since vectors written one number at a time are
+/// slow to load.
+GLIDAR_SIMD void copy_run(const double* xyz, Lanes3<double>& to) {
+  for (unsigned i = 0; i < kLanes; ++i) to.x[i] = xyz[3 * i];
+  for (unsigned i = 0; i < kLanes; ++i) to.y[i] = xyz[3 * i + 1];
+  for (unsigned i = 0; i < kLanes; ++i) to.z[i] = xyz[3 * i + 2];
+}
+
+/// Collects the beams from `first` on.
+void gather_run(const Beams& beams, std::size_t first, HitBatch& batch) {
+  batch.block.mask = (1U << kLanes) - 1U;
+  std::iota(batch.block.beam.begin(), batch.block.beam.end(), first);
+  copy_run(beams.directions[first].data(), batch.beams.direction);
+  batch.beams.has_origins = !beams.origins_m.empty();
+  if (batch.beams.has_origins) copy_run(beams.origins_m[first].data(), batch.beams.origin_m);
+}
+
 /// Collects the tile's beams; lanes beyond the grid's border repeat the first, outside of the mask.
 void gather_beams(const Beams& beams, const rays::Tile& tile, HitBatch& batch) {
   const bool whole = tile.is_whole(kLanes);
   const std::size_t first = tile.beam(0);
   const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
+  if (whole && column_mask == kLanes - 1U) return gather_run(beams, first, batch);
   batch.block.mask = 0;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
     const std::size_t beam =
@@ -75,14 +95,27 @@ void prefetch(const Beams& beams, const rays::Tile& tile) {
   }
 }
 
+/// Prefetches the triangles of the block's hits, and sets what the hits have in common.
+void prepare_hits(const Job& job, bool is_run, HitBlock& block) {
+  constexpr std::uint32_t kAll = (1U << kLanes) - 1U;
+  block.is_one_triangle = true;
+  block.is_run = is_run && block.mask == kAll;
+  PrimitiveRef last;
+  for_lanes(block.mask, [&](unsigned lane) {
+    if (block.primitive[lane] == last.primitive && block.instance[lane] == last.instance) return;
+    block.is_one_triangle = last.instance == kInvalidId;
+    last = {block.instance[lane], block.primitive[lane]};
+    job.resolver.prefetch(block, lane, job.with_corners);
+  });
+}
+
 /// Collects and traces the beams of tile i.
 void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_t end,
            HitBatch& batch) {
   const rays::Tile tile = tiling.tile(i);
-  if (!job.window.meets(tile.window(kLanes))) {
-    batch.block.mask = 0;
-    return;
-  }
+  batch.block.mask = 0;
+  batch.block.is_run = false;
+  if (!job.window.meets(tile.window(kLanes))) return;
   if (!job.points.x.empty() && tile.is_whole(kLanes)) {
     gather_pinhole(job.points, tile, batch);
   } else {
@@ -90,19 +123,28 @@ void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_
     if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
   }
   job.search.find(batch.beams, batch.block);
-  for_lanes(batch.block.mask,
-            [&](unsigned lane) { job.resolver.prefetch(batch.block, lane, job.with_corners); });
+  prepare_hits(job, tiling.has_runs(), batch.block);
+}
+
+/// Writes misses to tiles [begin, end).
+void write_tile_misses(const Job& job, const rays::Tiling& tiling, std::size_t begin,
+                       std::size_t end) {
+  tiling.for_beam_rows(begin, end, [&](BeamRange row) {
+    write_misses(job.hit_columns, row.begin, row.end - row.begin, job.hits);
+  });
 }
 
 /// Casts tiles [begin, end). Three are in progress at a time: data that later steps of one need
 /// (planes and corners of its triangles) are prefetched while the next is traced.
 void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, std::size_t end) {
   std::array<HitBatch, 3> batches;
-  tiling.for_beam_rows(begin, end, [&](BeamRange row) {
-    write_misses(job.hit_columns, row.begin, row.end - row.begin, job.hits);
-  });
+  if (!tiling.has_runs()) write_tile_misses(job, tiling, begin, end);
   for (std::size_t i = begin; i < end + 2; ++i) {
-    if (i < end) start(job, tiling, i, end, batches[i % batches.size()]);
+    if (i < end) {
+      HitBatch& batch = batches[i % batches.size()];
+      start(job, tiling, i, end, batch);
+      if (tiling.has_runs() && !batch.block.is_run) write_tile_misses(job, tiling, i, i + 1);
+    }
     if (i >= begin + 1 && i - 1 < end) {
       job.resolver.prefetch_corners(batches[(i - 1) % batches.size()].block, job.hit_columns);
     }

@@ -51,6 +51,9 @@ class Tiling {
 
   [[nodiscard]] std::size_t size() const { return std::size_t{tile_rows_} * tile_cols_; }
 
+  /// True if the beams of a tile follow each other: the grid has one row.
+  [[nodiscard]] bool has_runs() const { return (1U << width_shift_) == kLanes; }
+
   [[nodiscard]] Tile tile(std::size_t index) const {
     const auto row = static_cast<std::uint32_t>(index / tile_cols_);
     const auto col = static_cast<std::uint32_t>(index % tile_cols_);
