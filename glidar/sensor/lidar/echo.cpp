@@ -125,30 +125,32 @@ bool is_mixed(const WaveformBuffer& work, const Group& group) {
 
 /// The echo of a group: centroid, height of the waveform there, width and strongest contribution.
 PulseEcho echo_of(const WaveformBuffer& work, const Group& group, double sigma_m) {
-  PulseEcho echo{.range_m = 0.0,
-                 .signal = 0.0,
-                 .sigma_m = 0.0,
-                 .strongest = static_cast<std::uint32_t>(group.begin),
-                 .is_mixed = is_mixed(work, group)};
+  const EchoContribution& first = work.path[group.begin];
+  std::size_t strongest = group.begin;
   double sum = 0.0;
-  const double start_m = work.path[group.begin].range_m;
+  double moment_m = 0.0;
+  unsigned surface_bits = 0;  // that differ
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const EchoContribution& path = work.path[i];
     sum += path.signal;
-    echo.range_m += path.signal * (path.range_m - start_m);
-    if (is_stronger(path, work.path[echo.strongest]))
-      echo.strongest = static_cast<std::uint32_t>(i);
+    moment_m += path.signal * (path.range_m - first.range_m);
+    surface_bits |= static_cast<unsigned>(path.surface ^ first.surface);
+    if (is_stronger(path, work.path[strongest])) strongest = i;
   }
-  echo.range_m = start_m + (sum > 0.0 ? echo.range_m / sum : 0.0);
+  const double range_m = first.range_m + (sum > 0.0 ? moment_m / sum : 0.0);
   const double fade = 0.5 / (sigma_m * sigma_m);
-  double variance = 0.0;
+  double variance_m2 = 0.0;
+  double signal = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
-    const double off_m = work.path[i].range_m - echo.range_m;
-    variance += work.path[i].signal * (off_m * off_m);
-    echo.signal += work.path[i].signal * fading(fade * (off_m * off_m));
+    const double off_m = work.path[i].range_m - range_m;
+    variance_m2 += work.path[i].signal * (off_m * off_m);
+    signal += work.path[i].signal * fading(fade * (off_m * off_m));
   }
-  echo.sigma_m = std::sqrt(sigma_m * sigma_m + (sum > 0.0 ? variance / sum : 0.0));
-  return echo;
+  return {.range_m = range_m,
+          .signal = signal,
+          .sigma_m = std::sqrt(sigma_m * sigma_m + (sum > 0.0 ? variance_m2 / sum : 0.0)),
+          .strongest = static_cast<std::uint32_t>(strongest),
+          .is_mixed = surface_bits != 0 && is_mixed(work, group)};
 }
 
 /// The height of a peak at the middle one of three samples, by the parabola through them.
