@@ -115,18 +115,46 @@ Beams make_grid(const Spinning& s, std::size_t sequences) {
   return beams;
 }
 
-/// One firing of a channel; `head_rad` is where the head points at that moment.
-void set_beam(const Spinning& s, const SpinningChannel& channel, double head_rad, std::size_t i,
-              Beams& beams) {
-  const double azimuth_rad = head_rad + channel.azimuth_offset_rad;
-  beams.directions[i] = direction_at(azimuth_rad, channel.elevation_rad).normalized();
-  beams.rings[i] = channel.ring;
-  if (beams.origins_m.empty()) return;
-  const Eigen::Vector3d out = direction_at(azimuth_rad, 0.0);
-  const Eigen::Vector3d left(-out.y(), out.x(), 0.0);
+/// The head in each sequence when a channel fires.
+struct Heads {
+  std::vector<double> azimuths_rad;
+  std::vector<Eigen::Vector3d> directions;  ///< level; empty if beams have no origins
+};
+
+/// `starts_rad`: azimuths at the start of each sequence.
+Heads find_heads(const Spinning& s, const std::vector<double>& starts_rad, double fire_time_ns) {
+  const double turn_rad_per_ns = rotation_sign(s) * kTwoPi * s.rotation_hz / kSecond_ns;
+  Heads heads;
+  heads.azimuths_rad.reserve(starts_rad.size());
+  for (const double start_rad : starts_rad) {
+    heads.azimuths_rad.push_back(start_rad + turn_rad_per_ns * fire_time_ns);
+  }
+  if (!has_origins(s)) return heads;
+  heads.directions.reserve(starts_rad.size());
+  for (const double azimuth_rad : heads.azimuths_rad) {
+    heads.directions.push_back(direction_at(azimuth_rad, 0.0));
+  }
+  return heads;
+}
+
+/// The beams of a row, beginning at index `first`. Sines and cosines take most of the time, so each
+/// is computed once.
+void set_row(const Spinning& s, const SpinningChannel& channel, const Heads& heads,
+             std::size_t first, Beams& beams) {
+  const double level = std::cos(channel.elevation_rad);
+  const double height = std::sin(channel.elevation_rad);
   const Eigen::Vector3d& offset = channel.origin_m;
-  beams.origins_m[i] = s.beam_origin_m * direction_at(head_rad, 0.0) + offset.x() * out +
-                       offset.y() * left + offset.z() * Eigen::Vector3d::UnitZ();
+  for (std::size_t col = 0; col < heads.azimuths_rad.size(); ++col) {
+    const std::size_t i = first + col;
+    const Eigen::Vector3d out =
+        direction_at(heads.azimuths_rad[col] + channel.azimuth_offset_rad, 0.0);
+    beams.directions[i] = Eigen::Vector3d(level * out.x(), level * out.y(), height).normalized();
+    beams.rings[i] = channel.ring;
+    if (beams.origins_m.empty()) continue;
+    const Eigen::Vector3d left(-out.y(), out.x(), 0.0);
+    beams.origins_m[i] = s.beam_origin_m * heads.directions[col] + offset.x() * out +
+                         offset.y() * left + offset.z() * Eigen::Vector3d::UnitZ();
+  }
 }
 
 /// What starts a firing sequence: the encoder or a clock.
@@ -158,17 +186,22 @@ Beams make_beams(const Spinning& s, const FrameInterval& interval) {
   const std::vector<std::size_t> rows = rows_of(s);
   const std::vector<std::int64_t> sequences = sequences_in(s, interval);
   const double period_ns = sequence_period_ns(s);
-  const double turn_rad_per_ns = rotation_sign(s) * kTwoPi * s.rotation_hz / kSecond_ns;
   Beams beams = make_grid(s, sequences.size());
+  std::vector<double> starts_rad;
+  for (const std::int64_t k : sequences) starts_rad.push_back(head_azimuth_rad(s, k));
+  Heads heads;
+  double known_ns = kNaN;  // of `heads`; channels often fire together
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const SpinningChannel& channel = s.channels[rows[row]];
+    const std::size_t first = row * sequences.size();
+    if (channel.fire_time_ns != known_ns) {
+      heads = find_heads(s, starts_rad, channel.fire_time_ns);
+      known_ns = channel.fire_time_ns;
+    }
+    set_row(s, channel, heads, first, beams);
     const FiringSchedule firings = {channel.fire_time_ns, period_ns};
     for (std::size_t col = 0; col < sequences.size(); ++col) {
-      const std::size_t i = row * sequences.size() + col;
-      const double head_rad =
-          head_azimuth_rad(s, sequences[col]) + turn_rad_per_ns * channel.fire_time_ns;
-      set_beam(s, channel, head_rad, i, beams);
-      beams.times_ns[i] =
+      beams.times_ns[first + col] =
           static_cast<std::uint32_t>(firing_time_ns(firings, sequences[col]) - interval.start_ns);
     }
   }
