@@ -25,6 +25,7 @@ struct Pattern {
   double low_deg;
   double high_deg;
   double spread_deg;  ///< between the middle and each of six rays around it; 0: single rays
+  double exit_m;      ///< from the origin of the middle ray to those of the six
   double raw_goal;    ///< raster / raw Embree in the scenes with few, some and many triangles
   double some_goal;
   double many_goal;
@@ -57,6 +58,11 @@ Beams make_beams(const Pattern& pattern) {
       const Eigen::Vector3d d(std::cos(azimuth) * std::cos(up), std::sin(azimuth) * std::cos(up),
                               std::sin(up));
       beams.directions.push_back(d.normalized());
+      if (pattern.exit_m == 0.0) continue;
+      const double exit_m = row % rays == 0 ? 0.0 : pattern.exit_m;
+      const Eigen::Vector3d across(-std::sin(azimuth), std::cos(azimuth), 0.0);
+      beams.origins_m.push_back(
+          exit_m * (std::sin(turn) * across - std::cos(turn) * d.normalized().cross(across)));
     }
   }
   return beams;
@@ -68,7 +74,10 @@ RayList packets_of_rays(const Beams& beams, std::uint32_t rays, const Eigen::Vec
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const std::size_t beam = i / rays;
     const std::size_t row = beam / beams.cols * rays + i % rays;
-    list.rays.push_back({origin, beams.directions[row * beams.cols + beam % beams.cols]});
+    const std::size_t at = row * beams.cols + beam % beams.cols;
+    const Eigen::Vector3d offset =
+        beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[at];
+    list.rays.push_back({origin + offset, beams.directions[at]});
   }
   return list;
 }
@@ -230,9 +239,11 @@ int main(int argc, char** argv) {
   }
   stages.push_back(glidar::bench::make_cave());
   stages.push_back(glidar::bench::make_rocks());
-  const std::vector<Pattern> patterns = {{"64x2048", 64, 2048, -24.8, 2.0, 0.0, 4.0, 2.5, 1.1},
-                                         {"16x1800", 16, 1800, -15.0, 15.0, 0.0, 3.0, 1.8, 1.1},
-                                         {"64x2048x7", 64, 2048, -24.8, 2.0, 0.06, 3.5, 2.5, 1.4}};
+  const std::vector<Pattern> patterns = {
+      {"64x2048", 64, 2048, -24.8, 2.0, 0.0, 0.0, 4.0, 2.5, 1.1},
+      {"16x1800", 16, 1800, -15.0, 15.0, 0.0, 0.0, 3.0, 1.8, 1.1},
+      {"64x2048x7", 64, 2048, -24.8, 2.0, 0.06, 0.0, 3.5, 2.5, 1.4},
+      {"64x2048x7_exit", 64, 2048, -24.8, 2.0, 0.06, 0.005, 0.0, 0.0, 0.0}};
   std::vector<glidar::bench::Ratio> ratios;
   for (const auto& stage : stages) {
     std::printf("%s: %zu triangles\n", stage->name.c_str(),
