@@ -37,13 +37,20 @@ struct Lanes3 {
   }
 };
 
+/// Sets all lanes to the value.
+template <class T>
+inline void fill(T value, Lanes<T>& lanes) {
+  for (unsigned i = 0; i < kLanes; ++i) lanes[i] = value;
+}
+
 /// Calls body(lane) for every lane of a mask.
 template <class Body>
 void for_lanes(std::uint32_t mask, const Body& body) {
   for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
-/// out = matrix * in, lane by lane; they must not overlap.
+/// out = matrix * in, lane by lane; out is not in. Without __restrict, compilers do not vectorise
+/// it.
 template <class T>
 inline void rotate(const Eigen::Matrix<T, 3, 3>& matrix, const Lanes3<T>& in,
                    Lanes3<T>& __restrict out) {

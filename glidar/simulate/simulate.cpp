@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/simulate.hpp>
 
+#include <glidar/core/dot_product.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
@@ -84,28 +85,34 @@ GLIDAR_SIMD void find_distances(const Limits& limits, const Beams& beams, BeamRa
   const Eigen::Vector3d boresight = beams.boresight;
   const Eigen::Vector3d* const directions = beams.directions.data() + range.begin;
   for (std::size_t k = 0; k < count; ++k) {
-    distance_m[k] = range_m[k] * directions[k].dot(boresight);  // as depth_m()
+    distance_m[k] = range_m[k] * dot_product(directions[k], boresight);  // as depth_m()
   }
   if (beams.origins_m.empty()) return;
   const Eigen::Vector3d* const origins_m = beams.origins_m.data() + range.begin;
-  for (std::size_t k = 0; k < count; ++k) distance_m[k] += origins_m[k].dot(boresight);
+  for (std::size_t k = 0; k < count; ++k) {
+    distance_m[k] += dot_product(origins_m[k], boresight);
+  }
 }
 
 /// Ranges and statuses, as check_limits() of each hit.
 GLIDAR_SIMD void apply_limits(const Limits& limits, const Batch<double>& distance_m,
                               BeamRange range, Frame& frame) {
+  static_assert(static_cast<unsigned>(Status::hit) == 0);
+  constexpr auto kMiss = static_cast<unsigned>(Status::miss);
+  constexpr auto kTooNear = static_cast<unsigned>(Status::too_near);
+  constexpr auto kTooFar = static_cast<unsigned>(Status::too_far);
   const double near_m = limits.near_m > 0.0 ? limits.near_m : -kInfinity;
   const double far_m = limits.far_m;
   const double* const true_range_m = frame.ground_truth.range_m.data() + range.begin;
   double* const range_m = frame.range_m.data() + range.begin;
   Status* const status = frame.status.data() + range.begin;
   for (std::size_t k = 0; k < range.end - range.begin; ++k) {
-    const bool is_near = distance_m[k] < near_m;
-    const bool is_far = distance_m[k] > far_m;
-    const bool is_miss = true_range_m[k] != true_range_m[k];
-    const Status limited = is_near ? Status::too_near : (is_far ? Status::too_far : Status::hit);
-    status[k] = is_miss ? Status::miss : limited;
-    range_m[k] = is_near || is_far ? kNaN : true_range_m[k];
+    // Integers, of which at most one is 1, so that the loop vectorises.
+    const auto is_miss = static_cast<unsigned>(true_range_m[k] != true_range_m[k]);
+    const auto is_near = static_cast<unsigned>(distance_m[k] < near_m);
+    const auto is_far = static_cast<unsigned>(distance_m[k] > far_m) & (is_near ^ 1U);
+    status[k] = static_cast<Status>(is_miss * kMiss + is_near * kTooNear + is_far * kTooFar);
+    range_m[k] = (is_near | is_far) != 0 ? kNaN : true_range_m[k];
   }
 }
 

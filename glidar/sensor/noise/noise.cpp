@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise/noise.hpp>
 
+#include <glidar/core/dot_product.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/simd.hpp>
@@ -96,7 +97,7 @@ void load_column(const std::vector<From>& column, const NoiseBatch& batch, To re
 GLIDAR_SIMD void project(const Eigen::Vector3d* vectors, const Eigen::Vector3d& axis,
                          std::size_t count, double* along_axis) {
   const Eigen::Vector3d unit = axis;  // a copy, so that the loop vectorises
-  for (std::size_t i = 0; i < count; ++i) along_axis[i] = vectors[i].dot(unit);
+  for (std::size_t i = 0; i < count; ++i) along_axis[i] = dot_product(vectors[i], unit);
 }
 
 void load_depth(const Beams& beams, NoiseBatch& batch) {
