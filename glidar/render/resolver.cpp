@@ -43,25 +43,23 @@ GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const 
   }
 }
 
-/// Sets the same plane for all lanes.
-void repeat_plane(const TrianglePlane& plane, ExactHits& exact) {
-  exact.normal.x.at.fill(plane.normal.x());
-  exact.normal.y.at.fill(plane.normal.y());
-  exact.normal.z.at.fill(plane.normal.z());
-  exact.offset.at.fill(plane.offset);
-}
+// Whole vectors are written, since vectors written in parts are slow to load.
 
-void repeat_first(Lanes3<float>& lanes) {
-  lanes.x.at.fill(lanes.x[0]);
-  lanes.y.at.fill(lanes.y[0]);
-  lanes.z.at.fill(lanes.z[0]);
+/// Sets the same plane for all lanes.
+GLIDAR_SIMD void repeat_plane(const TrianglePlane& plane, ExactHits& exact) {
+  fill(plane.normal.x(), exact.normal.x);
+  fill(plane.normal.y(), exact.normal.y);
+  fill(plane.normal.z(), exact.normal.z);
+  fill(plane.offset, exact.offset);
 }
 
 /// Sets the corners of lane 0 for all lanes.
-void repeat_first(CornerBlock& corners) {
-  repeat_first(corners.c0);
-  repeat_first(corners.c1);
-  repeat_first(corners.c2);
+GLIDAR_SIMD void repeat_first(CornerBlock& corners) {
+  for (Lanes3<float>* corner : {&corners.c0, &corners.c1, &corners.c2}) {
+    fill(corner->x[0], corner->x);
+    fill(corner->y[0], corner->y);
+    fill(corner->z[0], corner->z);
+  }
 }
 
 /// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().

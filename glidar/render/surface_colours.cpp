@@ -15,6 +15,15 @@ struct CornerValues {
   Lanes<float> at_2;
 };
 
+// Whole vectors are written, since vectors written in parts are slow to load.
+
+/// Sets the same values at the corners for all lanes.
+GLIDAR_SIMD void repeat_values(const std::array<float, 3>& at_corner, CornerValues& values) {
+  fill(at_corner[0], values.at_0);
+  fill(at_corner[1], values.at_1);
+  fill(at_corner[2], values.at_2);
+}
+
 /// Collects a component of a vertex attribute at the corners of triangles; `is_one`: all are the
 /// same.
 template <class Vector>
@@ -24,12 +33,7 @@ void gather(const std::vector<Vector>& of_vertex, Eigen::Index component,
   const auto at = [&](unsigned lane, std::size_t corner) {
     return of_vertex[(*triangles[lane])[corner]][component];
   };
-  if (is_one) {
-    values.at_0.at.fill(at(0, 0));
-    values.at_1.at.fill(at(0, 1));
-    values.at_2.at.fill(at(0, 2));
-    return;
-  }
+  if (is_one) return repeat_values({at(0, 0), at(0, 1), at(0, 2)}, values);
   for (unsigned i = 0; i < kLanes; ++i) {
     values.at_0[i] = at(i, 0);
     values.at_1[i] = at(i, 1);
@@ -44,10 +48,10 @@ GLIDAR_SIMD void interpolate(const CornerValues& c, const Lanes<float>& w1, cons
   }
 }
 
-void fill(const Eigen::Vector3f& colour, Lanes3<float>& rgb) {
-  rgb.x.at.fill(colour.x());
-  rgb.y.at.fill(colour.y());
-  rgb.z.at.fill(colour.z());
+GLIDAR_SIMD void set_white(Lanes3<float>& rgb) {
+  fill(1.0F, rgb.x);
+  fill(1.0F, rgb.y);
+  fill(1.0F, rgb.z);
 }
 
 GLIDAR_SIMD void multiply(const Lanes3<float>& by, Lanes3<float>& rgb) {
@@ -153,7 +157,7 @@ void SurfaceColours::write_tinted(const HitColumnMask& hit_columns, const Group&
   if (!hit_columns.diffuse && !hit_columns.colour && !hit_columns.reflectance) return;
   const Material& material = *group.slot.material;
   Lanes3<float> tint;
-  fill(Eigen::Vector3f::Ones(), tint);
+  set_white(tint);
   multiply_by_texture(group, material.diffuse_texture, tint);
   multiply_by_vertex_colours(group, tint);
   Lanes<float> diffuse;
@@ -169,7 +173,7 @@ void SurfaceColours::write_tinted(const HitColumnMask& hit_columns, const Group&
   }
   if (!hit_columns.reflectance) return;
   Lanes3<float> gloss;
-  fill(Eigen::Vector3f::Ones(), gloss);
+  set_white(gloss);
   multiply_by_texture(group, material.specular_texture, gloss);
   Lanes<float> ambient;
   Lanes<float> specular;
