@@ -198,11 +198,12 @@ void TileBuffer::draw(const TriangleSetup& setup) {
 void TileBuffer::copy_triangle_ids(std::vector<std::uint32_t>& triangle_ids) const {
   triangle_ids.resize(static_cast<std::size_t>(cols_) * static_cast<std::size_t>(rows_));
   std::uint32_t* to = triangle_ids.data();
+  const int rest = cols_ % kBlockWidth;
   for (int row = 0; row < rows_; ++row) {
-    for (int col = 0; col < cols_; col += kBlockWidth) {
-      const int count = std::min(kBlockWidth, cols_ - col);
-      to = std::copy_n(&triangle_ids_[index_of(col, row)], count, to);
+    for (int col = 0; col < cols_ - rest; col += kBlockWidth) {
+      to = std::copy_n(&triangle_ids_[index_of(col, row)], kBlockWidth, to);
     }
+    if (rest > 0) to = std::copy_n(&triangle_ids_[index_of(cols_ - rest, row)], rest, to);
   }
 }
 
