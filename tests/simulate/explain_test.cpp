@@ -132,7 +132,7 @@ TEST(Explain, TracesTheEchoesOfAPulse) {
   }
   EXPECT_NEAR(share, 1.0, 1e-12);
   ASSERT_EQ(waveform.received.size(), 2U);
-  EXPECT_EQ(pulse.returns, (std::vector<int>{0, 1}));
+  EXPECT_EQ(waveform.returns, (std::vector<int>{0, 1}));
   EXPECT_EQ(waveform.received[0].range_m, frame.range_m[0]);
   EXPECT_EQ(waveform.received[1].range_m, frame.range_m[1]);
   EXPECT_EQ(trace.measured.range_m, frame.range_m[1]);
