@@ -18,7 +18,7 @@ Hits cast_on_two_threads(const char* kind, const Scene& scene, const Beams& beam
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   Hits hits;
   make_renderer(scene, {.kind = kind, .threads = 2})
-      ->cast({.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields}, hits);
+      ->cast({.beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns}, hits);
   return hits;
 }
 
