@@ -17,17 +17,17 @@ struct DirectionBox {
       : middle{Float8::all(p.middle[0]), Float8::all(p.middle[1]), Float8::all(p.middle[2])},
         half{Float8::all(p.half[0]), Float8::all(p.half[1]), Float8::all(p.half[2])} {}
 
-  /// The largest d.q of any direction d in the box.
-  [[nodiscard]] GLIDAR_INLINE Float8 largest(const Vector<Float8>& q) const {
+  /// The maximum of d.q for any direction d in the box.
+  [[nodiscard]] GLIDAR_INLINE Float8 max_dot(const Vector<Float8>& q) const {
     return dot(middle, q) + dot(half, magnitude(q));
   }
 };
 
 /// Upper bound of the smallest edge function for a packet; signs are flipped so that edge functions
 /// of a hit are positive.
-GLIDAR_INLINE Float8 largest_edge(const DirectionBox& box, const Vector<Float8>& q1,
-                                  const Vector<Float8>& q2, const Vector<Float8>& n) {
-  return min(min(box.largest(q1), box.largest(q2)), box.largest(n - q1 - q2));
+GLIDAR_INLINE Float8 edge_function_bound(const DirectionBox& box, const Vector<Float8>& q1,
+                                         const Vector<Float8>& q2, const Vector<Float8>& n) {
+  return min(min(box.max_dot(q1), box.max_dot(q2)), box.max_dot(n - q1 - q2));
 }
 
 /// Values of eight triangles, to be read one triangle at a time.
@@ -123,7 +123,7 @@ inline void test_common(const TreeView& tree, const TriangleCluster& cluster, Ra
     const Vector<Float8> n = flip_sign(s.n, s.det);
     const Float8 det = magnitude(s.det);
     const Mask8 faces = det > s.bounds.det;  // its sign is certain
-    const Mask8 outside = largest_edge(box, q1, q2, n) < s.bounds.edge * Float8::all(-2.0F);
+    const Mask8 outside = edge_function_bound(box, q1, q2, n) < s.bounds.edge * Float8::all(-2.0F);
     const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
     if (left == 0) continue;
     Rows<13> rows;
@@ -180,10 +180,10 @@ inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, Ra
   for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
     const std::uint32_t block = cluster.first_block + b;
     const BlockSetup s = set_up(tree.blocks[block], cluster, origin.at, scaled);
-    const Float8 largest =
-        largest_edge(box, flip_sign(s.q1, s.det), flip_sign(s.q2, s.det), flip_sign(s.n, s.det));
+    const Float8 bound = edge_function_bound(box, flip_sign(s.q1, s.det), flip_sign(s.q2, s.det),
+                                             flip_sign(s.n, s.det));
     const Mask8 faces = magnitude(s.det) > multiply_add(s.bounds.den, det_margin, s.bounds.det);
-    const Mask8 outside = largest < s.bounds.edge * edge_margin;
+    const Mask8 outside = bound < s.bounds.edge * edge_margin;
     const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
     if (left == 0) continue;
     Rows<19> rows;
