@@ -24,7 +24,7 @@ cmake --install "$build" --prefix "$folder/prefix" >"$folder/install.log"
   --config-settings=build-dir="$folder/build" "$root"
 PATH=$venv:$PATH auditwheel repair "${drivers[@]/#/--exclude=}" -w "$folder/repaired" "$folder"/raw/glidar-*.whl
 
-unzip -q "$folder"/repaired/glidar-*.whl -d "$folder/unpacked"
+/usr/bin/python3 -m zipfile -e "$folder"/repaired/glidar-*.whl "$folder/unpacked"
 "$root/scripts/check_binaries.py" "$folder/unpacked"
 
 python3 -m venv "$folder/venv"
