@@ -98,7 +98,10 @@ def key_table(schema):
 
 def top_level(schema):
     """The keys of a map without those of the maps inside."""
-    return {**schema, "properties": {key: {name: part for name, part in value.items() if name != "properties"}
+    def is_inside(name, part):
+        return name == "properties" or (name == "items" and "properties" in part)
+
+    return {**schema, "properties": {key: {name: part for name, part in value.items() if not is_inside(name, part)}
                                      for key, value in schema["properties"].items()}}
 
 

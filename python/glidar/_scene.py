@@ -23,7 +23,7 @@ from ._scene_data import SceneData
 from ._sensor import Sensor, load_sensor, plain
 from ._simulator import Simulator
 
-_UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
+_UNITS = dict(_core.length_units())
 _AXES = ("x", "y", "z")
 _MAX_SIMULATORS = 8
 _UNIT_TOLERANCE = 1e-3  # for normals that a file rounds to three digits

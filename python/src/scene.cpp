@@ -6,6 +6,7 @@
 #include "scene_state.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/config/length_unit.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/math/single_precision.hpp>
@@ -254,6 +255,13 @@ void drop_last(SceneHandle& handle) {
   if (!handle.motion.empty()) handle.motion.resize(scene.instances.size());
 }
 
+/// The units of model files by name, in metres.
+std::vector<std::pair<std::string, double>> length_units() {
+  std::vector<std::pair<std::string, double>> units;
+  for (const Named<double>& unit : kLengthUnits) units.emplace_back(unit.name, unit.value);
+  return units;
+}
+
 std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> bounds_of(const SceneHandle& handle) {
   const Eigen::AlignedBox3d box = bounds(*handle.scene);
   if (box.isEmpty()) return std::nullopt;
@@ -330,6 +338,7 @@ void bind_scene(nb::module_& module) {
       .def("drop_last", drop_last)
       .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
       .def("rig_motion", rig_motion_of);
+  module.def("length_units", length_units);
   module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none(),
              nb::arg("folder") = std::filesystem::path(),
              nb::sig("def parse_scene(text: str, log: object | None, folder: str = '') -> Scene"));
