@@ -55,7 +55,7 @@ struct Attempts {
   std::string report;
 
   /// `result`: negative when it failed, with errno.
-  void report(const char* name, long result) {
+  void add(const char* name, long result) {
     report += std::string(name) + ": " + (result >= 0 ? "0" : ::strerrorname_np(errno)) + "\n";
   }
 };
@@ -69,117 +69,116 @@ long open2(const std::string& path, std::uint64_t flags) {
 
 void read_files(Attempts& t) {
   const std::string folder = t.model.parent_path().string();
-  t.report("have a descriptor of the parent", ::fcntl(kLastFd + 1, F_GETFD));
-  t.report("read the model again", ::open(t.model.c_str(), O_RDONLY));
-  t.report("read a file outside", ::open(t.outside.c_str(), O_RDONLY));
-  t.report("read a file outside by openat2", open2(t.outside, O_RDONLY));
-  t.report("read a file outside by a link", ::open((folder + "/link").c_str(), O_RDONLY));
-  t.report("read the users", ::open("/etc/passwd", O_RDONLY));
-  t.report("read the memory of the parent",
-           ::open(("/proc/" + std::to_string(t.parent) + "/mem").c_str(), O_RDONLY));
-  t.report("list the root folder", ::open("/", O_RDONLY | O_DIRECTORY));
-  t.report("list the folder outside",
-           ::opendir(std::filesystem::path(t.outside).parent_path().c_str()) == nullptr ? -1 : 0);
+  t.add("have a descriptor of the parent", ::fcntl(kLastFd + 1, F_GETFD));
+  t.add("read the model again", ::open(t.model.c_str(), O_RDONLY));
+  t.add("read a file outside", ::open(t.outside.c_str(), O_RDONLY));
+  t.add("read a file outside by openat2", open2(t.outside, O_RDONLY));
+  t.add("read a file outside by a link", ::open((folder + "/link").c_str(), O_RDONLY));
+  t.add("read the users", ::open("/etc/passwd", O_RDONLY));
+  t.add("read the memory of the parent",
+        ::open(("/proc/" + std::to_string(t.parent) + "/mem").c_str(), O_RDONLY));
+  t.add("list the root folder", ::open("/", O_RDONLY | O_DIRECTORY));
+  t.add("list the folder outside",
+        ::opendir(std::filesystem::path(t.outside).parent_path().c_str()) == nullptr ? -1 : 0);
 }
 
 void change_files(Attempts& t) {
   const std::string model = t.model.string();
   const std::string other = model + ".new";
-  t.report("write the model", ::open(model.c_str(), O_WRONLY));
-  t.report("write the model by openat2", open2(model, O_WRONLY));
-  t.report("write a file outside", ::open(t.outside.c_str(), O_RDWR));
-  t.report("create a file", ::open(other.c_str(), O_WRONLY | O_CREAT, 0600));
-  t.report("create a file by openat2", open2(other, O_WRONLY | O_CREAT));
-  t.report("create a file by creat", ::creat(other.c_str(), 0600));
-  t.report("create an unnamed file",
-           ::open(t.model.parent_path().c_str(), O_TMPFILE | O_RDWR, 0600));
-  t.report("truncate a file", ::truncate(model.c_str(), 0));
-  t.report("remove a file", ::unlink(model.c_str()));
-  t.report("rename a file", ::rename(model.c_str(), other.c_str()));
-  t.report("link a file", ::link(model.c_str(), other.c_str()));
-  t.report("make a symbolic link", ::symlink("/", other.c_str()));
-  t.report("make a folder", ::mkdir(other.c_str(), 0700));
-  t.report("make a pipe", ::mknod(other.c_str(), S_IFIFO | 0600, 0));
-  t.report("change permissions", ::chmod(model.c_str(), 0777));
-  t.report("change the owner", ::chown(model.c_str(), 1, 1));
-  t.report("change times", ::utimensat(AT_FDCWD, model.c_str(), nullptr, 0));
+  t.add("write the model", ::open(model.c_str(), O_WRONLY));
+  t.add("write the model by openat2", open2(model, O_WRONLY));
+  t.add("write a file outside", ::open(t.outside.c_str(), O_RDWR));
+  t.add("create a file", ::open(other.c_str(), O_WRONLY | O_CREAT, 0600));
+  t.add("create a file by openat2", open2(other, O_WRONLY | O_CREAT));
+  t.add("create a file by creat", ::creat(other.c_str(), 0600));
+  t.add("create an unnamed file", ::open(t.model.parent_path().c_str(), O_TMPFILE | O_RDWR, 0600));
+  t.add("truncate a file", ::truncate(model.c_str(), 0));
+  t.add("remove a file", ::unlink(model.c_str()));
+  t.add("rename a file", ::rename(model.c_str(), other.c_str()));
+  t.add("link a file", ::link(model.c_str(), other.c_str()));
+  t.add("make a symbolic link", ::symlink("/", other.c_str()));
+  t.add("make a folder", ::mkdir(other.c_str(), 0700));
+  t.add("make a pipe", ::mknod(other.c_str(), S_IFIFO | 0600, 0));
+  t.add("change permissions", ::chmod(model.c_str(), 0777));
+  t.add("change the owner", ::chown(model.c_str(), 1, 1));
+  t.add("change times", ::utimensat(AT_FDCWD, model.c_str(), nullptr, 0));
 }
 
 void reach_the_network(Attempts& t) {
   const int tcp = ::socket(AF_INET, SOCK_STREAM, 0);
-  t.report("make a TCP socket", tcp);
+  t.add("make a TCP socket", tcp);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(t.port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  t.report("connect", ::connect(tcp, reinterpret_cast<sockaddr*>(&address), sizeof address));
-  t.report("make a UDP socket", ::socket(AF_INET6, SOCK_DGRAM, 0));
-  t.report("make a UNIX socket", ::socket(AF_UNIX, SOCK_STREAM, 0));
+  t.add("connect", ::connect(tcp, reinterpret_cast<sockaddr*>(&address), sizeof address));
+  t.add("make a UDP socket", ::socket(AF_INET6, SOCK_DGRAM, 0));
+  t.add("make a UNIX socket", ::socket(AF_UNIX, SOCK_STREAM, 0));
   std::array<int, 2> pair{};
-  t.report("make a pair of sockets", ::socketpair(AF_UNIX, SOCK_STREAM, 0, pair.data()));
-  t.report("use io_uring", ::syscall(SYS_io_uring_setup, 1, nullptr));
+  t.add("make a pair of sockets", ::socketpair(AF_UNIX, SOCK_STREAM, 0, pair.data()));
+  t.add("use io_uring", ::syscall(SYS_io_uring_setup, 1, nullptr));
 }
 
 void start_programs(Attempts& t) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(0);
-  t.report("fork", child);
+  t.add("fork", child);
   const long raw = ::syscall(SYS_clone, SIGCHLD, nullptr, nullptr, nullptr, nullptr);
   if (raw == 0) ::_exit(0);
-  t.report("clone", raw);
-  t.report("clone3", ::syscall(SYS_clone3, nullptr, 0));
+  t.add("clone", raw);
+  t.add("clone3", ::syscall(SYS_clone3, nullptr, 0));
   pthread_t thread{};
   errno = ::pthread_create(
       &thread, nullptr, [](void*) -> void* { return nullptr; }, nullptr);
-  t.report("start a thread", errno == 0 ? 0 : -1);
+  t.add("start a thread", errno == 0 ? 0 : -1);
   char program[] = "/bin/true";
   std::array<char*, 2> arguments = {program, nullptr};
-  t.report("execute a program", ::execv(program, arguments.data()));
-  t.report("execute by execveat",
-           ::syscall(SYS_execveat, AT_FDCWD, program, arguments.data(), environ, 0));
+  t.add("execute a program", ::execv(program, arguments.data()));
+  t.add("execute by execveat",
+        ::syscall(SYS_execveat, AT_FDCWD, program, arguments.data(), environ, 0));
 }
 
 void attack_processes(Attempts& t) {
-  t.report("signal the parent", ::kill(t.parent, 0));
-  t.report("kill the parent", ::kill(t.parent, SIGCONT));
-  t.report("kill a thread of the parent", ::syscall(SYS_tgkill, t.parent, t.parent, SIGCONT));
-  t.report("kill all", ::kill(-1, 0));
-  t.report("trace the parent", ::ptrace(PTRACE_ATTACH, t.parent, nullptr, nullptr));
+  t.add("signal the parent", ::kill(t.parent, 0));
+  t.add("kill the parent", ::kill(t.parent, SIGCONT));
+  t.add("kill a thread of the parent", ::syscall(SYS_tgkill, t.parent, t.parent, SIGCONT));
+  t.add("kill all", ::kill(-1, 0));
+  t.add("trace the parent", ::ptrace(PTRACE_ATTACH, t.parent, nullptr, nullptr));
   std::array<char, 8> bytes{};
   iovec here{bytes.data(), bytes.size()};
   iovec there{bytes.data(), bytes.size()};
-  t.report("read the parent's memory", ::process_vm_readv(t.parent, &here, 1, &there, 1, 0));
-  t.report("write the parent's memory", ::process_vm_writev(t.parent, &here, 1, &there, 1, 0));
-  t.report("open the parent", ::syscall(SYS_pidfd_open, t.parent, 0));
-  t.report("slow the parent down", ::setpriority(PRIO_PROCESS, static_cast<id_t>(t.parent), 19));
+  t.add("read the parent's memory", ::process_vm_readv(t.parent, &here, 1, &there, 1, 0));
+  t.add("write the parent's memory", ::process_vm_writev(t.parent, &here, 1, &there, 1, 0));
+  t.add("open the parent", ::syscall(SYS_pidfd_open, t.parent, 0));
+  t.add("slow the parent down", ::setpriority(PRIO_PROCESS, static_cast<id_t>(t.parent), 19));
   rlimit limit{};
-  t.report("limit the parent", ::prlimit(t.parent, RLIMIT_CPU, &limit, nullptr));
+  t.add("limit the parent", ::prlimit(t.parent, RLIMIT_CPU, &limit, nullptr));
 }
 
 void gain_powers(Attempts& t) {
-  t.report("map executable memory", ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE | PROT_EXEC,
-                                           MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED
-                                        ? -1
-                                        : 0);
+  t.add("map executable memory", ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE | PROT_EXEC,
+                                        MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED
+                                     ? -1
+                                     : 0);
   void* page = ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  t.report("make memory executable", ::mprotect(page, 4096, PROT_READ | PROT_EXEC));
-  t.report("map a file's code", ::syscall(SYS_remap_file_pages, page, 4096, PROT_EXEC, 0, 0));
-  t.report("become another user", ::setuid(0));
-  t.report("make a namespace", ::unshare(CLONE_NEWUSER));
-  t.report("change the root", ::chroot("/"));
-  t.report("mount", ::mount("none", "/", nullptr, MS_REMOUNT, nullptr));
-  t.report("change the process", ::prctl(PR_SET_PDEATHSIG, 0));
+  t.add("make memory executable", ::mprotect(page, 4096, PROT_READ | PROT_EXEC));
+  t.add("map a file's code", ::syscall(SYS_remap_file_pages, page, 4096, PROT_EXEC, 0, 0));
+  t.add("become another user", ::setuid(0));
+  t.add("make a namespace", ::unshare(CLONE_NEWUSER));
+  t.add("change the root", ::chroot("/"));
+  t.add("mount", ::mount("none", "/", nullptr, MS_REMOUNT, nullptr));
+  t.add("change the process", ::prctl(PR_SET_PDEATHSIG, 0));
   const rlimit unlimited{RLIM_INFINITY, RLIM_INFINITY};
-  t.report("raise a limit", ::setrlimit(RLIMIT_NOFILE, &unlimited));
-  t.report("load a kernel program", ::syscall(SYS_bpf, 0, nullptr, 0));
-  t.report("use the keyring", ::syscall(SYS_keyctl, 0, 0, 0, 0, 0));
-  t.report("handle page faults", ::syscall(SYS_userfaultfd, 0));
-  t.report("watch the processor", ::syscall(SYS_perf_event_open, nullptr, 0, -1, -1, 0));
-  t.report("duplicate a descriptor", ::dup(0));
-  t.report("make a memory file", ::memfd_create("x", 0));
+  t.add("raise a limit", ::setrlimit(RLIMIT_NOFILE, &unlimited));
+  t.add("load a kernel program", ::syscall(SYS_bpf, 0, nullptr, 0));
+  t.add("use the keyring", ::syscall(SYS_keyctl, 0, 0, 0, 0, 0));
+  t.add("handle page faults", ::syscall(SYS_userfaultfd, 0));
+  t.add("watch the processor", ::syscall(SYS_perf_event_open, nullptr, 0, -1, -1, 0));
+  t.add("duplicate a descriptor", ::dup(0));
+  t.add("make a memory file", ::memfd_create("x", 0));
   errno = ENOENT;
   const bool is_empty = environ == nullptr || *environ == nullptr;
-  t.report("read a variable of the environment", is_empty ? -1 : 0);
+  t.add("read a variable of the environment", is_empty ? -1 : 0);
 }
 
 void attempt_all(Attempts& attempts) {

@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <fstream>
 
 namespace glidar::import {
 namespace {

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <fstream>
+#include <sstream>
 #include <thread>
 #include <utility>
 
