@@ -205,7 +205,7 @@ TEST(Woods2016Png, RejectsFramesOfOtherRenderTargets) {
   made.frame.framebuffer.rgba.clear();
   EXPECT_THAT(write_error(made, "a.framebuffer.png"),
               HasSubstr("a frame without a quantized framebuffer; allowed: a frame of "
-                        "the paper's target"));
+                        "--quantized-framebuffer"));
 }
 
 TEST(TransformFile, IsTheFirstObjectInTheCloudsFrameWithoutScale) {

@@ -155,7 +155,7 @@ const BadFile kBadScenes[] = {
      "did you "
      "mean 'diffuse'?"},
     {"TwoMotions", model("motion: {spin: {rate_rad_s: [0, 0, 1]}, trajectory: t.tum}"),
-     "s.yaml:3:56: models[0].motion.trajectory: given beside 'spin'; allowed: one of spin, twist, "
+     "s.yaml:3:57: models[0].motion.trajectory: given beside 'spin'; allowed: one of spin, twist, "
      "tumbling, trajectory; remove one of them"},
     {"NoMotion", model("motion: {}"),
      "s.yaml:3:13: models[0].motion: the kind of motion is missing; allowed: one of spin, twist, "
@@ -165,7 +165,7 @@ const BadFile kBadScenes[] = {
      "trajectory file"},
     {"TrajectoryUnknownKey", model("motion: {trajectory: {file: t.tum, rate: 1}}"),
      "s.yaml:3:40: models[0].motion.trajectory.rate: unknown key 'rate'; allowed: file, rate_hz, "
-     "times, start_s"},
+     "times, start_s; did you mean 'rate_hz'?"},
     {"SizeIsAMap", model("size: {x: 1}"),
      "s.yaml:3:11: models[0].size: a map; allowed: a number, or a list of 3"},
     {"SpinWithoutRate", model("motion: {spin: {}}"),

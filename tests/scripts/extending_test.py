@@ -14,8 +14,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 LIBRARIES = os.environ.get("GLIDAR_LIBRARIES", "")
-READER = ["io/config/field_json", "io/config/yaml_budget", "io/config/yaml_field_reader", "io/config/yaml_reader",
-          "io/files/input_file", "io/files/nearest_file", "io/files/text_file"]
+READER = ["io/config/field_json", "io/config/provenance", "io/config/yaml_budget", "io/config/yaml_field_reader",
+          "io/config/yaml_reader", "io/files/input_file", "io/files/nearest_file", "io/files/text_file"]
 KEYS_TEST = """
 TEST(Example, KeysAreReadAndWritten) {
   glidar::NoiseStep step;
