@@ -62,4 +62,14 @@ inline void rotate(const Eigen::Matrix<T, 3, 3>& matrix, const Lanes3<T>& in,
   }
 }
 
+/// The same for one vector, with the same bits: Eigen adds the terms in another order.
+template <class T>
+inline Eigen::Matrix<T, 3, 1> rotate(const Eigen::Matrix<T, 3, 3>& matrix,
+                                     const Eigen::Matrix<T, 3, 1>& in) {
+  const T* m = matrix.data();
+  return {m[0] * in.x() + m[3] * in.y() + m[6] * in.z(),
+          m[1] * in.x() + m[4] * in.y() + m[7] * in.z(),
+          m[2] * in.x() + m[5] * in.y() + m[8] * in.z()};
+}
+
 }  // namespace glidar

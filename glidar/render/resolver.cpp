@@ -129,10 +129,9 @@ Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {
 }
 
 ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam) {
-  ObjectRay ray{view.sensor_in_object, view.object_from_sensor * beams.directions[beam]};
-  if (!beams.origins_m.empty()) {
-    ray.origin += view.object_from_sensor * beams.origins_m[beam] / view.scale;
-  }
+  const Eigen::Matrix3d& rotation = view.object_from_sensor;
+  ObjectRay ray{view.sensor_in_object, rotate(rotation, beams.directions[beam])};
+  if (!beams.origins_m.empty()) ray.origin += rotate(rotation, beams.origins_m[beam]) / view.scale;
   return ray;
 }
 

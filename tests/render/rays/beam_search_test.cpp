@@ -163,6 +163,30 @@ Beams some_beams(std::size_t count, bool has_origins, bool is_coherent, std::uin
   return loose_beams(directions, origins);
 }
 
+TEST(BeamSearch, SingleRaysHaveTheBitsOfBlocks) {
+  Scene scene = builtin_scene("box");
+  scene.instances[0].scale = 0.7;
+  const Beams beams = some_beams(kLanes, true, false, 19);
+  BeamBlock block;
+  block.has_origins = true;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    block.direction.set(i, beams.directions[i]);
+    block.origin_m.set(i, beams.origins_m[i]);
+  }
+  for (int step = 0; step < 20; ++step) {
+    const InstanceView view = view_of(scene.instances[0], scene.meshes[0], Pose::Identity(),
+                                      turned(0.1 + step, {1, 2, 3}, {0.3, 7.0, -2.0}));
+    Lanes3<double> origin;
+    Lanes3<double> direction;
+    rays_in(view, block, origin, direction);
+    for (unsigned i = 0; i < kLanes; ++i) {
+      const ObjectRay ray = ray_in(view, beams, i);
+      EXPECT_EQ(ray.origin, origin.get(i));
+      EXPECT_EQ(ray.direction, direction.get(i));
+    }
+  }
+}
+
 TEST(BeamSearch, EqualsTheRuleAmongManyInstances) {
   for (const bool has_origins : {false, true}) {
     for (const bool is_coherent : {false, true}) {
