@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene of 100,000 instances: time until it can be cast, and cost of moving one of them.
+// A scene of 100,000 instances: time until it can be cast, and cost of moving one of them, or of
+// one that is very far away.
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace glidar::bench {
@@ -30,13 +32,23 @@ Scene make_boxes() {
   return scene;
 }
 
-struct Stage {
+/// The same and a box of 2e8 m, 1e11 m away and out of sight.
+Scene make_boxes_and_far_one() {
   Scene scene = make_boxes();
+  Instance box = scene.instances[0];
+  box.scale = 1e8;
+  box.world_from_object.translation() = Eigen::Vector3d(0.0, 0.0, 1e11);
+  scene.instances.push_back(box);
+  return scene;
+}
+
+struct Stage {
+  Scene scene;
   Beams beams = make_beams(pinhole_from_fov(512, 512, 1.0));
   Pose world_from_sensor = look_at({-20.0, -30.0, 60.0}, {300.0, 300.0, 0.0}, {0.0, 0.0, 1.0});
   std::vector<Pose> poses;
 
-  Stage() {
+  explicit Stage(Scene what) : scene(std::move(what)) {
     for (const Instance& instance : scene.instances) poses.push_back(instance.world_from_object);
   }
 
@@ -92,12 +104,15 @@ void register_casts(Stage& stage, std::size_t moved, const std::string& name) {
 }  // namespace glidar::bench
 
 int main(int argc, char** argv) {
-  glidar::bench::Stage stage;
+  glidar::bench::Stage stage(glidar::bench::make_boxes());
+  glidar::bench::Stage with_far_one(glidar::bench::make_boxes_and_far_one());
   glidar::bench::register_first_cast(stage, "first cast");
   glidar::bench::register_casts(stage, 0, "at rest");
   glidar::bench::register_casts(stage, 1, "one moves");
   glidar::bench::register_casts(stage, 1000, "1000 move");
+  glidar::bench::register_casts(with_far_one, 0, "one is at 1e11 m");
   return glidar::bench::run(argc, argv,
-                            {{"one of 100,000 moves / none does", "at rest", "one moves", 0.99},
+                            {{"one is at 1e11 m / none is", "at rest", "one is at 1e11 m", 0.8},
+                             {"one of 100,000 moves / none does", "at rest", "one moves", 0.99},
                              {"1000 move / none does", "at rest", "1000 move", 0.0}});
 }

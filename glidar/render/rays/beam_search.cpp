@@ -68,15 +68,15 @@ class InstanceTrace {
 
   RayPacket packet;
 
-  /// Sets the rays of these lanes, at least one.
-  void start(std::uint32_t instance, const BeamBlock& beams, std::uint32_t lanes) {
+  /// Sets the rays of these lanes, at least one. `reach_m`: of the instance's group.
+  void start(std::uint32_t instance, double reach_m, const BeamBlock& beams, std::uint32_t lanes) {
     const InstanceView& view = cast_.resolver.view(instance);
     Lanes3<double> origin;
     Lanes3<double> direction;
     rays_in(view, beams, origin, direction);
     set_rays(origin, direction, packet);
     hit_filter_.instance = instance;
-    packet.tie_reach = cast_.trees.largest_reach_m() / view.scale;
+    packet.tie_reach = reach_m / view.scale;
     const bool filters_hits = cast_.request.cull_back_faces || cast_.resolver.is_masked(instance);
     packet.accepts_hit = filters_hits ? HitFilterContext::accepts : nullptr;
     packet.context = &hit_filter_;
@@ -117,29 +117,52 @@ class SceneTrace {
   std::uint32_t trace(std::uint32_t lanes) {
     Lanes3<double> origin;
     Lanes3<double> direction;
-    // The tree's frame is treated as that of an instance.
+    // The trees' frame is treated as that of an instance.
     rays_in({cast_.trees.tree_from_sensor(), cast_.trees.sensor_in_tree(), 1.0}, beams_, origin,
             direction);
     RayPacket packet;
     set_rays(origin, direction, packet);
-    kernel_.start(packet, cast_.trees.instance_sphere(), lanes);
-    kernel_.visit_leaves(
-        cast_.trees.instance_tree(), packet,
-        [](void* self, std::uint32_t leaf, RayPacket& outer, std::uint32_t entering) {
-          static_cast<SceneTrace*>(self)->visit(leaf, outer, entering);
-        },
-        this);
+    for (const InstanceGroup& group : cast_.trees.groups()) {
+      group_ = &group;
+      kernel_.start(packet, group.boxes.sphere(), lanes);
+      end_at_nearest(lanes, packet);
+      kernel_.visit_leaves(
+          group.tree(), packet,
+          [](void* self, std::uint32_t leaf, RayPacket& outer, std::uint32_t entering) {
+            static_cast<SceneTrace*>(self)->visit(leaf, outer, entering);
+          },
+          this);
+    }
     return tied_;
   }
 
   [[nodiscard]] const PrimitiveRef& found(unsigned lane) const { return nearest_[lane].primitive; }
 
  private:
+  /// Ends rays at their hits in the groups before. The bounds of these now include ties with
+  /// instances of this group, which reach farther.
+  void end_at_nearest(std::uint32_t lanes, RayPacket& outer) {
+    for_lanes(lanes, [&](unsigned i) {
+      Nearest& nearest = nearest_[i];
+      if (nearest.primitive.instance == kInvalidId) return;
+      const double window_m =
+          1.01 * tie_window_m(cast_, block_.beam[i], nearest.primitive, group_->reach_m);
+      nearest.low_m -= window_m;
+      nearest.high_m += window_m;
+      outer.high[i] = bound_in(outer, i, nearest.high_m);
+    });
+  }
+
+  /// An upper bound of a distance in a packet of the trees' frame.
+  static float bound_in(const RayPacket& outer, unsigned lane, double distance_m) {
+    return well_above(distance_m - outer.shift[lane] + 0x1p-50 * distance_m);
+  }
+
   void visit(std::uint32_t leaf, RayPacket& outer, std::uint32_t lanes) {
-    const std::uint32_t instance = cast_.trees.instance_in(leaf);
+    const std::uint32_t instance = group_->boxes.index_in(leaf);
     const double scale = cast_.resolver.view(instance).scale;
     RayPacket& p = inner_.packet;
-    inner_.start(instance, beams_, lanes);
+    inner_.start(instance, group_->reach_m, beams_, lanes);
     for_lanes(lanes, [&](unsigned i) {
       if (nearest_[i].primitive.instance == kInvalidId) return;
       const double end = nearest_[i].high_m / scale;
@@ -150,8 +173,7 @@ class SceneTrace {
     for_lanes(lanes, [&](unsigned i) {
       if (p.slot[i] == kNoTriangle) return;
       update_nearest(i, {instance, inner_.primitive(i)}, scale);
-      outer.high[i] =
-          well_above(nearest_[i].high_m - outer.shift[i] + 0x1p-50 * nearest_[i].high_m);
+      outer.high[i] = bound_in(outer, i, nearest_[i].high_m);
     });
   }
 
@@ -169,7 +191,8 @@ class SceneTrace {
 
   /// True when the beam hits this triangle before the nearest so far.
   bool retest_exactly(unsigned lane, const PrimitiveRef& found) {
-    const HitOrder order = order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].primitive);
+    const HitOrder order =
+        order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].primitive, group_->reach_m);
     if (order.ties) tied_ |= 1U << lane;
     return order.is_nearer;
   }
@@ -179,6 +202,7 @@ class SceneTrace {
   const BeamBlock& beams_;
   const HitBlock& block_;
   InstanceTrace inner_;
+  const InstanceGroup* group_ = nullptr;  ///< that is being traced
   std::array<Nearest, kLanes> nearest_;
   std::uint32_t tied_ = 0;
 };
@@ -199,7 +223,7 @@ void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   };
   if (instances.size() == 1) {
     InstanceTrace trace(cast_, kernel_, block);
-    trace.start(instances[0], beams, lanes);
+    trace.start(instances[0], cast_.trees.largest_reach_m(), beams, lanes);
     trace.trace();
     tied = trace.packet.tied;
     for_lanes(lanes, [&](unsigned i) {

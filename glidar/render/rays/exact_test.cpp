@@ -60,14 +60,20 @@ double tie_margin(const RayPacket& packet, unsigned lane, const HitTriangle& tri
   return tie_window(packet.tie_reach, triangle, {d[0][lane], d[1][lane], d[2][lane]});
 }
 
+bool accepts(const RayPacket& packet, unsigned lane, std::uint32_t primitive) {
+  return packet.accepts_hit == nullptr || packet.accepts_hit(packet.context, lane, primitive);
+}
+
 /// True where the triangle has the same corners as the ray's nearest one, in any order: by the
-/// rule, their distances are equal, so the lower one is kept.
+/// rule, their distances are equal, so the lower one that blocks the ray is kept.
 bool keep_lower_duplicate(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
                           std::uint32_t slot) {
   const std::uint32_t before = packet.slot[lane];
-  if (before == kNoTriangle || packet.accepts_hit != nullptr) return false;
-  if (!have_same_corners(blocks, before, slot)) return false;
-  if (primitive_at(blocks, slot) < primitive_at(blocks, before)) packet.slot[lane] = slot;
+  if (before == kNoTriangle || !have_same_corners(blocks, before, slot)) return false;
+  const std::uint32_t primitive = primitive_at(blocks, slot);
+  if (primitive < primitive_at(blocks, before) && accepts(packet, lane, primitive)) {
+    packet.slot[lane] = slot;
+  }
   return true;
 }
 
@@ -92,22 +98,26 @@ double tie_window(double reach, const HitTriangle& triangle, const Vector& direc
   return kTiePart * reach * across;
 }
 
+bool may_tie(double apart, double window, bool replaces) {
+  return apart == 0.0 ? replaces : !(std::abs(apart) > window);
+}
+
 void retest_exactly(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
                     std::uint32_t slot) {
   if (keep_lower_duplicate(blocks, packet, lane, slot)) return;
   const double distance = distance_to(blocks, packet, lane, slot);
   if (distance == 0.0) return;
   const std::uint32_t primitive = primitive_at(blocks, slot);
-  if (packet.accepts_hit != nullptr && !packet.accepts_hit(packet.context, lane, primitive)) return;
+  if (!accepts(packet, lane, primitive)) return;
   const double tie = tie_margin(packet, lane, triangle_at(blocks, slot));
   if (packet.slot[lane] != kNoTriangle) {
     complete_distance(blocks, packet, lane);
     const HitCandidate nearest{packet.distance[lane], 0, primitive_at(blocks, packet.slot[lane])};
-    const double apart = std::abs(distance - nearest.distance);
+    const bool replaces = is_nearer({distance, 0, primitive}, nearest);
     const HitTriangle before = triangle_at(blocks, packet.slot[lane]);
-    const double widest = std::max(tie, tie_margin(packet, lane, before));
-    if (apart > 0.0 && !(apart > widest)) packet.tied |= 1U << lane;
-    if (!is_nearer({distance, 0, primitive}, nearest)) return;
+    const double window = std::max(tie, tie_margin(packet, lane, before));
+    if (may_tie(distance - nearest.distance, window, replaces)) packet.tied |= 1U << lane;
+    if (!replaces) return;
   }
   packet.slot[lane] = slot;
   packet.distance[lane] = distance;

@@ -24,6 +24,11 @@ bool have_same_corners(const TriangleBlock* blocks, std::uint32_t slot, std::uin
 double tie_window(double reach, const HitTriangle& triangle,
                   const std::array<double, 3>& direction);
 
+/// True where a ray must be searched for ties because it hits both of two triangles: their
+/// distances differ by at most the larger of their windows, or are equal and the triangle found
+/// later replaces the other. `apart`: the difference of the distances.
+bool may_tie(double apart, double window, bool replaces);
+
 /// Computes packet.distance of every active ray that hits, by the rule.
 void complete_distances(const TriangleBlock* blocks, RayPacket& packet);
 

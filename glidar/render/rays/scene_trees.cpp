@@ -18,6 +18,9 @@ constexpr double kMargin = 0x1p-44;
 constexpr double kMoved = 0x1p-8;
 /// It is rebuilt when more than 1 / kMovedDivisor of the instances moved in one step.
 constexpr std::size_t kMovedDivisor = 8;
+/// The maximum ratio of reaches in a group: rays are padded by some 2^-22 of their distance to the
+/// boxes of a group and of its size, which is then less than the smallest reach.
+constexpr double kMaxReachRatio = 0x1p20;
 
 const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t instance) {
   return request.world_from_instance.empty() ? scene.instances[instance].world_from_object
@@ -41,23 +44,37 @@ SceneTrees::SceneTrees(const Resolver& resolver, ThreadPool& thread_pool)
 
 void SceneTrees::place(const CastRequest& request, const Resolver& resolver,
                        ThreadPool& thread_pool) {
-  if (!refit(request)) {
+  if (refit(request)) {
+    find_reaches(resolver);
+  } else {
     store_poses(request);
     origin_m_ = request.world_from_sensor.translation();
-    if (instances_.size() > 1) build_instance_tree(thread_pool);
+    find_reaches(resolver);
+    group_instances();
+    if (instances_.size() > 1) {
+      for (InstanceGroup& group : groups_) build_boxes(thread_pool, group);
+    }
   }
-  find_reaches(resolver);
+  find_group_reaches();
   tree_from_sensor_ = tree_from_world_ * request.world_from_sensor.linear();
   sensor_in_tree_ = tree_from_world_ * (request.world_from_sensor.translation() - origin_m_);
 }
 
 void SceneTrees::find_reaches(const Resolver& resolver) {
-  largest_reach_m_ = 0.0;
   for (const std::uint32_t i : instances_) {
     const InstanceView& view = resolver.view(i);
     reach_m_[i] =
         view.scale * (mesh_reach_[scene_.instances[i].mesh] + view.sensor_in_object.norm());
-    largest_reach_m_ = std::max(largest_reach_m_, reach_m_[i]);
+  }
+}
+
+void SceneTrees::find_group_reaches() {
+  largest_reach_m_ = 0.0;
+  for (InstanceGroup& group : groups_) {
+    for (const std::uint32_t i : group.instances) {
+      largest_reach_m_ = std::max(largest_reach_m_, reach_m_[i]);
+    }
+    group.reach_m = largest_reach_m_;
   }
 }
 
@@ -70,9 +87,12 @@ bool SceneTrees::refit(const CastRequest& request) {
   if (kMovedDivisor * moved_.size() > instances_.size()) return false;
   for (const std::uint32_t i : moved_) {
     poses_[i] = pose_of(scene_, request, i);
-    if (enabled_[i] != 0 && !of_instance(i).nodes.empty()) boxes_.move(reference_of(i));
+    if (enabled_[i] == 0 || of_instance(i).nodes.empty()) continue;
+    groups_[group_of_[i]].boxes.move(reference_of(i));
   }
-  return moved_.empty() || !boxes_.needs_rebuild();
+  return moved_.empty() ||
+         std::none_of(groups_.begin(), groups_.end(),
+                      [](const InstanceGroup& group) { return group.boxes.needs_rebuild(); });
 }
 
 bool SceneTrees::has_same_instances(const CastRequest& request) const {
@@ -85,7 +105,9 @@ bool SceneTrees::has_same_instances(const CastRequest& request) const {
 
 bool SceneTrees::is_sensor_near(const CastRequest& request) const {
   const double moved_m = (request.world_from_sensor.translation() - origin_m_).norm();
-  return instances_.size() < 2 || moved_m <= kMoved * boxes_.sphere().radius;
+  return std::all_of(groups_.begin(), groups_.end(), [&](const InstanceGroup& group) {
+    return group.instances.size() < 2 || moved_m <= kMoved * group.boxes.sphere().radius;
+  });
 }
 
 void SceneTrees::store_poses(const CastRequest& request) {
@@ -126,15 +148,35 @@ BoxReference SceneTrees::reference_of(std::uint32_t instance) const {
   return reference;
 }
 
-void SceneTrees::build_instance_tree(ThreadPool& thread_pool) {
+/// Each group starts at the smallest reach that is left.
+void SceneTrees::group_instances() {
+  const auto is_smaller = [&](std::uint32_t a, std::uint32_t b) {
+    return reach_m_[a] < reach_m_[b];
+  };
+  groups_.clear();
+  group_of_.resize(reach_m_.size());
+  for (std::vector<std::uint32_t> left = instances_; !left.empty();) {
+    const double smallest_m = reach_m_[*std::min_element(left.begin(), left.end(), is_smaller)];
+    const auto end = std::stable_partition(left.begin(), left.end(), [&](std::uint32_t i) {
+      return !(reach_m_[i] > kMaxReachRatio * smallest_m);
+    });
+    for (auto i = left.begin(); i != end; ++i) {
+      group_of_[*i] = static_cast<std::uint32_t>(groups_.size());
+    }
+    groups_.push_back({.instances = {left.begin(), end}, .boxes = {}});
+    left.erase(left.begin(), end);
+  }
+}
+
+void SceneTrees::build_boxes(ThreadPool& thread_pool, InstanceGroup& group) const {
   constexpr std::size_t kInstanceGrain = 512;
-  std::vector<BoxReference> references(instances_.size());
+  std::vector<BoxReference> references(group.instances.size());
   thread_pool.parallel_for(references.size(), kInstanceGrain,
                            [&](std::size_t begin, std::size_t end) {
                              for (std::size_t k = begin; k < end; ++k)
-                               references[k] = reference_of(instances_[k]);
+                               references[k] = reference_of(group.instances[k]);
                            });
-  boxes_.build(references, scene_.instances.size(), thread_pool);
+  group.boxes.build(references, scene_.instances.size(), thread_pool);
 }
 
 }  // namespace glidar::rays

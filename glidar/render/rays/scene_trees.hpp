@@ -12,16 +12,26 @@
 
 namespace glidar::rays {
 
+/// Instances with similar reaches, see SceneTrees::reach_m(), and the tree over their boxes.
+struct InstanceGroup {
+  std::vector<std::uint32_t> instances;  ///< at least one
+  BoxTree boxes;                         ///< unless the scene has a single instance
+  double reach_m = 0.0;                  ///< the maximum of these and of the groups before
+
+  /// Without clusters and blocks.
+  [[nodiscard]] TreeView tree() const { return {boxes.nodes().data(), nullptr, nullptr}; }
+};
+
 /// The trees of a scene: one over the triangles of each mesh, in the mesh's frame, and above them
-/// one over the boxes of the instances. The latter has its own frame, in metres: its origin is
-/// where the sensor was when it was built, and its axes are those of the largest instance. Boxes of
-/// objects that are aligned with it therefore stay small.
+/// one over the boxes of each group of instances. The latter have their own frame, in metres: its
+/// origin is where the sensor was when they were built, and its axes are those of the largest
+/// instance. Boxes of objects that are aligned with it therefore stay small.
 class SceneTrees {
  public:
   /// The resolver's scene must outlive the trees.
   SceneTrees(const Resolver& resolver, ThreadPool& thread_pool);
 
-  /// Sets the poses of the next cast; the resolver has them too. The tree over the instances is
+  /// Sets the poses of the next cast; the resolver has them too. The trees over the instances are
   /// refitted when few moved, and rebuilt when many moved or the sensor moved far.
   void place(const CastRequest& request, const Resolver& resolver, ThreadPool& thread_pool);
 
@@ -38,16 +48,8 @@ class SceneTrees {
   /// Enabled instances with triangles.
   [[nodiscard]] const std::vector<std::uint32_t>& instances() const { return instances_; }
 
-  /// The tree over instances(), if there are at least two; without clusters and blocks.
-  [[nodiscard]] TreeView instance_tree() const {
-    return {instance_nodes().data(), nullptr, nullptr};
-  }
-  [[nodiscard]] const std::vector<TreeNode>& instance_nodes() const { return boxes_.nodes(); }
-  /// The instance in a leaf of that tree.
-  [[nodiscard]] std::uint32_t instance_in(std::uint32_t leaf) const {
-    return boxes_.index_in(leaf);
-  }
-  [[nodiscard]] const MeshSphere& instance_sphere() const { return boxes_.sphere(); }
+  /// instances() by increasing reach: few groups, mostly one.
+  [[nodiscard]] const std::vector<InstanceGroup>& groups() const { return groups_; }
   [[nodiscard]] const Eigen::Matrix3d& tree_from_sensor() const { return tree_from_sensor_; }
   [[nodiscard]] const Eigen::Vector3d& sensor_in_tree() const { return sensor_in_tree_; }
 
@@ -59,12 +61,14 @@ class SceneTrees {
 
  private:
   void find_reaches(const Resolver& resolver);
-  /// Refits the tree to the instances that moved; false: it must be rebuilt.
+  void find_group_reaches();
+  /// Refits the trees to the instances that moved; false: they must be rebuilt.
   [[nodiscard]] bool refit(const CastRequest& request);
   [[nodiscard]] bool has_same_instances(const CastRequest& request) const;
   [[nodiscard]] bool is_sensor_near(const CastRequest& request) const;
   void store_poses(const CastRequest& request);
-  void build_instance_tree(ThreadPool& thread_pool);
+  void group_instances();
+  void build_boxes(ThreadPool& thread_pool, InstanceGroup& group) const;
   [[nodiscard]] BoxReference reference_of(std::uint32_t instance) const;
 
   const Scene& scene_;
@@ -74,14 +78,15 @@ class SceneTrees {
   std::vector<double> reach_m_;  ///< per instance
   double largest_reach_m_ = 0.0;
 
-  std::vector<Pose> poses_;                             ///< per instance, as the tree has them
+  std::vector<Pose> poses_;                             ///< per instance, as the trees have them
   std::vector<std::uint8_t> enabled_;                   ///< per instance
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the tree's frame, in the world
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the trees' frame, in the world
   Eigen::Matrix3d tree_from_world_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d sensor_in_tree_ = Eigen::Vector3d::Zero();
-  BoxTree boxes_;                     ///< of instances_, if there are at least two
-  std::vector<std::uint32_t> moved_;  ///< since the last cast
+  std::vector<InstanceGroup> groups_;
+  std::vector<std::uint32_t> group_of_;  ///< per instance of instances_
+  std::vector<std::uint32_t> moved_;     ///< since the last cast
 };
 
 }  // namespace glidar::rays

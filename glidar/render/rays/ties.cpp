@@ -52,25 +52,41 @@ void for_leaves_on(const TreeNode* nodes, std::uint32_t index, const Segment& se
   }
 }
 
-/// Finds the triangles of a scene that a beam hits up to a maximum distance.
+/// Finds the triangles of a scene that a beam hits about as near as a given one.
 class Candidates {
  public:
-  Candidates(const CastView& cast, std::size_t beam, double end_m)
-      : cast_(cast), beam_(beam), end_m_(end_m) {}
+  Candidates(const CastView& cast, std::size_t beam, const PrimitiveRef& nearest)
+      : cast_(cast),
+        beam_(beam),
+        nearest_(nearest),
+        nearest_m_(hit_distance_m(cast, beam, nearest)) {}
 
-  /// Calls visit(triangle, distance in metres) for every triangle that blocks the beam.
+  /// Calls visit(triangle, distance in metres) for every triangle that blocks the beam and may tie
+  /// with the given one.
   template <class Visit>
   void visit_all(const Visit& visit) const {
-    const std::vector<std::uint32_t>& instances = cast_.trees.instances();
-    if (instances.size() == 1) return visit_instance(instances[0], visit);
-    const Segment segment{ray_in_tree(), kTieMargin * cast_.trees.largest_reach_m(), end_m_};
-    for_leaves_on(cast_.trees.instance_nodes().data(), 0, segment, [&](std::uint32_t leaf) {
-      visit_instance(cast_.trees.instance_in(leaf), visit);
-    });
+    for (const InstanceGroup& group : cast_.trees.groups()) {
+      const double end_m = end_in(group);
+      if (cast_.trees.instances().size() == 1) {
+        return visit_instance(group.instances[0], end_m, visit);
+      }
+      const Segment segment{ray_in_tree(), kTieMargin * group.reach_m, end_m};
+      for_leaves_on(group.boxes.nodes().data(), 0, segment, [&](std::uint32_t leaf) {
+        visit_instance(group.boxes.index_in(leaf), end_m, visit);
+      });
+    }
   }
+
+  [[nodiscard]] double nearest_m() const { return nearest_m_; }
 
  private:
   static constexpr double kTieMargin = 0x1p-40;  // many roundings of a coordinate
+
+  /// The maximum distance of a triangle of the group that ties.
+  [[nodiscard]] double end_in(const InstanceGroup& group) const {
+    const double reach_m = std::max(group.reach_m, cast_.trees.reach_m(nearest_.instance));
+    return nearest_m_ + tie_window_m(cast_, beam_, nearest_, reach_m);
+  }
 
   [[nodiscard]] ObjectRay ray_in_tree() const {
     const Beams& beams = cast_.request.beams;
@@ -81,12 +97,12 @@ class Candidates {
   }
 
   template <class Visit>
-  void visit_instance(std::uint32_t instance, const Visit& visit) const {
+  void visit_instance(std::uint32_t instance, double end_m, const Visit& visit) const {
     const InstanceView& view = cast_.resolver.view(instance);
     const MeshTree& tree = cast_.trees.of_instance(instance);
     const ObjectRay ray = ray_in(view, cast_.request.beams, beam_);
     const Segment segment{ray, kTieMargin * cast_.trees.reach_m(instance) / view.scale,
-                          end_m_ / view.scale};
+                          end_m / view.scale};
     const HitRay rule = make_hit_ray(ray.origin, ray.direction);
     for_leaves_on(tree.nodes.data(), 0, segment, [&](std::uint32_t leaf) {
       const TriangleCluster& cluster = tree.clusters[leaf];
@@ -108,7 +124,8 @@ class Candidates {
 
   const CastView& cast_;
   std::size_t beam_;
-  double end_m_;
+  PrimitiveRef nearest_;
+  double nearest_m_;
 };
 
 }  // namespace
@@ -128,29 +145,26 @@ double tie_window_m(const CastView& cast, std::size_t beam, const PrimitiveRef& 
 }
 
 HitOrder order_of_hits(const CastView& cast, std::size_t beam, const PrimitiveRef& found,
-                       const PrimitiveRef& before) {
+                       const PrimitiveRef& before, double reach_m) {
   const double before_m = hit_distance_m(cast, beam, before);
   const double found_m = hit_distance_m(cast, beam, found);
-  const double apart_m = std::abs(found_m - before_m);
-  const double reach_m = cast.trees.largest_reach_m();
+  const bool is_nearer = glidar::is_nearer({found_m, found.instance, found.primitive},
+                                           {before_m, before.instance, before.primitive});
   const double window_m =
       std::max(tie_window_m(cast, beam, found, reach_m), tie_window_m(cast, beam, before, reach_m));
-  return {.is_nearer = is_nearer({found_m, found.instance, found.primitive},
-                                 {before_m, before.instance, before.primitive}),
-          .ties = apart_m > 0.0 && !(apart_m > window_m)};
+  return {.is_nearer = is_nearer, .ties = may_tie(found_m - before_m, window_m, is_nearer)};
 }
 
 PrimitiveRef lowest_of_ties(const CastView& cast, std::size_t beam, const PrimitiveRef& nearest) {
-  const double nearest_m = hit_distance_m(cast, beam, nearest);
   const double reach_m = cast.trees.reach_m(nearest.instance);
-  const double end_m = nearest_m + tie_window_m(cast, beam, nearest, cast.trees.largest_reach_m());
+  const Candidates candidates(cast, beam, nearest);
   PrimitiveRef lowest = nearest;
-  Candidates(cast, beam, end_m).visit_all([&](const PrimitiveRef& found, double distance_m) {
+  candidates.visit_all([&](const PrimitiveRef& found, double distance_m) {
     if (!is_lower(found, lowest)) return;
     const double both_m = 0.5 * (reach_m + cast.trees.reach_m(found.instance));
     const double window_m = std::min(tie_window_m(cast, beam, found, both_m),
                                      tie_window_m(cast, beam, nearest, both_m));
-    if (distance_m - nearest_m <= window_m) lowest = found;
+    if (distance_m - candidates.nearest_m() <= window_m) lowest = found;
   });
   return lowest;
 }

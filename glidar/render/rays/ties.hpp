@@ -29,11 +29,18 @@ double tie_window_m(const CastView& cast, std::size_t beam, const PrimitiveRef& 
 /// Order of a triangle and another one, of another instance, that the same beam hits.
 struct HitOrder {
   bool is_nearer;  ///< it is hit first
-  bool ties;       ///< their distances differ, but by no more than tie_window_m()
+  bool ties;       ///< lowest_of_ties() may report a triangle other than the one hit first
 };
 
+/// `reach_m`: at least half the sum of the reaches of any two instances that the search compared.
 HitOrder order_of_hits(const CastView& cast, std::size_t beam, const PrimitiveRef& found,
-                       const PrimitiveRef& before);
+                       const PrimitiveRef& before, double reach_m);
+
+/// The same with the largest reach of the scene.
+inline HitOrder order_of_hits(const CastView& cast, std::size_t beam, const PrimitiveRef& found,
+                              const PrimitiveRef& before) {
+  return order_of_hits(cast, beam, found, before, cast.trees.largest_reach_m());
+}
 
 /// The lowest instance and triangle of those that tie with the nearest one, see tie_window_m().
 PrimitiveRef lowest_of_ties(const CastView& cast, std::size_t beam, const PrimitiveRef& nearest);

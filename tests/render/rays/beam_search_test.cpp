@@ -7,7 +7,10 @@
 #include <glidar/render/rays/exact_test.hpp>
 #include <render/renderer_suite.hpp>
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
+#include <array>
 
 namespace glidar {
 namespace {
@@ -54,6 +57,9 @@ class Stage {
     for (std::size_t i = 0; i < beams.size(); ++i) found[i] = nearest_of_all(i);
     return found;
   }
+
+  /// The groups of instances of the last search.
+  std::size_t groups() const { return search_.trees().groups().size(); }
 
   std::size_t hits(const std::vector<PrimitiveRef>& found) const {
     return found.size() -
@@ -256,6 +262,58 @@ TEST(BeamSearch, ReportsTheLowestOfCoincidentTiles) {
   EXPECT_GT(stage.hits(found), 400U);
   for (const PrimitiveRef& f : found) EXPECT_TRUE(f.instance == 0 || f.instance == kInvalidId);
   EXPECT_EQ(found, stage.search_by_rule());
+}
+
+TEST(BeamSearch, IsExactWithInstancesAtVastlyDifferentDistances) {
+  for (const bool has_origins : {false, true}) {
+    Scene scene = crowd(40, 17, Eigen::Vector3d::Zero());
+    for (const double distance_m : {1e11, 3e11, 1e8, 2e14}) {
+      Instance instance = scene.instances[0];  // a torus: many triangles
+      instance.scale = 0.1 * distance_m;
+      instance.world_from_object = turned(1.0, {1, 1, 0}, {0.0, 0.0, distance_m});
+      scene.instances.push_back(instance);
+    }
+    std::rotate(scene.instances.begin(), scene.instances.end() - 3, scene.instances.end());
+    Stage stage(scene, some_beams(480, has_origins, true, 18), Pose::Identity());
+    const std::vector<PrimitiveRef> found = stage.search();
+    EXPECT_EQ(stage.groups(), 3U);
+    EXPECT_GT(stage.hits(found), 60U);
+    EXPECT_EQ(found, stage.search_by_rule());
+  }
+}
+
+/// Squares of very different sizes on a plane, and one of 2 m at this height above it. Sizes are
+/// powers of two, so that distances to the plane are the same to the bit.
+std::vector<Instance> squares_of_all_sizes(const Instance& square, double height_m) {
+  std::vector<Instance> squares(4, square);
+  squares[1].scale = 0x1p30;
+  squares[2].scale = 0x1p55;
+  squares[3].world_from_object.translation().z() = height_m;
+  return squares;
+}
+
+TEST(BeamSearch, ReportsTheLowestOfCoincidentSurfacesOfVastlyDifferentSizes) {
+  Scene scene = builtin_scene("plane");
+  const Instance square = scene.instances[0];
+  scene.instances.resize(4);
+  const Pose down = look_at({0.1, 0.2, 8.0}, {0.1, 0.2, 0.0}, Eigen::Vector3d::UnitY());
+  const Pose askew = look_at({1.0, 2.0, 9.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY());
+  std::vector<std::size_t> found_on(4);
+  for (const double height_m : {-1e-6, 1e-6, 0.01}) {
+    const std::vector<Instance> squares = squares_of_all_sizes(square, height_m);
+    std::array<std::size_t, 4> order = {0, 1, 2, 3};
+    do {
+      for (std::size_t i = 0; i < 4; ++i) scene.instances[i] = squares[order[i]];
+      for (const Pose& from : {down, askew}) {
+        Stage stage(scene, camera_beams(9, 9, 30.0), from);
+        const std::vector<PrimitiveRef> found = stage.search();
+        EXPECT_EQ(stage.groups(), 3U);
+        EXPECT_EQ(found, stage.search_by_rule()) << height_m;
+        for (const PrimitiveRef& f : found) ++found_on[order[f.instance]];
+      }
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
+  EXPECT_THAT(found_on, ::testing::Each(::testing::Gt(0U)));
 }
 
 /// A square whose halves are connected along its diagonal by a triangle of this width.
