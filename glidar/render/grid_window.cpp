@@ -9,11 +9,31 @@
 namespace glidar {
 namespace {
 
+constexpr double kMinDepth = 1e-3;  // of the distance: up to 89.9 degrees from the boresight
+
+/// True when a box projects to the covered part, as far as a sphere around it shows.
+bool is_covered(const Eigen::AlignedBox2d& covered, const InstanceView& view,
+                const Eigen::AlignedBox3d& box) {
+  if (covered.isEmpty()) return false;
+  const Eigen::Vector3d middle =
+      view.object_from_sensor.transpose() * (box.center() - view.sensor_in_object);
+  const double radius = 0.5 * box.sizes().norm();
+  const double near = middle.z() - radius;
+  if (!(near > kMinDepth * (middle.norm() + radius))) return false;
+  const double far = middle.z() + radius;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double low = middle[axis] - radius;
+    const double high = middle[axis] + radius;
+    if (!(low / (low < 0.0 ? near : far) >= covered.min()[axis])) return false;
+    if (!(high / (high > 0.0 ? near : far) <= covered.max()[axis])) return false;
+  }
+  return true;
+}
+
 /// Extends the covered part of the plane at depth 1 by a box (relative to the mesh's origin); false
 /// when not all of the box is clearly in front of the sensor.
 bool extend(Eigen::AlignedBox2d& covered, const InstanceView& view,
             const Eigen::AlignedBox3d& box) {
-  constexpr double kMinDepth = 1e-3;  // of the distance: up to 89.9 degrees from the boresight
   constexpr int kCorners = 8;
   for (int i = 0; i < kCorners; ++i) {
     const auto which = static_cast<Eigen::AlignedBox3d::CornerType>(i);
@@ -48,7 +68,8 @@ GridWindow visible_window(const Resolver& resolver, std::span<const Eigen::Align
     if (box.isEmpty() || (!instance_enabled.empty() && instance_enabled[i] == 0)) continue;
     const Eigen::Vector3d& origin_m = resolver.mesh(i).origin_m;
     const Eigen::AlignedBox3d relative(box.min() - origin_m, box.max() - origin_m);
-    if (!extend(covered, resolver.view(i), relative)) return {};
+    const InstanceView& view = resolver.view(i);
+    if (!is_covered(covered, view, relative) && !extend(covered, view, relative)) return {};
   }
   if (covered.isEmpty()) return {.end_row = 0, .end_col = 0};
   const auto [first_row, end_row] = index_range(points.y, covered.min().y(), covered.max().y());

@@ -53,6 +53,38 @@ TEST(GridWindow, ContainsEveryVisibleVertex) {
   }
 }
 
+/// The instances around the middle come last, so their boxes are partly covered.
+TEST(GridWindow, ContainsEveryVisibleVertexOfManyInstances) {
+  Scene scene = builtin_scene("box");
+  const Beams beams = camera_beams(300, 200, 90.0);
+  const PinholeIntrinsics& k = *beams.pinhole;
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  for (int view = 0; view < 20; ++view) {
+    Instance instance = scene.instances[0];
+    scene.instances.clear();
+    for (int i = 0; i < 40; ++i) {
+      instance.scale = 0.05 + 0.1 * std::abs(normal(random));
+      instance.world_from_object.translation() =
+          2.0 / (1.0 + 0.1 * i) * Eigen::Vector3d(normal(random), normal(random), normal(random));
+      scene.instances.push_back(instance);
+    }
+    const Pose pose = looking({20.0, 3.0, 4.0});
+    const GridWindow seen = window(scene, beams, pose);
+    EXPECT_LT(seen.end_row - seen.first_row, k.height);
+    for (const Instance& one : scene.instances) {
+      for (const Eigen::Vector3f& vertex : scene.meshes[0].positions_m) {
+        const Eigen::Vector3d p =
+            pose.inverse() * (one.world_from_object * (one.scale * vertex.cast<double>()));
+        const double col = k.fx * p.x() / p.z() + k.cx - k.pixel_centre;
+        const double row = k.fy * p.y() / p.z() + k.cy - k.pixel_centre;
+        ASSERT_TRUE(holds(seen, std::floor(row), std::floor(col))) << row << ' ' << col;
+        ASSERT_TRUE(holds(seen, std::ceil(row), std::ceil(col))) << row << ' ' << col;
+      }
+    }
+  }
+}
+
 TEST(GridWindow, IsTheWholeGridIfSomethingIsBesideOrBehindTheCamera) {
   const Scene scene = builtin_scene("box");  // half side 1
   const Beams beams = camera_beams(8, 8, 60.0);
