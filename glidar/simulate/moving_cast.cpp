@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/moving_cast.hpp>
 
+#include <glidar/simulate/start_frame.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,11 +44,11 @@ bool may_hit(const Sphere& sphere, const Eigen::Vector3d& origin,
   return (to_centre - along * direction).squaredNorm() <= sphere.radius * sphere.radius;
 }
 
-/// One rigid part of the scene and its pose during a frame.
+/// A moving instance and its pose during a frame.
 struct Body {
-  const Trajectory* world_from_body = nullptr;  ///< nullptr: all that is static
-  Pose at_start = Pose::Identity();
-  Sphere sphere = {};
+  const Trajectory& world_from_body;
+  Pose at_start;
+  Sphere sphere;
 };
 
 /// The pose of the sensor at a time relative to the body at rest, in the sensor's frame at the
@@ -55,11 +57,6 @@ struct Body {
 Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& b, const Pose& s) {
   Pose pose = Pose::Identity();
   const Eigen::Matrix3d back = s0.linear().transpose();
-  if (body.world_from_body == nullptr) {
-    pose.linear() = back * s.linear();
-    pose.translation() = back * (s.translation() - s0.translation());
-    return pose;
-  }
   const Pose& b0 = body.at_start;
   const Eigen::Matrix3d held = b0.linear() * b.linear().transpose();
   pose.linear() = back * held * s.linear();
@@ -69,7 +66,7 @@ Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& b, const Po
 }
 
 /// Calls work(beam, world_from_sensor, world_from_body) for beams of a run with the poses at their
-/// firing times. The pose of the static body is unspecified.
+/// firing times.
 template <class Work>
 void for_each_firing(const Trajectory& sensor, const Body& body, std::int64_t stamp_ns,
                      const Beams& beams, BeamRange range, const Work& work) {
@@ -84,9 +81,7 @@ void for_each_firing(const Trajectory& sensor, const Body& body, std::int64_t st
     }
     const std::span<const std::int64_t> times(t_ns.data(), count);
     poses_at(sensor, times, {sensors.data(), count});
-    if (body.world_from_body != nullptr) {
-      poses_at(*body.world_from_body, times, {bodies.data(), count});
-    }
+    poses_at(body.world_from_body, times, {bodies.data(), count});
     for (std::size_t k = 0; k < count; ++k) work(first + k, sensors[k], bodies[k]);
   }
 }
@@ -98,7 +93,7 @@ void express_beams(const CastRequest& request, const Motion& motion, const Body&
   const Beams& beams = request.beams;
   const auto move = [&](std::size_t i, const Pose& sensor, const Pose& body_pose) {
     const Pose pose = start_from_sensor(body, request.world_from_sensor, body_pose, sensor);
-    memory.start_from_sensor[i] = pose;
+    memory.start_from_sensor[i] = pose.linear();
     Eigen::Vector3d& direction = memory.beams.directions[i];
     Eigen::Vector3d& origin = memory.beams.origins_m[i];
     direction = (pose.linear() * beams.directions[i]).normalized();
@@ -111,12 +106,52 @@ void express_beams(const CastRequest& request, const Motion& motion, const Body&
   for_each_firing(motion.world_from_sensor, body, stamp_ns, beams, range, move);
 }
 
+/// The part of a column in a run of beams; empty for an empty column.
+template <class Column>
+auto part_of(Column& column, BeamRange run) {
+  const std::span all(column);
+  return all.empty() ? all : all.subspan(run.begin, run.end - run.begin);
+}
+
+/// Calls work(run, start_from_sensor) for short runs of beams in a range.
+template <class Work>
+void for_each_run(const MovingSensor& sensor, const Beams& beams, BeamRange range,
+                  const Work& work) {
+  PoseBlock poses;
+  for (std::size_t first = range.begin; first < range.end; first += PoseBlock::kSize) {
+    const BeamRange run{first, std::min(first + PoseBlock::kSize, range.end)};
+    find_start_from_sensor(sensor, beams, run, poses);
+    work(run, poses);
+  }
+}
+
+/// True when hits have vectors in the sensor's frame.
+bool has_vectors(const HitColumnMask& hit_columns) {
+  return hit_columns.normal || hit_columns.shading_normal;
+}
+
+/// Expresses a run of beams in the sensor's frame at the start, in which all that is static is at
+/// rest.
+void express_beams(const CastRequest& request, const MovingSensor& sensor, BeamRange range,
+                   MovingCastWorkspace& memory) {
+  const Beams& beams = request.beams;
+  for_each_run(sensor, beams, range, [&](BeamRange run, const PoseBlock& poses) {
+    rotate_directions(poses, part_of(beams.directions, run), part_of(memory.beams.directions, run));
+    transform_origins(poses, part_of(beams.origins_m, run), part_of(memory.beams.origins_m, run));
+    if (!has_vectors(request.hit_columns)) return;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      memory.start_from_sensor[i] = poses.rotation_at(i - run.begin);
+    }
+  });
+}
+
 /// Expresses what depends on the sensor's frame in its frame at the beam's firing time.
 void rotate_to_firing_time(const CastRequest& request, const MovingCastWorkspace& memory,
                            BeamRange range, Hits& hits) {
+  if (!has_vectors(request.hit_columns) && !request.hit_columns.depth) return;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     if (hits.instance[i] == kInvalidId) continue;
-    const Eigen::Matrix3d back = memory.start_from_sensor[i].linear().transpose();
+    const Eigen::Matrix3d back = memory.start_from_sensor[i].transpose();
     const auto rotate = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
     if (request.hit_columns.normal) rotate(hits.normal[i]);
     if (request.hit_columns.shading_normal) rotate(hits.shading_normal[i]);
@@ -175,9 +210,9 @@ struct BodyIndex {
   std::size_t count = 1;
 };
 
-/// Casts the instances of memory.instance_enabled, which are the body. The first body fills the
-/// hits.
-void cast_body(const MovingCast& cast, const Body& body, const BodyIndex& body_index) {
+/// Casts the instances of memory.instance_enabled, which are the body; nullptr: all that is static.
+/// The first body fills the hits.
+void cast_body(const MovingCast& cast, const Body* body, const BodyIndex& body_index) {
   const bool is_first = body_index.number == 0;
   MovingCastWorkspace& memory = cast.memory;
   const CastRequest& request = cast.request;
@@ -185,8 +220,12 @@ void cast_body(const MovingCast& cast, const Body& body, const BodyIndex& body_i
   const auto part = [&](std::size_t number) {
     return static_cast<double>(number) / static_cast<double>(body_index.count);
   };
+  const Motion& motion = cast.timed.motion;
+  const MovingSensor sensor{motion.world_from_sensor, request.world_from_sensor,
+                            cast.timed.stamp_ns};
   cast.parallel_for([&](BeamRange range) {
-    express_beams(request, cast.timed.motion, body, cast.timed.stamp_ns, range, memory);
+    if (body == nullptr) return express_beams(request, sensor, range, memory);
+    express_beams(request, motion, *body, cast.timed.stamp_ns, range, memory);
   });
   cast.timed.renderer.cast({.beams = memory.beams,
                             .world_from_sensor = request.world_from_sensor,
@@ -215,7 +254,7 @@ void cast_bodies(const MovingCast& cast) {
   const auto static_count = std::count_if(trajectories.begin(), trajectories.end(), is_static);
   BodyIndex body_index{.count = 1 + memory.instance_enabled.size() -
                                 static_cast<std::size_t>(static_count)};
-  cast_body(cast, {}, body_index);
+  cast_body(cast, nullptr, body_index);
   for (std::uint32_t i = 0; i < memory.instance_enabled.size(); ++i) {
     if (is_static(trajectories[i])) continue;
     memory.instance_enabled.assign(scene.instances.size(), 0);
@@ -225,8 +264,8 @@ void cast_bodies(const MovingCast& cast) {
     const Pose& at_start = cast.request.world_from_instance[i];
     const Sphere sphere = bounding_sphere(instance, mesh_box(scene, instance.mesh, memory),
                                           at_start, cast.request.world_from_sensor);
-    cast_body(cast, {.world_from_body = &trajectories[i], .at_start = at_start, .sphere = sphere},
-              body_index);
+    const Body body{.world_from_body = trajectories[i], .at_start = at_start, .sphere = sphere};
+    cast_body(cast, &body, body_index);
   }
 }
 
@@ -258,19 +297,23 @@ void deskew(const TimedScene& scene, const Beams& reported, const Beams& fired,
   deskewed.origins_m.resize(reported.size());
   deskewed.start_from_sensor.resize(reported.size());
   const Pose at_start = pose_at(trajectory, scene.stamp_ns);
-  const auto place = [&](std::size_t i, const Pose& sensor, const Pose& /*body*/) {
-    const Pose pose = start_from_sensor({}, at_start, {}, sensor);
-    deskewed.directions[i] = (pose.linear() * reported.directions[i]).normalized();
-    if (has_errors)
-      deskewed.true_directions[i] = (pose.linear() * fired.directions[i]).normalized();
-    deskewed.origins_m[i] =
-        fired.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * fired.origins_m[i];
-    deskewed.start_from_sensor[i] = Eigen::Quaterniond(pose.linear()).cast<float>();
+  const MovingSensor sensor{trajectory, at_start, scene.stamp_ns};
+  const auto place = [&](BeamRange run, const PoseBlock& poses) {
+    rotate_directions(poses, part_of(reported.directions, run), part_of(deskewed.directions, run));
+    if (has_errors) {
+      rotate_directions(poses, part_of(fired.directions, run),
+                        part_of(deskewed.true_directions, run));
+    }
+    transform_origins(poses, part_of(fired.origins_m, run), part_of(deskewed.origins_m, run));
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const Eigen::Quaterniond rotation(poses.rotation_at(i - run.begin));
+      deskewed.start_from_sensor[i] = rotation.cast<float>();
+    }
   };
-  scene.renderer.thread_pool().parallel_for(
-      reported.size(), kMovedBeamsPerTask, [&](std::size_t begin, std::size_t end) {
-        for_each_firing(trajectory, {}, scene.stamp_ns, reported, {begin, end}, place);
-      });
+  scene.renderer.thread_pool().parallel_for(reported.size(), kMovedBeamsPerTask,
+                                            [&](std::size_t begin, std::size_t end) {
+                                              for_each_run(sensor, reported, {begin, end}, place);
+                                            });
 }
 
 }  // namespace glidar

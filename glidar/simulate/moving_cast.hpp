@@ -24,7 +24,7 @@ struct TimedScene {
 /// Memory that casts in one moving scene reuse. N = number of beams.
 struct MovingCastWorkspace {
   Beams beams;                                                 ///< as a rigid body sees them
-  std::vector<Pose> start_from_sensor;                         ///< N, as that body sees the sensor
+  std::vector<Eigen::Matrix3d> start_from_sensor;              ///< N, as that body sees the sensor
   Hits hits;                                                   ///< on that body
   std::vector<std::uint8_t> instance_enabled;                  ///< per instance
   std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it has moved

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/motion/motion.hpp>
+#include <glidar/motion/pose_block.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,19 +95,40 @@ TEST(TimedPoses, RestoredPosesAreChecked) {
   EXPECT_THROW(TimedPoses::restored({{.t_ns = 1, .orientation = nearly}}), Error);
 }
 
+/// Expects that blocks of poses have the bits of pose_at().
+void expect_same_in_blocks(const Trajectory& trajectory, const std::vector<std::int64_t>& times) {
+  PoseBlock block;
+  for (std::size_t first = 0; first < times.size(); first += PoseBlock::kSize) {
+    const std::size_t count = std::min(PoseBlock::kSize, times.size() - first);
+    poses_at(trajectory, {times.data() + first, count}, block);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Pose pose = pose_at(trajectory, times[first + i]);
+      ASSERT_EQ(block.rotation_at(i), Eigen::Matrix3d(pose.linear())) << times[first + i];
+      ASSERT_EQ(block.position_at(i), Eigen::Vector3d(pose.translation())) << times[first + i];
+    }
+  }
+}
+
 TEST(Trajectory, ManyTimesAreIdenticalToSingleOnes) {
   std::vector<TimedPose> poses;
   for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d axis = Eigen::Vector3d(1.0, std::sin(i), 2.0).normalized();
     poses.push_back({.t_ns = 1000 * i + 13 * (i % 7),
-                     .position_m = {std::sin(0.1 * i), 0.2 * i, 0.0},
-                     .orientation = about_z(0.3 * i)});
+                     .position_m = {std::sin(0.1 * i), 0.2 * i, 1e-3 * i * i},
+                     .orientation = i % 50 < 40
+                                        ? Eigen::Quaterniond(Eigen::AngleAxisd(0.3 * i, axis))
+                                        : about_z(2.0)});
   }
+  for (const std::size_t i : {7U, 45U, 60U}) poses[i].orientation.coeffs() *= -1.0;
   const std::vector<Trajectory> kinds = {
-      ConstantPose{}, ConstantTwist{.angular_rad_s = {0.1, 0.2, 0.3}},
-      Spin{.rate_rad_s = {0.1, 0.2, 0.3}}, TimedPoses(poses),
+      ConstantPose{},
+      ConstantTwist{.angular_rad_s = {0.1, 0.2, 0.3}},
+      Spin{.rate_rad_s = {0.1, 0.2, 0.3}},
+      TimedPoses(poses),
+      Mounted{TimedPoses(poses), look_at({1, 2, 3}, {0, 0, 0})},
       TorqueFreeRotation({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = {0.1, 0.2, 0.3}})};
   std::vector<std::int64_t> times;  // rising in small and large steps, falling, outside, on a pose
-  for (int i = -20; i < 3000; ++i) times.push_back(70 * i);
+  for (int i = -100; i < 10'000; ++i) times.push_back(21 * i);
   for (int i = 0; i < 500; ++i) times.push_back((i * 7919) % 200'000);
   for (int i = 0; i < 100; ++i) times.push_back(20'000LL * i);
   for (const TimedPose& pose : poses) times.push_back(pose.t_ns);
@@ -116,9 +138,12 @@ TEST(Trajectory, ManyTimesAreIdenticalToSingleOnes) {
     for (std::size_t i = 0; i < times.size(); ++i) {
       ASSERT_EQ(out[i].matrix(), pose_at(trajectory, times[i]).matrix()) << times[i];
     }
+    expect_same_in_blocks(trajectory, times);
   }
   std::vector<Pose> short_by_one(times.size() - 1);
   EXPECT_THROW(poses_at(kinds[0], times, short_by_one), Error);
+  PoseBlock block;
+  EXPECT_THROW(poses_at(kinds[0], times, block), Error);
 }
 
 TEST(Trajectory, ExtrapolationIsReported) {

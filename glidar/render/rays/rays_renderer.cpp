@@ -49,9 +49,9 @@ void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, HitBatch&
 /// Copies kLanes vectors. Whole vectors are written, since vectors written one number at a time are
 /// slow to load.
 GLIDAR_SIMD void copy_run(const double* xyz, Lanes3<double>& to) {
-  for (unsigned i = 0; i < kLanes; ++i) to.x[i] = xyz[3 * i];
-  for (unsigned i = 0; i < kLanes; ++i) to.y[i] = xyz[3 * i + 1];
-  for (unsigned i = 0; i < kLanes; ++i) to.z[i] = xyz[3 * i + 2];
+  for (unsigned i = 0; i < kLanes; ++i) to.x[i] = xyz[std::size_t{3} * i];
+  for (unsigned i = 0; i < kLanes; ++i) to.y[i] = xyz[std::size_t{3} * i + 1];
+  for (unsigned i = 0; i < kLanes; ++i) to.z[i] = xyz[std::size_t{3} * i + 2];
 }
 
 /// Collects the beams from `first` on.
