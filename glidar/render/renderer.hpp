@@ -30,6 +30,8 @@ struct CastRequest {
   bool cull_back_faces = false;
   /// One per instance; 0: not part of this cast; empty: all are.
   std::span<const std::uint8_t> instance_enabled = {};
+  /// False: later casts have other beams, so it does not pay to prepare anything for these.
+  bool beams_recur = true;
   /// Called in runs, once for every beam, when its hits are known, by the thread that found them,
   /// so that they are still in its cache. Empty: not called.
   FunctionRef<void(BeamRange)> on_tile_done = {};

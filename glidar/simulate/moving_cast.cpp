@@ -233,6 +233,7 @@ void cast_body(const MovingCast& cast, const Body* body, const BodyIndex& body_i
                             .hit_columns = request.hit_columns,
                             .cull_back_faces = request.cull_back_faces,
                             .instance_enabled = memory.instance_enabled,
+                            .beams_recur = body == nullptr && is_static(motion.world_from_sensor),
                             .progress = subrange(request.progress, part(body_index.number),
                                                  part(body_index.number + 1))},
                            hits);

@@ -60,6 +60,17 @@ TEST(AutoRenderer, ChoosesTheRendererForEachCast) {
   }
 }
 
+TEST(AutoRenderer, HitsDoNotDependOnWhetherBeamsRecur) {
+  const Scene scene = builtin_scene("asteroid");
+  const Beams beams = scanner_beams({.rows = 64, .cols = 1024});
+  const auto renderer = make_renderer(scene, {.threads = 2});
+  Hits hits;
+  Hits once;
+  renderer->cast({.beams = beams, .hit_columns = kAllHitColumns}, hits);
+  renderer->cast({.beams = beams, .hit_columns = kAllHitColumns, .beams_recur = false}, once);
+  EXPECT_TRUE(are_same(hits, once));
+}
+
 TEST(AutoRenderer, EqualsRaysForScannersOfAllKinds) {
   const Scene scene = builtin_scene("asteroid");
   for (const Scanner& scanner : {Scanner{.rows = 64, .cols = 1024},  // few triangles per beam
