@@ -125,7 +125,6 @@ const BatchHits& ComputeCaster::finish() {
   if (state != GL_ALREADY_SIGNALED && state != GL_CONDITION_SATISFIED) {
     throw Error({.where = "OpenGL",
                  .found = "a batch that is not done after a minute",
-                 .allowed = "",
                  .remedy = "cast fewer views at once"});
   }
   const std::size_t places = batch.poses.size() * beams_.size();

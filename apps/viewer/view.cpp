@@ -233,10 +233,8 @@ void ViewerWindow::run_frames(std::uint32_t count) {
 std::unique_ptr<AtomicFile> screenshot_file(const std::string& path) {
   if (path.empty()) return nullptr;
   if (path.ends_with(".png")) return std::make_unique<AtomicFile>(path);
-  throw Error({.where = "--screenshot",
-               .found = "'" + path + "'",
-               .allowed = "a name that ends in .png",
-               .remedy = ""});
+  throw Error(
+      {.where = "--screenshot", .found = "'" + path + "'", .allowed = "a name that ends in .png"});
 }
 
 void write_screenshot(const Picture& picture, AtomicFile& file) {

@@ -70,7 +70,6 @@ GLFWwindow* open_any_window(const std::string& title, const WindowSize& size) {
   }
   throw Error({.where = "glidar view",
                .found = "the display gives no context of OpenGL 3.3: " + glfw_error(),
-               .allowed = "",
                .remedy =
                    "install libgl1-mesa-dri and libegl1, which also render in software; or write "
                    "a picture without a window: glidar render MODEL -o picture.png"});
@@ -82,7 +81,6 @@ WindowSystem::WindowSystem() {
   if (glfwInit() == GLFW_TRUE) return;
   throw Error({.where = "glidar view",
                .found = "there is no display to open a window on: " + glfw_error(),
-               .allowed = "",
                .remedy =
                    "run it in a desktop session or with 'xvfb-run -a glidar view ...', or write "
                    "a picture without a window: glidar render MODEL -o picture.png"});

@@ -13,8 +13,7 @@ void require_size(std::size_t found, std::size_t size, bool may_be_empty, const 
   if (found == size || (may_be_empty && found == 0)) return;
   throw Error({.where = std::string("beams, ") + field,
                .found = std::to_string(found) + " entries",
-               .allowed = std::to_string(size) + " (rows x cols)",
-               .remedy = ""});
+               .allowed = std::to_string(size) + " (rows x cols)"});
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ std::string number_text(double value) {
 
 void require_number(bool holds, const char* where, double found, const char* allowed) {
   if (!holds) {
-    throw Error({.where = where, .found = number_text(found), .allowed = allowed, .remedy = ""});
+    throw Error({.where = where, .found = number_text(found), .allowed = allowed});
   }
 }
 

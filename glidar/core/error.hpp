@@ -11,10 +11,10 @@ namespace glidar {
 
 /// The four parts of an error message.
 struct ErrorParts {
-  std::string where;    ///< file:line:column, field, option or file name
-  std::string found;    ///< what is wrong, with the value found
-  std::string allowed;  ///< the allowed values; empty if obvious
-  std::string remedy;   ///< what to do; empty if obvious
+  std::string where;         ///< file:line:column, field, option or file name
+  std::string found;         ///< what is wrong, with the value found
+  std::string allowed = {};  ///< the allowed values; empty if obvious
+  std::string remedy = {};   ///< what to do; empty if obvious
 };
 
 /// The only exception type of GLIDAR. It is thrown where the cause is known and caught once, in

@@ -17,8 +17,7 @@ void require_size(const Mesh& mesh, const std::vector<T>& values, std::size_t si
   if (values.empty() || values.size() == size) return;
   throw Error({.where = "mesh '" + mesh.name + "', " + field,
                .found = std::to_string(values.size()) + " entries",
-               .allowed = "0 or " + std::to_string(size),
-               .remedy = ""});
+               .allowed = "0 or " + std::to_string(size)});
 }
 
 /// The bounding box of the vertices [first, end), which share an origin.
@@ -37,8 +36,7 @@ Eigen::AlignedBox3d box_of_range(const Mesh& mesh, const Eigen::Vector3d& origin
                .found = std::move(found),
                .allowed =
                    "origins in increasing order, the first from 0, each with triangles of its "
-                   "own vertices",
-               .remedy = ""});
+                   "own vertices"});
 }
 
 void validate_origin(const Mesh& mesh, std::size_t index) {
@@ -114,8 +112,7 @@ void validate(const Mesh& mesh) {
       if (corner < vertices) continue;
       throw Error({.where = "mesh '" + mesh.name + "', triangles",
                    .found = "a corner is vertex " + std::to_string(corner),
-                   .allowed = "below " + std::to_string(vertices),
-                   .remedy = ""});
+                   .allowed = "below " + std::to_string(vertices)});
     }
   }
   validate_origins(mesh);
@@ -123,8 +120,7 @@ void validate(const Mesh& mesh) {
     if (position.allFinite()) continue;
     throw Error({.where = "mesh '" + mesh.name + "', positions_m",
                  .found = "a coordinate is not finite",
-                 .allowed = "finite metres",
-                 .remedy = ""});
+                 .allowed = "finite metres"});
   }
 }
 

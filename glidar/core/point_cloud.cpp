@@ -371,7 +371,6 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
       throw Error(
           {.where = "cloud column '" + kind.name + "'",
            .found = "the frame was cast without it",
-           .allowed = "",
            .remedy = "measure with this column: hit_columns_for() in C++, columns= in Python"});
     }
     cloud.columns[c].name = kind.name;

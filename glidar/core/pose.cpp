@@ -19,16 +19,14 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
   if (!is_within_reach(eye) || !is_within_reach(target) || !up.allFinite()) {
     throw Error({.where = "look_at",
                  .found = "a number is not finite or too large",
-                 .allowed = "coordinates up to 1e15 m",
-                 .remedy = ""});
+                 .allowed = "coordinates up to 1e15 m"});
   }
   const Eigen::Vector3d forward = target - eye;
   const Eigen::Vector3d right = forward.cross(up);
   if (!(forward.norm() > 0.0)) {
     throw Error({.where = "look_at",
                  .found = "eye and target are the same point",
-                 .allowed = "two distinct points",
-                 .remedy = ""});
+                 .allowed = "two distinct points"});
   }
   constexpr double kMinSine = 1e-9;  // below it the roll angle is not defined
   if (!(right.norm() > kMinSine * forward.norm() * up.norm())) {
@@ -68,8 +66,7 @@ Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orie
       orientation.coeffs().isZero(0.0)) {
     throw Error({.where = "pose",
                  .found = "a number is not finite or too large, or the quaternion is zero",
-                 .allowed = "up to 1e15 m, and a quaternion of any length except zero",
-                 .remedy = ""});
+                 .allowed = "up to 1e15 m, and a quaternion of any length except zero"});
   }
   // Squares of larger numbers overflow, and those of smaller ones underflow.
   constexpr double kSquareSafe = 1e100;

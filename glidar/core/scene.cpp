@@ -63,22 +63,19 @@ void validate(const Texture& texture) {
                .found = std::to_string(texture.texels.size()) + " bytes, " +
                         std::to_string(texture.width) + " x " + std::to_string(texture.height) +
                         " texels",
-               .allowed = "width x height x channels bytes, 1 to 4 channels, 1 to 2^30 texels",
-               .remedy = ""});
+               .allowed = "width x height x channels bytes, 1 to 4 channels, 1 to 2^30 texels"});
 }
 
 void validate(const TextureUse& use, const Scene& scene, const Material& material) {
   if (use.uv_set > 1) {
     throw Error({.where = "material '" + material.name + "'",
                  .found = "uv set " + std::to_string(use.uv_set),
-                 .allowed = "0 or 1",
-                 .remedy = ""});
+                 .allowed = "0 or 1"});
   }
   if (!use.used() || static_cast<std::size_t>(use.texture) < scene.textures.size()) return;
   throw Error({.where = "material '" + material.name + "'",
                .found = "texture " + std::to_string(use.texture),
-               .allowed = "an index of the scene's textures",
-               .remedy = ""});
+               .allowed = "an index of the scene's textures"});
 }
 
 }  // namespace
@@ -104,8 +101,7 @@ void validate(const Scene& scene) {
   if (scene.sources.size() != scene.meshes.size()) {
     throw Error({.where = "scene, sources",
                  .found = std::to_string(scene.sources.size()) + " entries",
-                 .allowed = std::to_string(scene.meshes.size()) + " (one per mesh)",
-                 .remedy = ""});
+                 .allowed = std::to_string(scene.meshes.size()) + " (one per mesh)"});
   }
   std::vector<double> reaches;
   for (const Mesh& mesh : scene.meshes) {
@@ -126,8 +122,7 @@ void validate(const Scene& scene) {
     if (material.noise_scale >= 0.0F) continue;
     throw Error({.where = "material '" + material.name + "'",
                  .found = "noise scale " + std::to_string(material.noise_scale),
-                 .allowed = "0 or more",
-                 .remedy = ""});
+                 .allowed = "0 or more"});
   }
 }
 

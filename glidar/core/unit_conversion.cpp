@@ -51,8 +51,7 @@ double exact_in(double inside, double unit) {
   if (const std::optional<double> exact = find_exact_in(inside, unit)) return *exact;
   throw Error({.where = "sensor",
                .found = "no number times " + number_text(unit) + " is " + number_text(inside),
-               .allowed = "a sensor that was read from a file, a preset or a dict",
-               .remedy = ""});
+               .allowed = "a sensor that was read from a file, a preset or a dict"});
 }
 
 }  // namespace glidar

@@ -31,7 +31,6 @@ void fail_at(const Endpoint& endpoint, int error, const char* doing) {
   }
   throw Error({.where = text_of(endpoint),
                .found = std::string("cannot ") + doing + ": " + zmq_strerror(error),
-               .allowed = "",
                .remedy = remedy});
 }
 

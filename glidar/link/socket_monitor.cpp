@@ -65,7 +65,7 @@ void pass_on(const Notice& notice, ConnectionGuard& guard) {
 }
 
 [[noreturn]] void fail(const char* what) {
-  throw Error({.where = "connections", .found = what, .allowed = "", .remedy = ""});
+  throw Error({.where = "connections", .found = what});
 }
 
 }  // namespace

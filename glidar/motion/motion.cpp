@@ -25,7 +25,7 @@ Pose pose_at(const TorqueFreeRotation& tumbling, std::int64_t t_ns) {
 
 void require(bool holds, const char* where, const char* found) {
   if (holds) return;
-  throw Error({where, found, "finite numbers, and poses that are rigid transforms", ""});
+  throw Error({where, found, "finite numbers, and poses that are rigid transforms"});
 }
 
 void check(const ConstantPose& constant) {
@@ -154,7 +154,7 @@ void poses_at(const Trajectory& trajectory, std::span<const std::int64_t> t_ns,
               std::span<Pose> out) {
   if (t_ns.size() != out.size()) {
     throw Error({"poses_at", std::to_string(out.size()) + " poses",
-                 std::to_string(t_ns.size()) + ", one per time", ""});
+                 std::to_string(t_ns.size()) + ", one per time"});
   }
   if (const TimedPoses* timed = timed_poses(trajectory)) {
     timed->poses_at(t_ns, out);
@@ -205,7 +205,7 @@ Motion make_motion(const Scene& scene, const Trajectory& world_from_sensor,
   if (world_from_instance.empty()) return motion;
   if (world_from_instance.size() != scene.instances.size()) {
     throw Error({"motion", std::to_string(world_from_instance.size()) + " trajectories",
-                 std::to_string(scene.instances.size()) + ", one per instance, or none", ""});
+                 std::to_string(scene.instances.size()) + ", one per instance, or none"});
   }
   motion.world_from_instance = world_from_instance;
   return motion;

@@ -20,11 +20,11 @@ void to_pose(const TimedPose& timed, Pose& pose) {
 }
 
 [[noreturn]] void fail(std::size_t entry, const TimedPoseError& error) {
-  throw Error({"timed poses, entry " + std::to_string(entry + 1), error.found, error.allowed, ""});
+  throw Error({"timed poses, entry " + std::to_string(entry + 1), error.found, error.allowed});
 }
 
 void check(const std::vector<TimedPose>& poses) {
-  if (poses.empty()) throw Error({"timed poses", "there is none", "at least one pose", ""});
+  if (poses.empty()) throw Error({"timed poses", "there is none", "at least one pose"});
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (const auto error = find_error(i == 0 ? nullptr : &poses[i - 1], poses[i])) fail(i, *error);
   }

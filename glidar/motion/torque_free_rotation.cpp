@@ -25,7 +25,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 [[noreturn]] void refuse(const std::string& field, std::string found, std::string allowed) {
-  throw Error({"tumbling, " + field, std::move(found), std::move(allowed), ""});
+  throw Error({"tumbling, " + field, std::move(found), std::move(allowed)});
 }
 
 /// Euler's equations without torque: moment of inertia times angular acceleration, for each axis.

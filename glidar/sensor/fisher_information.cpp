@@ -19,25 +19,21 @@ using Eigen::Vector3d;
 // information from each of them, and more if the points are far from their centroid.
 constexpr double kDegenerate = 1e-11;
 
-[[noreturn]] void fail(const char* where, std::string found, std::string allowed) {
-  throw Error({where, std::move(found), std::move(allowed), ""});
-}
-
 void check(const Frame& frame, const Beams& beams, const FisherOptions& options) {
   if (frame.ground_truth.normal.size() != beams.size() || frame.status.size() != beams.size() ||
       frame.ground_truth.range_m.size() != beams.size()) {
-    fail("pose information", "a frame without normals, or of other beams",
-         "a frame cast with the field 'normal'");
+    throw Error({"pose information", "a frame without normals, or of other beams",
+                 "a frame cast with the field 'normal'"});
   }
   if (!(options.sigma_m > 0.0) || !std::isfinite(options.sigma_m)) {
-    fail("pose information, sigma", std::to_string(options.sigma_m), "metres above 0");
+    throw Error({"pose information, sigma", std::to_string(options.sigma_m), "metres above 0"});
   }
   if (!(options.least_cosine > 0.0 && options.least_cosine < 1.0)) {
-    fail("pose information, minimum cosine", std::to_string(options.least_cosine),
-         "above 0 and below 1");
+    throw Error({"pose information, minimum cosine", std::to_string(options.least_cosine),
+                 "above 0 and below 1"});
   }
   if (!is_rigid(options.sensor_from_reference)) {
-    fail("pose information, reference", "not a rigid transform", "a pose");
+    throw Error({"pose information, reference", "not a rigid transform", "a pose"});
   }
 }
 
@@ -83,8 +79,9 @@ class Returns {
     if (frame_.sigma_m.empty()) return options_.sigma_m;
     const double sigma_m = frame_.sigma_m[beam];
     if (sigma_m > 0.0 && std::isfinite(sigma_m)) return sigma_m;
-    fail("pose information, sigma", std::to_string(sigma_m) + " m at beam " + std::to_string(beam),
-         "a standard deviation above 0 for every return");
+    throw Error({"pose information, sigma",
+                 std::to_string(sigma_m) + " m at beam " + std::to_string(beam),
+                 "a standard deviation above 0 for every return"});
   }
 
   const Frame& frame_;

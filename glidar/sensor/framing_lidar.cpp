@@ -24,7 +24,6 @@ struct Elevations {
 [[noreturn]] void refuse_placing(std::string found, std::string remedy) {
   throw Error({.where = "placing the sensor beside the scene",
                .found = std::move(found),
-               .allowed = "",
                .remedy = std::move(remedy)});
 }
 

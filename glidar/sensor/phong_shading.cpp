@@ -103,8 +103,7 @@ void validate(const PhongHeadlight& light) {
   }
   throw Error({.where = "light",
                .found = "a number is negative or not finite, or all attenuation coefficients are 0",
-               .allowed = "finite numbers of at least 0, and one attenuation coefficient above 0",
-               .remedy = ""});
+               .allowed = "finite numbers of at least 0, and one attenuation coefficient above 0"});
 }
 
 void shade_phong(const PhongHeadlight& light, BeamRange range, Frame& frame) {

@@ -22,10 +22,8 @@ constexpr double kMaxHalfAngle_rad = std::numbers::pi / 3.0;
 constexpr double kMinGap = 0.02;
 
 [[noreturn]] void refuse_framing(std::string found, std::string remedy) {
-  throw Error({.where = "framing the scene",
-               .found = std::move(found),
-               .allowed = "",
-               .remedy = std::move(remedy)});
+  throw Error(
+      {.where = "framing the scene", .found = std::move(found), .remedy = std::move(remedy)});
 }
 
 /// A rectangle in the plane z = 1 of the camera that is completely in the image.

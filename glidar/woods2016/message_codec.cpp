@@ -21,11 +21,6 @@ constexpr std::size_t kHeadBytes = 1 + 8;
 constexpr const char* kPoseMessage = "pose message ('v')";
 constexpr const char* kCloudMessage = "cloud message ('c')";
 
-[[noreturn]] void fail(const char* where, std::string found, std::string allowed) {
-  throw Error(
-      {.where = where, .found = std::move(found), .allowed = std::move(allowed), .remedy = ""});
-}
-
 /// A byte in readable form: 'v', or 0x07.
 std::string byte_text(std::byte byte) {
   const auto value = std::to_integer<unsigned>(byte);
@@ -35,9 +30,11 @@ std::string byte_text(std::byte byte) {
 }
 
 void check_topic(const char* where, Bytes message, char topic) {
-  if (message.empty()) fail(where, "it is empty", std::string("'") + topic + "' and its content");
+  if (message.empty())
+    throw Error({where, "it is empty", std::string("'") + topic + "' and its content"});
   if (message[0] == static_cast<std::byte>(topic)) return;
-  fail(where, "its first byte is " + byte_text(message[0]), std::string("'") + topic + "'");
+  throw Error(
+      {where, "its first byte is " + byte_text(message[0]), std::string("'") + topic + "'"});
 }
 
 /// The number at a valid offset.
@@ -64,8 +61,8 @@ void check_numbers(const Numbers& numbers) {
     const bool is_position = i >= 4 && i < 7;
     if (std::isfinite(numbers[i]) && (!is_position || std::abs(numbers[i]) <= kMaxCoordinate_m))
       continue;
-    fail(kPoseMessage, std::string(kNumberNames[i]) + " is " + number_text(numbers[i]),
-         is_position ? "metres from -1e15 to 1e15" : "a finite number");
+    throw Error({kPoseMessage, std::string(kNumberNames[i]) + " is " + number_text(numbers[i]),
+                 is_position ? "metres from -1e15 to 1e15" : "a finite number"});
   }
 }
 
@@ -74,9 +71,9 @@ Eigen::Quaterniond unit_quaternion(const Numbers& numbers, std::size_t first, co
                              numbers[first + 3]);
   const double length = q.coeffs().stableNorm();
   if (std::abs(length - 1.0) <= kQuaternionTolerance) return q.normalized();
-  fail(kPoseMessage,
-       std::string("the ") + name + "'s quaternion has the length " + number_text(length),
-       "1 to within 0.001, in the order w x y z");
+  throw Error({kPoseMessage,
+               std::string("the ") + name + "'s quaternion has the length " + number_text(length),
+               "1 to within 0.001, in the order w x y z"});
 }
 
 /// The numbers of the column with this name and this many numbers per point.
@@ -86,7 +83,7 @@ const std::vector<T>& field_values(const PointCloud& cloud, const char* name,
   const Column* column = find_column(cloud, name);
   const auto* numbers = column == nullptr ? nullptr : std::get_if<std::vector<T>>(&column->values);
   if (numbers != nullptr && numbers->size() == components * cloud.size()) return *numbers;
-  fail(kCloudMessage, std::string("the cloud has no column ") + name, "xyz and intensity");
+  throw Error({kCloudMessage, std::string("the cloud has no column ") + name, "xyz and intensity"});
 }
 
 }  // namespace
@@ -94,8 +91,9 @@ const std::vector<T>& field_values(const PointCloud& cloud, const char* name,
 Placement decode_placement(Bytes message) {
   check_topic(kPoseMessage, message, kPlacementTopic);
   if (message.size() != kPlacementBytes) {
-    fail(kPoseMessage, "it has " + std::to_string(message.size()) + " bytes",
-         std::to_string(kPlacementBytes) + ": the byte 'v', a 64-bit timestamp, 11 doubles");
+    throw Error(
+        {kPoseMessage, "it has " + std::to_string(message.size()) + " bytes",
+         std::to_string(kPlacementBytes) + ": the byte 'v', a 64-bit timestamp, 11 doubles"});
   }
   Numbers numbers{};
   std::memcpy(numbers.data(), message.data() + kHeadBytes, sizeof(numbers));
@@ -120,8 +118,8 @@ std::array<std::byte, kPlacementBytes> encode_placement(const Placement& placeme
 Cloud decode_cloud(Bytes message) {
   check_topic(kCloudMessage, message, kCloudTopic);
   if (message.size() < kHeadBytes || (message.size() - kHeadBytes) % sizeof(CloudPoint) != 0) {
-    fail(kCloudMessage, "it has " + std::to_string(message.size()) + " bytes",
-         "9, and 16 for every point");
+    throw Error({kCloudMessage, "it has " + std::to_string(message.size()) + " bytes",
+                 "9, and 16 for every point"});
   }
   Cloud cloud;
   cloud.timestamp = read<std::uint64_t>(message, 1);
@@ -132,7 +130,7 @@ Cloud decode_cloud(Bytes message) {
     const auto& [x, y, z, intensity] = cloud.points[i];
     if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && std::isfinite(intensity))
       continue;
-    fail(kCloudMessage, "point " + std::to_string(i) + " is not finite", "finite numbers");
+    throw Error({kCloudMessage, "point " + std::to_string(i) + " is not finite", "finite numbers"});
   }
   return cloud;
 }
@@ -142,8 +140,8 @@ std::size_t encode_cloud(const PointCloud& cloud, std::uint64_t timestamp,
   const auto& xyz = field_values<double>(cloud, "xyz", 3);
   const auto& intensity = field_values<float>(cloud, "intensity", 1);
   if (to.size() < cloud_bytes(cloud.size())) {
-    fail(kCloudMessage, "there is room for " + std::to_string(to.size()) + " bytes",
-         std::to_string(cloud_bytes(cloud.size())) + " or more");
+    throw Error({kCloudMessage, "there is room for " + std::to_string(to.size()) + " bytes",
+                 std::to_string(cloud_bytes(cloud.size())) + " or more"});
   }
   write(to, 0, kCloudTopic);
   write(to, 1, timestamp);

@@ -312,8 +312,7 @@ PreparedScene& Measured::rendered() const {
   if (prepared) return *prepared;
   throw Error({.where = "frame",
                .found = "its scene is not there yet",
-               .allowed = "a frame that was given its scene",
-               .remedy = ""});
+               .allowed = "a frame that was given its scene"});
 }
 
 void bind_frame(nb::module_& module) {

@@ -87,10 +87,6 @@ nb::dict arrays_of(nb::handle self) {
   return arrays;
 }
 
-[[noreturn]] void refuse(const std::string& where, std::string found, std::string allowed) {
-  throw Error({where, std::move(found), std::move(allowed), ""});
-}
-
 /// The data of a frame other than its columns.
 nb::dict frame_state(const Measured& measured) {
   const Frame& frame = measured.frame;
@@ -117,8 +113,8 @@ void load_column(const nb::dict& arrays, const char* name, std::size_t size,
   const auto array = entry<Array>(arrays, name);
   if (!array) return;
   if (array->shape(0) != size || array->shape(1) != kCount) {
-    refuse(std::string("frame, ") + name, "an array of another shape",
-           std::to_string(size) + " x " + std::to_string(kCount) + ": one row per beam");
+    throw Error({std::string("frame, ") + name, "an array of another shape",
+                 std::to_string(size) + " x " + std::to_string(kCount) + ": one row per beam"});
   }
   values.resize(size);
   std::memcpy(static_cast<void*>(values.data()), array->data(), size * sizeof(Entry));
@@ -130,14 +126,14 @@ void check_columns(const Frame& frame, std::size_t size) {
   for (const std::size_t found :
        {frame.range_m.size(), frame.intensity.size(), frame.status.size(), truth.range_m.size(),
         truth.instance.size(), truth.primitive.size()}) {
-    if (found != size) refuse("frame", "a column that every frame has is missing", "");
+    if (found != size) throw Error({"frame", "a column that every frame has is missing"});
   }
   const auto too_large = [](auto last) { return [last](auto code) { return code > last; }; };
   if (std::any_of(frame.status.begin(), frame.status.end(), too_large(Status::no_return_of_rank)) ||
       std::any_of(frame.return_source.begin(), frame.return_source.end(),
                   too_large(ReturnSource::crosstalk))) {
-    refuse("frame", "a status or return source that is not known",
-           "those of glidar.Status, glidar.ReturnSource");
+    throw Error({"frame", "a status or return source that is not known",
+                 "those of glidar.Status, glidar.ReturnSource"});
   }
 }
 
@@ -165,7 +161,7 @@ std::unique_ptr<Measured> restore_frame(const nb::dict& state, const nb::dict& a
               [&](const char* name, auto& values) { load_column(arrays, name, size, values); });
   check_columns(frame, size);
   std::vector<Trajectory> moves = trajectories_from(nb::cast<nb::list>(state["sensor_motion"]));
-  if (moves.size() != 1) refuse("frame", "no motion of the sensor", "one trajectory");
+  if (moves.size() != 1) throw Error({"frame", "no motion of the sensor", "one trajectory"});
   measured->motion = std::make_shared<const Motion>(
       Motion{moves[0], trajectories_from(nb::cast<nb::list>(state["object_motion"]))});
   return measured;
@@ -192,7 +188,8 @@ void require_hits_of(const Scene& scene, const Measured& measured) {
   const std::size_t objects = scene.instances.size();
   if (measured.motion->world_from_instance.size() != objects ||
       measured.frame.world_from_instance.size() != objects) {
-    refuse("frame", "poses of another number of objects", std::to_string(objects) + " objects");
+    throw Error(
+        {"frame", "poses of another number of objects", std::to_string(objects) + " objects"});
   }
   const Hits& truth = measured.frame.ground_truth;
   for (std::size_t i = 0; i < truth.instance.size(); ++i) {
@@ -201,7 +198,7 @@ void require_hits_of(const Scene& scene, const Measured& measured) {
     if (instance < objects &&
         truth.primitive[i] < scene.meshes[scene.instances[instance].mesh].triangles.size())
       continue;
-    refuse("frame", "a hit on an object or a triangle that the scene does not have", "");
+    throw Error({"frame", "a hit on an object or a triangle that the scene does not have"});
   }
 }
 

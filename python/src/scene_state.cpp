@@ -196,8 +196,7 @@ Eigen::Vector3d origin_in(const nb::dict& state) {
   if (origin_m.allFinite()) return origin_m;
   throw Error({.where = "mesh",
                .found = "an origin that is not finite",
-               .allowed = "three finite numbers",
-               .remedy = ""});
+               .allowed = "three finite numbers"});
 }
 
 }  // namespace

@@ -85,8 +85,7 @@ TimedPoses timed_from(const nb::dict& state) {
   if (positions_m.rows() != t_ns.rows() || wxyz.rows() != t_ns.rows()) {
     throw Error({.where = "trajectory",
                  .found = "arrays of different length",
-                 .allowed = "one position and one orientation for each time",
-                 .remedy = ""});
+                 .allowed = "one position and one orientation for each time"});
   }
   std::vector<TimedPose> poses;
   for (Eigen::Index k = 0; k < t_ns.rows(); ++k) {
@@ -105,8 +104,7 @@ Trajectory motion_from(const nb::dict& state) {
 [[noreturn]] void refuse_kind(const std::string& kind) {
   throw Error({.where = "trajectory",
                .found = "the kind '" + kind + "'",
-               .allowed = "constant, motion, timed, mounted",
-               .remedy = ""});
+               .allowed = "constant, motion, timed, mounted"});
 }
 
 Mounted mounted_from(const nb::dict& state) {
@@ -137,8 +135,7 @@ Pose restored_pose(const Matrix4& matrix, const std::string& name) {
   if (has_last_row && matrix.allFinite() && is_rigid(pose, kRigid)) return pose;
   throw Error({.where = name,
                .found = "a matrix that is no rigid transform",
-               .allowed = "a rotation and a translation, 4x4",
-               .remedy = ""});
+               .allowed = "a rotation and a translation, 4x4"});
 }
 
 nb::list states_of(const std::vector<Trajectory>& trajectories) {

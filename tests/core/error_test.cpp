@@ -21,8 +21,7 @@ TEST(Error, MessageContainsAllFourParts) {
 }
 
 TEST(Error, MessageOmitsEmptyParts) {
-  EXPECT_STREQ(Error({.where = "", .found = "broken", .allowed = "", .remedy = ""}).what(),
-               "broken");
+  EXPECT_STREQ(Error({.where = "", .found = "broken"}).what(), "broken");
 }
 
 TEST(NumberText, IsTheShortestTextThatParsesToTheSameNumber) {

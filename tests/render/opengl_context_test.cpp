@@ -36,9 +36,7 @@ class SharedContext final : public opengl::Context {
 
 class NoContext final : public opengl::Context {
  public:
-  void make_current() override {
-    throw Error({.where = "window", .found = "it is closed", .allowed = "", .remedy = ""});
-  }
+  void make_current() override { throw Error({.where = "window", .found = "it is closed"}); }
   void release() override {}
 };
 

@@ -61,7 +61,6 @@ Error missing() {
   return Error(
       {.where = std::string("program ") + kName,
        .found = "it is neither beside glidar nor in PATH, and python3 has no glidar.campaign",
-       .allowed = "",
        .remedy = kRemedy});
 }
 

@@ -37,14 +37,6 @@ struct ExplainFlags {
   std::optional<std::int64_t> return_number;
 };
 
-[[noreturn]] void refuse_entry(const std::string& where, std::string found, std::string allowed,
-                               std::string remedy) {
-  throw Error({.where = where,
-               .found = std::move(found),
-               .allowed = std::move(allowed),
-               .remedy = std::move(remedy)});
-}
-
 /// The options of the `render` or `stream` command in a sidecar.
 RenderFlags flags_of(const Sidecar& sidecar) {
   const std::vector<std::string>& arguments = sidecar.command.arguments;
@@ -69,8 +61,8 @@ void check_models(const Sidecar& sidecar, const Scene& scene) {
     hashes.push_back(scene.sources.at(instance.mesh).hash);
   }
   if (hashes == sidecar.model_hashes) return;
-  refuse_entry(sidecar.path.string(), "the models have changed",
-               "the models at the time of writing", "render the cloud again");
+  throw Error({sidecar.path.string(), "the models have changed",
+               "the models at the time of writing", "render the cloud again"});
 }
 
 /// The entry of the frame that the flags select.
@@ -80,45 +72,44 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
     const auto pulses_rows = static_cast<std::int64_t>(beams.rows / beams.returns);
     const std::int64_t return_number = flags.return_number.value_or(1);
     if (*flags.row >= pulses_rows || *flags.col >= beams.cols || return_number > beams.returns) {
-      refuse_entry(
-          "--row, --col, --return",
-          fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
-          fmt::format("{} rows, {} columns, {} returns", pulses_rows, beams.cols, beams.returns),
-          "");
+      throw Error(
+          {"--row, --col, --return",
+           fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
+           fmt::format("{} rows, {} columns, {} returns", pulses_rows, beams.cols, beams.returns)});
     }
     const std::int64_t row = (return_number - 1) * pulses_rows + *flags.row;
     return static_cast<std::size_t>(row * beams.cols + *flags.col);
   }
   const auto index = static_cast<std::size_t>(*flags.index);
   if (index >= sidecar.points) {
-    refuse_entry("--index", std::to_string(index),
-                 fmt::format("below {}, the number of points in the cloud", sidecar.points), "");
+    throw Error({"--index", std::to_string(index),
+                 fmt::format("below {}, the number of points in the cloud", sidecar.points)});
   }
   if (sidecar.points == beams.size()) return index;
   std::size_t hits = 0;  // the cloud has only hits
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (frame.status[i] == Status::hit && hits++ == index) return i;
   }
-  refuse_entry(sidecar.path.string(),
+  throw Error({sidecar.path.string(),
                fmt::format("a cloud of {} points from {} beams with {} hits", sidecar.points,
                            beams.size(), hits),
-               "all beams, or all hits", "write the cloud again");
+               "all beams, or all hits", "write the cloud again"});
 }
 
 /// Throws Error when the repeated frame is not that of the cloud.
 void check_frame(const Sidecar& sidecar, const Frame& frame) {
   if (frame_hash(frame) == sidecar.frame_hash) return;
-  refuse_entry(sidecar.path.string(), "the repeated measurement differs from the recorded one",
+  throw Error({sidecar.path.string(), "the repeated measurement differs from the recorded one",
                "the same models, scene and sensor files, and the same program",
-               "write the cloud again");
+               "write the cloud again"});
 }
 
 void check(const ExplainFlags& flags) {
   const bool by_pixel = flags.row || flags.col || flags.return_number;
   const bool is_whole = flags.index ? !by_pixel : flags.row && flags.col;
   if (is_whole) return;
-  refuse_entry("explain", flags.index ? "a point is selected in two ways" : "no point is selected",
-               "--index N, or --row R and --col C, with --return K if it is not the first", "");
+  throw Error({"explain", flags.index ? "a point is selected in two ways" : "no point is selected",
+               "--index N, or --row R and --col C, with --return K if it is not the first"});
 }
 
 int run_explain(const ExplainFlags& flags) {

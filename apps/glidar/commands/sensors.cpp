@@ -252,8 +252,7 @@ int list_surfaces(const SensorsFlags& flags) {
   if (!flags.name.empty() || !flags.picture.empty()) {
     throw Error({.where = "--surfaces",
                  .found = "a sensor or an output is given too",
-                 .allowed = "--surfaces alone, or with --json",
-                 .remedy = ""});
+                 .allowed = "--surfaces alone, or with --json"});
   }
   const std::vector<SurfacePreset> surfaces = load_surfaces();
   if (!flags.json) {
@@ -277,7 +276,6 @@ int list_all(const SensorsFlags& flags) {
   if (!flags.picture.empty()) {
     throw Error({.where = "-o",
                  .found = "no sensor is given",
-                 .allowed = "",
                  .remedy = "for example: glidar sensors VLP-16 -o pattern.png"});
   }
   Json json = Json::array();

@@ -25,7 +25,7 @@ OptionGroup::OptionGroup(CLI::App& command, std::string heading)
 void OptionGroup::add(const std::string& names, const std::string& value_name,
                       const std::string& help, const StoreValue& store) const {
   const auto read = [option = long_name(names), value_name, store](const std::string& text) {
-    if (text.empty()) throw Error({option, "''", value_name, ""});
+    if (text.empty()) throw Error({option, "''", value_name});
     with_option_name(option, [&] { store(text); });
   };
   command_.add_option_function<std::string>(names, read, help)

@@ -22,7 +22,7 @@ std::optional<double> number_in(std::string_view text) {
 
 Eigen::Quaterniond unit_quaternion(const std::vector<double>& n, std::size_t first) {
   Eigen::Vector4d wxyz(n[first], n[first + 1], n[first + 2], n[first + 3]);
-  if (wxyz.isZero(0.0)) throw Error({"", "a quaternion of length 0", "any other length", ""});
+  if (wxyz.isZero(0.0)) throw Error({"", "a quaternion of length 0", "any other length"});
   wxyz.stableNormalize();  // the squares of 1e300 and 1e-300 are beyond double
   return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
 }
@@ -72,7 +72,7 @@ std::vector<std::string> parse_list(const std::string& text) {
     const std::size_t comma = text.find(',', begin);
     parts.push_back(text.substr(begin, comma - begin));
     if (parts.back().empty()) {
-      throw Error({"", "'" + text + "' has an empty part", "parts with one comma between", ""});
+      throw Error({"", "'" + text + "' has an empty part", "parts with one comma between"});
     }
     if (comma == std::string::npos) return parts;
     begin = comma + 1;
@@ -90,7 +90,7 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
     numbers.push_back(*value);
   }
   if (numbers.size() == count) return numbers;
-  throw Error({"", fmt::format("'{}' ({} numbers)", text, numbers.size()), allowed, ""});
+  throw Error({"", fmt::format("'{}' ({} numbers)", text, numbers.size()), allowed});
 }
 
 Eigen::Vector3d parse_vector(const std::string& text) {
@@ -109,7 +109,7 @@ Eigen::Quaterniond parse_quaternion(const std::string& text) {
 Eigen::Quaterniond parse_angle_axis(const std::string& text) {
   const std::vector<double> n = parse_numbers(text, 4, "angle,x,y,z (radians, axis)");
   const Eigen::Vector3d axis(n[1], n[2], n[3]);
-  if (axis.isZero(0.0)) throw Error({"", "an axis of length 0", "any other length", ""});
+  if (axis.isZero(0.0)) throw Error({"", "an axis of length 0", "any other length"});
   return Eigen::Quaterniond(Eigen::AngleAxisd(n[0], axis.stableNormalized()));
 }
 

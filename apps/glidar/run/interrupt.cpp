@@ -74,7 +74,7 @@ void end_cleanly_on_interrupt() {
 StopRequest::StopRequest() {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
-    throw Error({.where = "signals", .found = "cannot create a pipe", .allowed = "", .remedy = ""});
+    throw Error({.where = "signals", .found = "cannot create a pipe"});
   }
   reading_ = ends[0];
   writing_ = ends[1];

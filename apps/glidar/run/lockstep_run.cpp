@@ -34,7 +34,7 @@ std::vector<double> json_of(const Pose& pose) {
 }
 
 [[noreturn]] void refuse_request(std::string where, std::string found, std::string allowed) {
-  throw Error({"request, " + std::move(where), std::move(found), std::move(allowed), ""});
+  throw Error({"request, " + std::move(where), std::move(found), std::move(allowed)});
 }
 
 }  // namespace

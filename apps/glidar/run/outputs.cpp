@@ -59,8 +59,7 @@ void check_picture(const CloudPictureOptions& picture) {
   if (!picture.eye_m || !picture.target_m || *picture.eye_m != *picture.target_m) return;
   throw Error({.where = "--view-eye",
                .found = "it is the point that the camera looks at",
-               .allowed = "a position other than --view-target",
-               .remedy = ""});
+               .allowed = "a position other than --view-target"});
 }
 
 void refuse_terminal(const FileFormat& format, const FileSinkOptions& options) {
@@ -127,7 +126,6 @@ void check_names(const std::vector<Output>& outputs, const std::string& input) {
     if (!is_input && !is_repeated) continue;
     throw Error({.where = "--output, " + output.path.string(),
                  .found = is_input ? "is an input file" : "is given twice as output",
-                 .allowed = "",
                  .remedy = "choose another name"});
   }
 }

@@ -70,7 +70,6 @@ Pose eye_pose(const PoseFlags& flags, const Scene& scene, bool is_lidar) {
   if (eye == target) {
     throw Error({.where = "--eye",
                  .found = "'" + text_of(eye) + "' is the point that the sensor looks at",
-                 .allowed = "",
                  .remedy = "give another --eye or --target"});
   }
   if (flags.up) check_upright("--eye, --target and --up-vector", target - eye, *flags.up);
@@ -111,7 +110,6 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
     throw Error(
         {.where = "--scale, --model-q, --model-r",
          .found = "the scene has " + std::to_string(scene.instances.size()) + " objects",
-         .allowed = "",
          .remedy =
              "these options move a single model; write poses and scales into the scene file"});
   }
@@ -121,7 +119,6 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
   if (!instance.world_from_object.isApprox(Pose::Identity())) {
     throw Error({.where = "--model-q, --model-r",
                  .found = "the scene file already gives the model's pose",
-                 .allowed = "",
                  .remedy = "rotate it in the scene file"});
   }
   instance.world_from_object = woods2016_world_from_object(*flags.model_q);
@@ -138,7 +135,6 @@ Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const
   if (is_complete && flags.up) {
     throw Error({.where = "--up-vector",
                  .found = "the pose is already complete",
-                 .allowed = "",
                  .remedy = "leave it out, or give --eye"});
   }
   const bool is_lidar = !looks_along_z(beams);
@@ -167,7 +163,6 @@ Trajectory sensor_trajectory(const MotionFlags& flags, const Pose& world_from_se
   if (from_scene_file && !pose_given) {
     throw Error({.where = "--sensor-rate",
                  .found = "the scene file already moves the sensor",
-                 .allowed = "",
                  .remedy = "leave the option out"});
   }
   return Spin{.pose = world_from_sensor,
@@ -184,7 +179,6 @@ std::vector<Trajectory> instance_trajectories(const MotionFlags& flags, const Sc
          .found = from_scene_file.empty()
                       ? "the scene has " + std::to_string(scene.instances.size()) + " objects"
                       : "the scene file already moves its objects",
-         .allowed = "",
          .remedy = "write the motion into the scene file"});
   }
   return {

@@ -26,7 +26,7 @@ bool is_scene_file(const std::string& input) {
 void apply_surface_option(const RenderFlags& flags, const Sensor& sensor, Scene& scene) {
   if (flags.surface.empty()) return;
   const auto refuse = [](const char* found, const char* remedy) {
-    throw Error({.where = "--surface", .found = found, .allowed = "", .remedy = remedy});
+    throw Error({.where = "--surface", .found = found, .remedy = remedy});
   };
   if (is_scene_file(flags.input)) {
     refuse("the input is a scene file", "write 'surface: ...' into its materials");
@@ -116,7 +116,7 @@ std::vector<ActiveSensor> make_active_sensors(const RenderFlags& flags,
     return active.name == flags.sensor_name;
   };
   if (!flags.sensor_name.empty() && std::none_of(sensors.begin(), sensors.end(), is_chosen)) {
-    throw Error({"--sensor-name", flags.sensor_name, names_of(in_file), ""});
+    throw Error({"--sensor-name", flags.sensor_name, names_of(in_file)});
   }
   return sensors;
 }

@@ -82,15 +82,13 @@ void apply_limits(const SensorFlags& flags, Limits& limits) {
   if (limits.near_m < limits.far_m) return;
   throw Error({.where = "--near and --far",
                .found = fmt::format("near {} m, far {} m", limits.near_m, limits.far_m),
-               .allowed = "near below far",
-               .remedy = ""});
+               .allowed = "near below far"});
 }
 
 void apply_light(const SensorFlags& flags, Sensor& sensor) {
   if (sensor.lidar_equation && (flags.ambient || flags.attenuation)) {
     throw Error({.where = flags.ambient ? "--ambient" : "--attenuation",
                  .found = "the sensor has pulsed light",
-                 .allowed = "",
                  .remedy = "leave it out, or add --ground-truth"});
   }
   PhongHeadlight& light = sensor.light;

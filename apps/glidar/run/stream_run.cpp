@@ -53,7 +53,7 @@ void compare(const MeasuredFrame& measured, const std::string& recording, std::u
   if (frame_hash(measured.frame) == measured.frame_hash) return;
   throw Error({fmt::format("{}, frame {}", recording, number),
                "the repeated frame differs from the recorded one",
-               "the same models, scene and sensor files, and the same program", ""});
+               "the same models, scene and sensor files, and the same program"});
 }
 
 }  // namespace
@@ -132,7 +132,6 @@ void StreamRun::prepare_poses() {
     if (!std::holds_alternative<ConstantPose>(trajectory)) {
       throw Error({.where = "--pose-source",
                    .found = "the scene file moves its objects",
-                   .allowed = "",
                    .remedy = "let either the simulator or the scene file move the objects"});
     }
     moved_scene_.object_from_instance.push_back(std::get<ConstantPose>(trajectory).pose);

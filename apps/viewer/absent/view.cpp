@@ -15,7 +15,6 @@ Command add_view(CLI::App& program) {
   return []() -> int {
     throw Error({.where = "glidar view",
                  .found = "this program was built without its window",
-                 .allowed = "",
                  .remedy =
                      "build it with -DGLIDAR_BUILD_VIEWER=ON, or write a picture: glidar render "
                      "MODEL -o picture.png"});

@@ -63,7 +63,7 @@ std::vector<YAML::Node> parse(const std::string& file, const std::string& conten
     check_yaml_budget(file, content);
     return YAML::LoadAll(content);
   } catch (const YAML::DeepRecursion& error) {
-    throw Error({position(file, error.mark), "nested too deeply", "a sensor or scene file", ""});
+    throw Error({position(file, error.mark), "nested too deeply", "a sensor or scene file"});
   } catch (const YAML::Exception& error) {
     if (error.msg.starts_with(YAML::ErrorMsg::UNKNOWN_ANCHOR)) {
       reject_alias(position(file, error.mark), alias_at(content, error.mark));

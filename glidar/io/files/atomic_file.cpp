@@ -118,10 +118,9 @@ Temporary open_temporary(const std::filesystem::path& folder, const std::filesys
 AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : path_(path) {
   std::error_code ignored;  // an inaccessible path fails below with the reason
   if (std::filesystem::is_directory(path, ignored))
-    throw Error({path.string(), "is a folder", "a file name", ""});
+    throw Error({path.string(), "is a folder", "a file name"});
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
-    throw Error(
-        {path.string(), "is a device, pipe or socket", "a regular file, or a new name", ""});
+    throw Error({path.string(), "is a device, pipe or socket", "a regular file, or a new name"});
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   buffer_.resize(kPieceBytes);
   constexpr mode_t kDefault = 0666;
@@ -217,7 +216,7 @@ void AtomicFile::send() const {
       const ssize_t written = ::write(target_, rest.data(), rest.size());
       if (written < 0 && errno == EINTR) continue;
       if (written < 0 && errno == EPIPE)
-        throw ClosedPipe({path_.string(), "its reader has closed it", "", ""});
+        throw ClosedPipe({path_.string(), "its reader has closed it"});
       if (written < 0) fail_sent(path_, errno);
       rest = rest.subspan(static_cast<std::size_t>(written));
     }

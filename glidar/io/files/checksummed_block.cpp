@@ -43,7 +43,7 @@ void read_all(int fd, void* data, std::size_t size) {
 }  // namespace
 
 void reject_imported_data(const std::string& found) {
-  throw Error({.where = "imported data", .found = found, .allowed = "", .remedy = ""});
+  throw Error({.where = "imported data", .found = found});
 }
 
 BlockWriter::BlockWriter(int fd, BlockKind kind)

@@ -17,7 +17,7 @@ fs::path data_folder(const std::string& name, const char* variable) {
   if (const char* named = std::getenv(variable); named != nullptr && *named != '\0') {
     if (fs::is_directory(named, error)) return named;
     throw Error(
-        {variable, std::string(named) + " is not a folder", "a folder like GLIDAR's " + name, ""});
+        {variable, std::string(named) + " is not a folder", "a folder like GLIDAR's " + name});
   }
   std::vector<fs::path> places;
   for (const fs::path& own : own_folders()) places.push_back(own / "share" / "glidar" / name);

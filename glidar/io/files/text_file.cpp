@@ -41,7 +41,7 @@ std::string shown(std::string_view word) {
 std::string read_text_file(const fs::path& file, const TextFileKind& kind) {
   std::string content = read_input_file(file, kind);
   if (content.find('\0') != std::string::npos) {
-    throw Error({file.string(), "binary data", kind.name, ""});
+    throw Error({file.string(), "binary data", kind.name});
   }
   return content;
 }

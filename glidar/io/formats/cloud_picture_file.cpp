@@ -175,7 +175,7 @@ Perspective view_of(const CloudFile& job, const CloudScene& scene, const Box& pl
   if (options.target_m) view.target_m = scene.up_from_cloud * *options.target_m;
   if (options.eye_m) view.eye_m = scene.up_from_cloud * *options.eye_m;
   if ((view.target_m - view.eye_m).norm() > 0.0) return view;
-  throw Error({"view_eye", "it equals the view's target", "a point other than view_target", ""});
+  throw Error({"view_eye", "it equals the view's target", "a point other than view_target"});
 }
 
 /// A grid of lines on the ground below the points.

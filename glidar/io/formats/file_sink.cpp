@@ -97,7 +97,7 @@ void check_picture_size(const CloudPictureOptions& options) {
   for (const std::uint32_t side : {options.width, options.height}) {
     if (side >= kMinPictureSide && side <= kMaxPictureSide) continue;
     throw Error({"picture size", fmt::format("{} x {} pixels", options.width, options.height),
-                 fmt::format("sides from {} to {}", kMinPictureSide, kMaxPictureSide), ""});
+                 fmt::format("sides from {} to {}", kMinPictureSide, kMaxPictureSide)});
   }
 }
 

@@ -36,7 +36,7 @@ bool LineFile::next(std::string& line) {
     if (waiting > max_line_bytes_) {
       throw Error({path_.string(),
                    "a line of more than " + std::to_string(max_line_bytes_ >> 20U) + " MiB",
-                   "shorter lines", ""});
+                   "shorter lines"});
     }
     is_at_end_ = !fill();
     searched = waiting;

@@ -117,8 +117,7 @@ extern "C" zip_int64_t glidar_npz_target(void* user, void* data, zip_uint64_t le
 
 [[noreturn]] void fail(const NpzTarget& target, const char* reason) {
   if (target.failure) std::rethrow_exception(target.failure);
-  throw Error(
-      {target.file.path().string(), fmt::format("cannot write the archive: {}", reason), "", ""});
+  throw Error({target.file.path().string(), fmt::format("cannot write the archive: {}", reason)});
 }
 
 using Archive = std::unique_ptr<zip_t, decltype(&zip_discard)>;

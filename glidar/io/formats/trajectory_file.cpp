@@ -128,7 +128,7 @@ class KittiClock {
   void require_end(const std::string& file, std::size_t poses) const {
     if (times_file_.empty() || poses == times_.size()) return;
     throw Error({file, std::to_string(poses) + " poses",
-                 "one per time; " + times_file_ + " has " + std::to_string(times_.size()), ""});
+                 "one per time; " + times_file_ + " has " + std::to_string(times_.size())});
   }
 
  private:
@@ -188,7 +188,7 @@ void shift(std::int64_t start_ns, const std::string& file, std::vector<TimedPose
     if (__builtin_sub_overflow(pose.t_ns, by_first, &since) ||
         __builtin_add_overflow(since, start_ns, &pose.t_ns)) {
       throw Error({file, "times that leave the range of nanoseconds when shifted",
-                   "times within 290 years", ""});
+                   "times within 290 years"});
     }
   }
 }
@@ -200,7 +200,7 @@ TimedPoses load_trajectory_file(const std::filesystem::path& path,
   const std::string file = path.string();
   if (options.rate_hz && !(*options.rate_hz >= 0.01 && *options.rate_hz <= 1e9)) {
     throw Error(
-        {file, "a rate of " + std::to_string(*options.rate_hz) + " Hz", "from 0.01 to 1e9 Hz", ""});
+        {file, "a rate of " + std::to_string(*options.rate_hz) + " Hz", "from 0.01 to 1e9 Hz"});
   }
   const std::string content = read_text_file(path, file_kind());
   TextRowReader rows(file, content);

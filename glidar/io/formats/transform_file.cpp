@@ -14,7 +14,7 @@ namespace {
 void write_transform(const CloudFile& job, AtomicFile& file) {
   if (job.frame.world_from_instance.empty()) {
     throw Error({file.path().string(), "the scene has no object whose pose could be written",
-                 "at least one instance", ""});
+                 "at least one instance"});
   }
   const Pose cloud_from_object =
       job.cloud.world_from_cloud.inverse() * job.frame.world_from_instance.front();

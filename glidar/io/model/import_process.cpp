@@ -38,10 +38,8 @@ constexpr int kAnswerFd = 3;
 constexpr int kProgressFd = 4;
 
 [[noreturn]] void cannot_start(const std::string& program, int error) {
-  throw Error({.where = program,
-               .found = std::string("cannot be started: ") + std::strerror(error),
-               .allowed = "",
-               .remedy = ""});
+  throw Error(
+      {.where = program, .found = std::string("cannot be started: ") + std::strerror(error)});
 }
 
 /// The environment of the process: the search path of the dynamic loader and, if
@@ -164,10 +162,8 @@ std::string signal_name(int signal) {
 }
 
 [[noreturn]] void fail(const ImportRequest& request, std::string found, std::string remedy) {
-  throw Error({.where = request.model.string(),
-               .found = std::move(found),
-               .allowed = "",
-               .remedy = std::move(remedy)});
+  throw Error(
+      {.where = request.model.string(), .found = std::move(found), .remedy = std::move(remedy)});
 }
 
 /// How a process ended, and the resources it used.
@@ -248,7 +244,6 @@ ImportRun run_import(const ImportRequest& request, const Report& report) {
 void reject_answer(const std::filesystem::path& model, const std::string& found) {
   throw Error({.where = model.string(),
                .found = "the import process returned a malformed answer (" + found + ")",
-               .allowed = "",
                .remedy = "save the model in another format (PLY, OBJ or glTF)"});
 }
 

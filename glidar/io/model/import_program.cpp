@@ -54,7 +54,6 @@ fs::path import_program() {
   }
   throw Error({.where = std::string("program ") + kName,
                .found = "not found in " + searched,
-               .allowed = "",
                .remedy = std::string("reinstall GLIDAR, or set ") + kVariable});
 }
 

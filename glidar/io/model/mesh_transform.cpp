@@ -52,8 +52,7 @@ void require_unit(double metres_per_unit) {
   if (std::isfinite(metres_per_unit) && metres_per_unit > 0.0) return;
   throw Error({.where = "metres_per_unit",
                .found = number_text(metres_per_unit),
-               .allowed = "a finite number above 0",
-               .remedy = ""});
+               .allowed = "a finite number above 0"});
 }
 
 /// The normal of the scaled surface: multiplied by the inverse transpose.
@@ -83,7 +82,6 @@ void apply_model_frame(Mesh& mesh, const ModelFrame& frame, bool centre) {
     throw Error(
         {.where = "metres_per_unit",
          .found = number_text(scale) + " makes '" + mesh.name + "' too large for single precision",
-         .allowed = "",
          .remedy = "use a smaller scale"});
   }
   const Eigen::AlignedBox3d box = bounds(mesh);
@@ -102,7 +100,6 @@ Mesh scaled_copy(const Mesh& mesh, const Eigen::Vector3d& factors) {
   if (is_finite(result)) return result;
   throw Error({.where = "scale",
                .found = "it makes '" + mesh.name + "' too large for single precision",
-               .allowed = "",
                .remedy = "use smaller factors"});
 }
 

@@ -33,8 +33,7 @@ void check(const ModelOptions& options) {
 }
 
 [[noreturn]] void reject_model(const std::string& source, std::string found, std::string remedy) {
-  throw Error(
-      {.where = source, .found = std::move(found), .allowed = "", .remedy = std::move(remedy)});
+  throw Error({.where = source, .found = std::move(found), .remedy = std::move(remedy)});
 }
 
 fs::path model_file(const std::string& source) {

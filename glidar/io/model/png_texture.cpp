@@ -20,8 +20,7 @@ constexpr std::size_t kMaxBytes = std::size_t{256} << 20U;
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string found) {
   throw Error({.where = file.string(),
                .found = std::move(found),
-               .allowed = "a PNG file of at most 16384 pixels per side and 256 MiB of texels",
-               .remedy = ""});
+               .allowed = "a PNG file of at most 16384 pixels per side and 256 MiB of texels"});
 }
 
 }  // namespace

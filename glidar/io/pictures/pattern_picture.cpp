@@ -75,7 +75,7 @@ std::vector<PatternMark> marks_of(const Beams& beams) {
                        value_of(beams, i)});
     }
   }
-  if (marks.empty()) throw Error({"picture of the beams", "the sensor has no beams", "", ""});
+  if (marks.empty()) throw Error({"picture of the beams", "the sensor has no beams"});
   return marks;
 }
 

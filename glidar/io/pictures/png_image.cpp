@@ -118,8 +118,7 @@ void write_png(const PngImage& image, AtomicFile& file) {
   png_destroy_write_struct(&png, &info);
   if (writing.failure) std::rethrow_exception(writing.failure);
   if (!written) {
-    throw Error(
-        {file.path().string(), fmt::format("cannot write the PNG: {}", writing.message), "", ""});
+    throw Error({file.path().string(), fmt::format("cannot write the PNG: {}", writing.message)});
   }
 }
 

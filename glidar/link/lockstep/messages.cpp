@@ -31,7 +31,7 @@ constexpr double kQuaternionTolerance = 1e-3;
 constexpr double kMaxRate = 1e9;  // rad/s and m/s
 
 [[noreturn]] void refuse(std::string where, std::string found, std::string allowed) {
-  throw Error({"request, " + std::move(where), std::move(found), std::move(allowed), ""});
+  throw Error({"request, " + std::move(where), std::move(found), std::move(allowed)});
 }
 
 /// Reads numbers from bytes whose size was checked.

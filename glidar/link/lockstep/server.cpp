@@ -117,7 +117,7 @@ void Server::refuse(const link::Delivered& message, std::string_view why) {
 std::optional<Request> Server::read(const Waiting& waiting, ReplyTo& to) {
   try {
     if (!waiting.message.is_single) {
-      throw Error({"request", "a message of several parts", "one part", ""});
+      throw Error({"request", "a message of several parts", "one part"});
     }
     return decode_request(waiting.message.body.bytes(), to.id);
   } catch (const Error& error) {
