@@ -176,16 +176,6 @@ std::vector<std::string> size_keys(const Builtin& builtin) {
                .remedy = std::move(remedy)});
 }
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const std::size_t at = text.find(separator);
-    parts.push_back(text.substr(0, at));
-    if (at == std::string_view::npos) return parts;
-    text.remove_prefix(at + 1);
-  }
-}
-
 /// `count` lengths, or one for all.
 std::vector<double> lengths_of(std::string_view name, std::string_view text, std::size_t count) {
   std::vector<double> lengths;

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <charconv>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -19,24 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kPlaces = {"", "textures", "materials/textures",
                                                      "../materials/textures", "../textures"};
+constexpr std::string_view kPadding = " \t\r\n\v\f\"";
 constexpr std::size_t kMaxTextureName = 4096;  // PATH_MAX of Linux
-
-bool is_space(char c) {
-  return std::isspace(static_cast<unsigned char>(c)) != 0;
-}
-
-std::string trimmed(std::string_view text) {
-  const auto is_ignored = [](char c) { return is_space(c) || c == '"'; };
-  while (!text.empty() && is_ignored(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_ignored(text.back())) text.remove_suffix(1);
-  return std::string(text);
-}
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
-}
 
 std::string base_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
@@ -48,7 +32,7 @@ bool is_absolute(const std::string& path) {
 
 /// The names to search for, the model's own first.
 std::vector<std::string> spellings(const std::string& name) {
-  std::string tidy = trimmed(name);
+  std::string tidy(trimmed(name, kPadding));
   std::replace(tidy.begin(), tidy.end(), '\\', '/');
   if (tidy.starts_with("file://")) tidy.erase(0, 7);
   std::vector<std::string> all;
@@ -81,8 +65,8 @@ std::optional<fs::path> any_case(const fs::path& place, const std::string& base)
   return best;
 }
 
-bool has_scheme(const std::string& name) {
-  return name.find("://") != std::string::npos && !name.starts_with("file://");
+bool has_scheme(std::string_view name) {
+  return name.find("://") != std::string_view::npos && !name.starts_with("file://");
 }
 
 /// Folders to search, in this order.
@@ -101,15 +85,13 @@ std::vector<fs::path> places(const ModelFolder& folder) {
 std::string percent_decoded(const std::string& text) {
   std::string decoded;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool room = text[i] == '%' && i + 2 < text.size();
-    const int high = room ? hex_digit(text[i + 1]) : -1;
-    const int low = room ? hex_digit(text[i + 2]) : -1;
-    if (high < 0 || low < 0) {
-      decoded += text[i];
-      continue;
-    }
-    decoded += static_cast<char>(high * 16 + low);
-    i += 2;
+    unsigned code = 0;
+    const std::string digits = text[i] == '%' ? text.substr(i + 1, 2) : "";
+    const char* const end = digits.data() + digits.size();
+    const bool is_code =
+        digits.size() == 2 && std::from_chars(digits.data(), end, code, 16).ptr == end;
+    decoded += is_code ? static_cast<char>(code) : text[i];
+    if (is_code) i += 2;
   }
   return decoded;
 }
@@ -117,7 +99,7 @@ std::string percent_decoded(const std::string& text) {
 TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
   TextureLookup result{name, "", "not found"};
   if (name.size() > kMaxTextureName) return {name, "", "the name is too long for a file"};
-  if (has_scheme(trimmed(name))) return {name, "", "network addresses are not followed"};
+  if (has_scheme(trimmed(name, kPadding))) return {name, "", "network addresses are not followed"};
   const std::vector<std::string> wanted = spellings(name);
   const auto take = [&](const fs::path& path) {
     const ConfinedFile file = confine(path, folder);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/pictures/font.hpp>
 
+#include <glidar/core/text.hpp>
+
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -28,27 +31,14 @@ const stbtt_fontinfo& font() {
   return kFont;
 }
 
-/// The length of a UTF-8 character by its first byte; 0: invalid first byte.
-std::size_t length_of(unsigned char first) {
-  if (first < 0x80U) return 1;
-  if (first >= 0xC2U && first < 0xE0U) return 2;
-  if (first >= 0xE0U && first < 0xF0U) return 3;
-  if (first >= 0xF0U && first < 0xF5U) return 4;
-  return 0;
-}
-
-/// Removes the first character from the text (RFC 3629); kReplacement for an invalid byte.
+/// Removes the first character from the text; kReplacement for an invalid byte.
 char32_t take_character(std::string_view& text) {
   const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const std::size_t length = length_of(byte(0));
-  char32_t code = length <= 1 ? byte(0) : byte(0) & (0xFFU >> (length + 1));
-  bool is_whole = length > 0 && length <= text.size();
-  for (std::size_t i = 1; is_whole && i < length; ++i) {
-    is_whole = (byte(i) & 0xC0U) == 0x80U;
-    code = (code << 6U) | (byte(i) & 0x3FU);
-  }
-  text.remove_prefix(is_whole ? length : 1);
-  return is_whole ? code : kReplacement;
+  const std::size_t size = utf8_size(text);
+  char32_t code = size == 0 ? kReplacement : size == 1 ? byte(0) : byte(0) & (0xFFU >> (size + 1));
+  for (std::size_t i = 1; i < size; ++i) code = (code << 6U) | (byte(i) & 0x3FU);
+  text.remove_prefix(std::max<std::size_t>(size, 1));
+  return code;
 }
 
 /// Calls visit(glyph, pen) for each character, where `pen` is its start; returns the total
