@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/declared_frame.hpp>
 
-#include <import/text_source.hpp>
-#include <import/xml_reader.hpp>
+#include <import/zip_archive.hpp>
+
+#include <glidar/core/text.hpp>
 
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <pugixml.hpp>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +18,6 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 namespace glidar::import {
 namespace {
@@ -57,32 +58,38 @@ struct ColladaAsset {
   std::string up_axis = "Y_UP";
 };
 
+/// The start of a document; the part that declares a frame is before all geometry.
+constexpr std::size_t kMaxText_bytes = std::size_t{16} << 20U;
+
+/// The elements of a text up to its first error. The text may end anywhere.
+pugi::xml_document parse_xml(std::string_view text) {
+  pugi::xml_document document;
+  document.load_buffer(text.data(), std::min(text.size(), kMaxText_bytes));
+  return document;
+}
+
+/// The name of an element without the prefix of its namespace.
+std::string_view local_name(const pugi::xml_node& element) {
+  const std::string_view name = element.name();
+  return name.substr(name.find(':') + 1);  // npos + 1 is 0
+}
+
+/// The first child with this name; an empty node if there is none.
+pugi::xml_node child_of(const pugi::xml_node& parent, std::string_view name) {
+  return parent.find_child([name](const pugi::xml_node& one) { return local_name(one) == name; });
+}
+
 /// The first asset of the document; empty: not a COLLADA document.
-std::optional<ColladaAsset> collada_asset(TextSource text) {
-  using Kind = XmlEvent::Kind;
-  const std::vector<std::string> asset = {"COLLADA", "asset"};
+std::optional<ColladaAsset> collada_asset(std::string_view text) {
+  const pugi::xml_document document = parse_xml(text);
+  const pugi::xml_node root = document.document_element();
+  if (local_name(root) != "COLLADA") return std::nullopt;
+  const pugi::xml_node asset = child_of(root, "asset");
   ColladaAsset found;
-  XmlReader reader(std::move(text));
-  std::vector<std::string> path;
-  std::string up_axis;
-  bool is_collada = false;
-  for (XmlEvent event = reader.next(); event.kind != Kind::finished; event = reader.next()) {
-    if (event.kind == Kind::start) path.push_back(event.name);
-    if (path.empty()) continue;
-    if (path.front() != asset.front()) return std::nullopt;
-    is_collada = true;
-    const bool is_in_asset =
-        path.size() == 3 && std::equal(asset.begin(), asset.end(), path.begin());
-    if (is_in_asset && path.back() == "up_axis") up_axis += event.text;
-    const auto meter = event.attributes.find("meter");
-    if (is_in_asset && path.back() == "unit" && meter != event.attributes.end())
-      found.meter = trimmed(meter->second);
-    if (event.kind != Kind::end) continue;
-    if (path == asset) break;
-    path.pop_back();
-  }
-  if (!is_collada) return std::nullopt;
-  if (!trimmed(up_axis).empty()) found.up_axis = trimmed(up_axis);
+  const pugi::xml_attribute meter = child_of(asset, "unit").attribute("meter");
+  if (meter) found.meter = trimmed(meter.value());
+  const std::string_view up_axis = trimmed(child_of(asset, "up_axis").child_value());
+  if (!up_axis.empty()) found.up_axis = up_axis;
   return found;
 }
 
@@ -95,9 +102,10 @@ std::optional<Axis> axis_named(std::string_view name) {
 
 /// Assimp multiplies the unit and a rotation to y up into the root node, in single precision. This
 /// removes both, because the user may select others.
-ModelFrame extract_collada_frame(aiScene& scene, TextSource text, std::vector<std::string>& notes) {
+ModelFrame extract_collada_frame(aiScene& scene, std::string_view text,
+                                 std::vector<std::string>& notes) {
   scene.mRootNode->mTransformation = aiMatrix4x4();
-  const std::optional<ColladaAsset> asset = collada_asset(std::move(text));
+  const std::optional<ColladaAsset> asset = collada_asset(text);
   if (!asset) {
     note_no_element("COLLADA", "1 m and the axes of the file are", notes);
     return {};
@@ -118,20 +126,16 @@ ModelFrame extract_collada_frame(aiScene& scene, TextSource text, std::vector<st
 }
 
 /// The document of a COLLADA file; in a .zae archive, the one named by the manifest.
-TextSource collada_text(std::string_view file) {
+std::string collada_text(std::string_view file) {
   const std::vector<std::string> names = zip_names(file);
-  if (names.empty()) return plain_text(file);
-  XmlReader manifest(zip_text(file, "manifest.xml"));
-  bool is_root = false;
-  for (XmlEvent event = manifest.next(); event.kind != XmlEvent::Kind::finished;
-       event = manifest.next()) {
-    if (is_root && event.kind == XmlEvent::Kind::text)
-      return zip_text(file, zip_name(trimmed(event.text)));
-    is_root = event.kind == XmlEvent::Kind::start && event.name == "dae_root";
-  }
+  if (names.empty()) return std::string(file.substr(0, kMaxText_bytes));
+  const pugi::xml_document manifest = parse_xml(zip_text(file, "manifest.xml", kMaxText_bytes));
+  const pugi::xml_node root =
+      manifest.find_node([](const pugi::xml_node& one) { return local_name(one) == "dae_root"; });
+  if (root) return zip_text(file, zip_name(trimmed(root.child_value())), kMaxText_bytes);
   const auto first = std::find_if(names.begin(), names.end(),
                                   [](const std::string& name) { return name.ends_with(".dae"); });
-  return zip_text(file, first == names.end() ? "" : *first);
+  return first == names.end() ? "" : zip_text(file, *first, kMaxText_bytes);
 }
 
 template <class T>
@@ -161,19 +165,8 @@ ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
   return frame;
 }
 
-/// An attribute of the document's element `name`, "" if it is missing; empty: the document has
-/// another element or none.
-std::optional<std::string> root_attribute(TextSource text, std::string_view name,
-                                          const std::string& attribute) {
-  XmlReader reader(std::move(text));
-  XmlEvent event = reader.next();
-  while (event.kind == XmlEvent::Kind::text) event = reader.next();
-  if (event.kind != XmlEvent::Kind::start || event.name != name) return std::nullopt;
-  return trimmed(event.attributes[attribute]);
-}
-
 /// A unit of 3MF and AMF. Their default is the millimetre, their up axis is z.
-ModelFrame printed(TextSource text, const char* element, std::vector<std::string>& notes) {
+ModelFrame printed(std::string_view text, const char* element, std::vector<std::string>& notes) {
   struct Named {
     std::string_view name;
     double metres;
@@ -185,29 +178,30 @@ ModelFrame printed(TextSource text, const char* element, std::vector<std::string
                                             {"foot", 0.3048},
                                             {"feet", 0.3048},
                                             {"meter", 1.0}}};
-  const std::optional<std::string> unit = root_attribute(std::move(text), element, "unit");
-  if (!unit) {
+  const pugi::xml_document document = parse_xml(text);
+  const pugi::xml_node root = document.document_element();
+  if (local_name(root) != element) {
     note_no_element(element, "1 m is", notes);
     return {std::nullopt, Axis::z};
   }
-  if (unit->empty()) return {kMillimetre_m, Axis::z};
+  const std::string_view unit = trimmed(root.attribute("unit").value());
+  if (unit.empty()) return {kMillimetre_m, Axis::z};
   for (const Named& known : kUnits) {
-    if (known.name == *unit) return {known.metres, Axis::z};
+    if (known.name == unit) return {known.metres, Axis::z};
   }
-  notes.push_back("the file declares the unknown unit '" + *unit + "': 1 m is assumed");
+  notes.push_back("the file declares the unknown unit '" + std::string(unit) + "': 1 m is assumed");
   return {std::nullopt, Axis::z};
 }
 
 /// The model of a 3MF package: the part that its relationships name (Open Packaging Conventions).
-TextSource model_of_3mf(std::string_view file) {
-  constexpr std::string_view kModel = "/3dmanufacturing/2013/01/3dmodel";
-  XmlReader relations(zip_text(file, "_rels/.rels"));
-  for (XmlEvent event = relations.next(); event.kind != XmlEvent::Kind::finished;
-       event = relations.next()) {
-    if (event.kind == XmlEvent::Kind::start && event.attributes["Type"].ends_with(kModel))
-      return zip_text(file, zip_name(event.attributes["Target"]));
-  }
-  return zip_text(file, "3D/3dmodel.model");
+std::string model_of_3mf(std::string_view file) {
+  static constexpr std::string_view kModel = "/3dmanufacturing/2013/01/3dmodel";
+  const pugi::xml_document relations = parse_xml(zip_text(file, "_rels/.rels", kMaxText_bytes));
+  const pugi::xml_node model = relations.find_node([](const pugi::xml_node& one) {
+    return std::string_view(one.attribute("Type").value()).ends_with(kModel);
+  });
+  const std::string name = model ? zip_name(model.attribute("Target").value()) : "3D/3dmodel.model";
+  return zip_text(file, name, kMaxText_bytes);
 }
 
 }  // namespace
@@ -223,7 +217,7 @@ ModelFrame extract_declared_frame(aiScene& scene, const std::string& format, Fil
     return printed(model_of_3mf(file.whole()), "model", notes);
   }
   if (format.find("AMF") != std::string::npos) {
-    return printed(plain_text(file.whole()), "amf", notes);
+    return printed(file.whole(), "amf", notes);
   }
   return {};
 }

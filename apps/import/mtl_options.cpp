@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/core/text.hpp>
-
 #include <import/mtl_options.hpp>
+
+#include <glidar/core/text.hpp>
 
 #include <assimp/material.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
 #include <sstream>
 #include <string_view>
@@ -17,21 +16,10 @@
 namespace glidar::import {
 namespace {
 
-bool is_space(char c) {
-  return std::isspace(static_cast<unsigned char>(c)) != 0;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 /// Removes and returns the first word of the text.
 std::string next_word(std::string_view& text) {
   text = trimmed(text);
-  const auto end = std::find_if(text.begin(), text.end(), is_space);
-  std::string word(text.begin(), end);
+  std::string word(text.substr(0, text.find_first_of(kWhiteSpace)));
   text.remove_prefix(word.size());
   return word;
 }

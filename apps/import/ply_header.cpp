@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/ply_header.hpp>
 
+#include <glidar/core/text.hpp>
 #include <import/scene_walk.hpp>
-#include <import/xml_reader.hpp>
 
 #include <assimp/material.h>
 #include <assimp/scene.h>
@@ -32,7 +32,7 @@ PlyHeader read_ply_header(FileContent& file) {
   std::string_view text = file.head(kMaxHeader);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    const std::string line = trimmed(std::string(text.substr(0, end)));
+    const std::string_view line = trimmed(text.substr(0, end));
     if (line == "end_header") return header;
     if (header.texture.empty() && line.starts_with(kTexture)) {
       header.texture = trimmed(line.substr(kTexture.size()));
