@@ -49,15 +49,14 @@ std::uint64_t received_bytes(int descriptor) {
 
 /// Closes a connection. Another socket that has got its descriptor meanwhile is not affected.
 void shut_down(int descriptor, std::uint64_t cookie) {
-  const int held = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);  // keeps the number from being reused
-  const int used = held >= 0 ? held : descriptor;
+  const UniqueFd held(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));  // so that the number is not reused
+  const int used = held ? held.get() : descriptor;
   if (cookie_of(used) == cookie) {
     // Connecting to AF_UNSPEC resets a TCP connection and drops unread data (Linux,
     // tcp_disconnect); other kinds of connections reject it.
     const sockaddr nobody = {.sa_family = AF_UNSPEC, .sa_data = {}};
     if (::connect(used, &nobody, sizeof(nobody)) != 0) ::shutdown(used, SHUT_RDWR);
   }
-  if (held >= 0) ::close(held);
 }
 
 /// Descriptors left for files and other sockets.
@@ -66,9 +65,8 @@ int reserved_descriptors() {
 }
 
 bool has_few_descriptors() {
-  const int next = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
-  if (next >= 0) ::close(next);
-  return next < 0 || next >= descriptor_limit() - reserved_descriptors();
+  const UniqueFd next(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0));
+  return !next || next.get() >= descriptor_limit() - reserved_descriptors();
 }
 
 }  // namespace

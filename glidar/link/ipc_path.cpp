@@ -3,6 +3,7 @@
 #include <glidar/link/ipc_path.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/unique_fd.hpp>
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -21,11 +22,10 @@ void require_free_ipc_path(const std::string& path) {
   }
   sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
   path.copy(address.sun_path, sizeof(address.sun_path) - 1);
-  const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const bool answers =
-      ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-  ::close(descriptor);
-  if (!answers) return;  // left by a program that was killed
+  const UniqueFd socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+    return;  // left by a program that was killed
+  }
   throw Error({"ipc://" + path, "another program listens there", "an unused name",
                "end it, or choose another name"});
 }

@@ -11,13 +11,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <limits>
-#include <utility>
 
 namespace glidar::link {
 namespace {
 
-int open_spare() {
-  return ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+UniqueFd open_spare() {
+  return UniqueFd(::open("/dev/null", O_RDONLY | O_CLOEXEC));
 }
 
 }  // namespace
@@ -25,44 +24,35 @@ int open_spare() {
 Listener::Listener(int descriptor)
     : descriptor_(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0)), spare_(open_spare()) {
   // ZeroMQ accepts after poll() and would block if discard_waiting() was faster.
-  if (descriptor_ >= 0) {
-    ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
+  if (descriptor_) {
+    ::fcntl(descriptor_.get(), F_SETFL, ::fcntl(descriptor_.get(), F_GETFL) | O_NONBLOCK);
   }
-}
-
-Listener::Listener(Listener&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)),
-      spare_(std::exchange(other.spare_, -1)),
-      is_paused_(other.is_paused_) {}
-
-Listener::~Listener() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  if (spare_ >= 0) ::close(spare_);
 }
 
 /// A packet filter that drops all packets (socket(7), SO_ATTACH_FILTER).
 void Listener::pause() {
   sock_filter none = {.code = BPF_RET | BPF_K, .jt = 0, .jf = 0, .k = 0};
   const sock_fprog program = {.len = 1, .filter = &none};
-  ::setsockopt(descriptor_, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof(program));
+  ::setsockopt(descriptor_.get(), SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof(program));
   is_paused_ = true;
 }
 
 void Listener::resume() {
   const int unused = 0;
-  ::setsockopt(descriptor_, SOL_SOCKET, SO_DETACH_FILTER, &unused, sizeof(unused));
+  ::setsockopt(descriptor_.get(), SOL_SOCKET, SO_DETACH_FILTER, &unused, sizeof(unused));
   is_paused_ = false;
 }
 
 bool Listener::discard_waiting() {
   constexpr int kMaxAtOnce = 1024;
-  if (spare_ >= 0) ::close(std::exchange(spare_, -1));
-  int accepted = 0;
-  for (int i = 0; i < kMaxAtOnce && accepted >= 0; ++i) {
-    accepted = ::accept4(descriptor_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (accepted >= 0) ::close(accepted);
+  spare_.reset();
+  bool is_done = false;
+  for (int i = 0; i < kMaxAtOnce; ++i) {
+    const UniqueFd accepted(::accept4(descriptor_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (accepted) continue;
+    is_done = errno == EAGAIN;
+    break;
   }
-  const bool is_done = accepted < 0 && errno == EAGAIN;
   spare_ = open_spare();
   return is_done;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/files/unique_fd.hpp>
+
 #include <cstdint>
 
 namespace glidar::link {
@@ -12,9 +14,6 @@ class Listener {
  public:
   /// For this descriptor, which ZeroMQ owns.
   explicit Listener(int descriptor);
-  ~Listener();
-  Listener(Listener&& other) noexcept;
-  Listener& operator=(Listener&&) = delete;
 
   /// Makes the kernel discard attempts to connect, which clients repeat for a minute or more;
   /// existing connections are not affected. TCP only.
@@ -26,8 +25,8 @@ class Listener {
   bool discard_waiting();
 
  private:
-  int descriptor_;
-  int spare_;  ///< closed temporarily if there is no free descriptor
+  UniqueFd descriptor_;
+  UniqueFd spare_;  ///< closed temporarily if there is no free descriptor
   bool is_paused_ = false;
 };
 

@@ -84,7 +84,7 @@ SocketMonitor::SocketMonitor(void* context, void* socket, const std::string& nam
     fail(zmq_strerror(zmq_errno()));
   }
   if (!guard_) return;
-  ending_ = ::eventfd(0, EFD_CLOEXEC);
+  ending_ = UniqueFd(::eventfd(0, EFD_CLOEXEC));
   thread_ = std::thread([this] { run(); });
 }
 
@@ -93,9 +93,8 @@ SocketMonitor::~SocketMonitor() {
   zmq_socket_monitor(socket_, nullptr, 0);
   if (thread_.joinable()) {
     const std::uint64_t one = 1;
-    [[maybe_unused]] const ssize_t written = ::write(ending_, &one, sizeof(one));
+    [[maybe_unused]] const ssize_t written = ::write(ending_.get(), &one, sizeof(one));
     thread_.join();
-    ::close(ending_);
   }
   zmq_close(reports_);
 }
@@ -113,7 +112,7 @@ void SocketMonitor::run() {
   constexpr int kMaxAtOnce = 1000;  // ZeroMQ reports endlessly while it cannot accept
   std::array<zmq_pollitem_t, 2> items = {
       zmq_pollitem_t{.socket = reports_, .fd = 0, .events = ZMQ_POLLIN, .revents = 0},
-      zmq_pollitem_t{.socket = nullptr, .fd = ending_, .events = ZMQ_POLLIN, .revents = 0}};
+      zmq_pollitem_t{.socket = nullptr, .fd = ending_.get(), .events = ZMQ_POLLIN, .revents = 0}};
   auto looked = ConnectionGuard::Clock::now();
   while (items[1].revents == 0) {
     const long at_most_ms = guard_->needs_check() ? ConnectionGuard::kCheckInterval.count() : -1;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/files/unique_fd.hpp>
 #include <glidar/link/connection_guard.hpp>
 
 #include <memory>
@@ -33,7 +34,7 @@ class SocketMonitor {
   void* socket_;
   void* reports_;  ///< ZeroMQ's socket of events, used by the thread if there is one
   std::unique_ptr<ConnectionGuard> guard_;
-  int ending_ = -1;  ///< readable when the thread is to end
+  UniqueFd ending_;  ///< readable when the thread is to end
   std::thread thread_;
 };
 
