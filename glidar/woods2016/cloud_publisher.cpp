@@ -105,10 +105,10 @@ void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
   const auto found = topics_.find(frame.sensor_id);
   const std::string topic = found == topics_.end() ? std::string(1, kCloudTopic) : found->second;
   const std::size_t ahead = topic.size() - 1;  // the codec writes a topic of one byte
-  link::Payload payload(pool_, ahead + cloud_bytes(cloud.size()));
+  link::Payload payload = pool_.take(ahead + cloud_bytes(cloud.size()));
   const std::size_t size = encode_cloud(cloud, timestamp, payload.bytes().subspan(ahead));
   std::memcpy(payload.bytes().data(), topic.data(), topic.size());
-  payload.shrink(ahead + size);
+  payload.size = ahead + size;
   ++counts_.sent;
   counts_.bytes += ahead + size;
   counts_.points += (size - cloud_bytes(0)) / sizeof(CloudPoint);

@@ -96,7 +96,7 @@ class CloudPublisher final : public CloudSink {
   link::ErrorLog& errors_;
   link::Socket clouds_;
   link::Router handshakes_;
-  std::shared_ptr<link::PayloadPool> pool_ = std::make_shared<link::PayloadPool>();
+  link::PayloadPool pool_;
   std::map<std::uint32_t, std::uint64_t> counted_;          ///< clouds of each sensor
   std::map<std::uint32_t, std::string> topics_;             ///< by sensor
   std::map<std::uint32_t, std::uint64_t> last_timestamps_;  ///< by sensor
