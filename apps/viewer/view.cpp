@@ -18,7 +18,6 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -237,14 +236,6 @@ std::unique_ptr<AtomicFile> screenshot_file(const std::string& path) {
       {.where = "--screenshot", .found = "'" + path + "'", .allowed = "a name that ends in .png"});
 }
 
-void write_screenshot(const Picture& picture, AtomicFile& file) {
-  write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
-             static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
-             "the window of glidar view"},
-            file);
-  file.commit();
-}
-
 int run(ViewFlags& flags) {
   if (!flags.screenshot.empty() && !flags.frames) flags.frames = 1;
   const std::unique_ptr<AtomicFile> screenshot = screenshot_file(flags.screenshot);
@@ -268,7 +259,8 @@ int run(ViewFlags& flags) {
     Picture picture;
     for (int i = 0; i < kSettleFrames; ++i) window.draw(&picture);
     refuse_overwrite_of_inputs(viewer.snapshot()->prepared->files, flags.screenshot);
-    write_screenshot(picture, *screenshot);
+    write_png(picture, "the window of glidar view", *screenshot);
+    screenshot->commit();
   }
   if (!flags.render.quiet) fmt::print("drew {} frames of the window\n", window.drawn());
   return kDone;

@@ -255,13 +255,6 @@ Picture draw_view(const CloudFile& job) {
   return picture;
 }
 
-void write_picture(const Picture& picture, const std::string& description, AtomicFile& file) {
-  write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
-             static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
-             description},
-            file);
-}
-
 /// The columns that write_bird_eye and write_perspective need.
 std::vector<std::string> cloud_picture_columns() {
   return {"xyz", "range", "intensity", "ring", "class", "instance"};
@@ -271,13 +264,13 @@ std::vector<std::string> cloud_picture_columns() {
 /// options.picture; the highest point is visible. The cloud is rotated so that z is up.
 /// Throws Error when a camera's cloud is to be coloured by ring.
 void write_bird_eye(const CloudFile& job, AtomicFile& file) {
-  write_picture(draw_bird_eye(job), "the cloud from above", file);
+  write_png(draw_bird_eye(job), "the cloud from above", file);
 }
 
 /// The same in perspective, with a grid on the ground; the nearest point is visible. Also throws
 /// Error when the eye is at the target.
 void write_perspective(const CloudFile& job, AtomicFile& file) {
-  write_picture(draw_view(job), "the cloud in perspective", file);
+  write_png(draw_view(job), "the cloud in perspective", file);
 }
 
 Misfit cloud_picture_misfit(const CloudPictureOptions& picture, const Sensor& sensor,

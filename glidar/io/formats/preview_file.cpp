@@ -17,7 +17,7 @@ namespace {
 /// A panel: one value per beam, in colours.
 struct Panel {
   ColourBar bar;
-  const std::vector<double>& values;  ///<
+  const std::vector<double>& values;
   const BeamPicture& beams;
 };
 
@@ -214,10 +214,7 @@ void write_preview(const CloudFile& job, AtomicFile& file) {
                    own.cell_width, own.cell_height};
     draw_panel(picture, panels[i], own, cell);
   }
-  write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
-             static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
-             measured.distance_title + " and intensity"},
-            file);
+  write_png(picture, measured.distance_title + " and intensity", file);
 }
 
 }  // namespace

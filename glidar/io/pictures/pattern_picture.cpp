@@ -6,11 +6,11 @@
 #include <glidar/core/pose.hpp>
 #include <glidar/io/pictures/chart.hpp>
 #include <glidar/io/pictures/png_image.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace glidar {
 namespace {
@@ -22,7 +22,6 @@ constexpr std::size_t kLeft = 90;  // space for the labels
 constexpr std::size_t kTop = 50;
 constexpr std::size_t kRight = 40;
 constexpr std::size_t kBottom = 160;
-constexpr double kRadian_deg = 180.0 / std::numbers::pi;
 
 /// The direction of a beam in degrees to the left and up, and its value on the colour scale.
 struct PatternMark {
@@ -71,8 +70,8 @@ std::vector<PatternMark> marks_of(const Beams& beams) {
       const std::size_t i = row * beams.cols + col;
       const Eigen::Vector3d& d = beams.directions[i];
       if (std::isnan(d.x())) continue;
-      marks.push_back({kRadian_deg * azimuth_rad(axes, d), kRadian_deg * elevation_rad(axes, d),
-                       value_of(beams, i)});
+      marks.push_back({kDegreesPerRadian * azimuth_rad(axes, d),
+                       kDegreesPerRadian * elevation_rad(axes, d), value_of(beams, i)});
     }
   }
   if (marks.empty()) throw Error({"picture of the beams", "the sensor has no beams"});
@@ -151,10 +150,7 @@ void write_pattern_picture(const Beams& beams, const std::filesystem::path& path
                   {has_times ? "firing time" : "ring", has_times ? "ms" : "", scale, mark_colour},
                   kLetters);
   AtomicFile file(path);
-  write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
-             static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
-             "directions of the beams"},
-            file);
+  write_png(picture, "directions of the beams", file);
   file.commit();
 }
 

@@ -122,4 +122,11 @@ void write_png(const PngImage& image, AtomicFile& file) {
   }
 }
 
+void write_png(const Picture& picture, const std::string& description, AtomicFile& file) {
+  write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
+             static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
+             description},
+            file);
+}
+
 }  // namespace glidar

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/pictures/picture.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -24,5 +25,6 @@ struct PngImage {
 
 /// Writes a PNG. Throws Error when it cannot be written.
 void write_png(const PngImage& image, AtomicFile& file);
+void write_png(const Picture& picture, const std::string& description, AtomicFile& file);
 
 }  // namespace glidar
