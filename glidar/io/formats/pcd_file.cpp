@@ -7,6 +7,7 @@
 #include <glidar/io/formats/point_rows.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <lzf.h>
 
 #include <algorithm>
@@ -29,10 +30,7 @@ char pcd_type(Stored stored, PcdEncoding encoding) {
 
 std::string viewpoint(const CloudFile& job) {
   const Pose cloud_from_sensor = job.cloud.world_from_cloud.inverse() * job.frame.world_from_sensor;
-  const Eigen::Vector3d t = cloud_from_sensor.translation();
-  Eigen::Quaterniond q(cloud_from_sensor.linear());
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-  return fmt::format("{} {} {} {} {} {} {}", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
+  return fmt::format("{}", fmt::join(to_xyz_wxyz(cloud_from_sensor), " "));
 }
 
 std::string header(const CloudFile& job, std::span<const PointField> fields) {

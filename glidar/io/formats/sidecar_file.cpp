@@ -32,11 +32,11 @@ Json pose_json(const Pose& pose) {
     const Eigen::RowVector4d r = pose.matrix().row(row);
     matrix.push_back({r[0], r[1], r[2], r[3]});
   }
-  Eigen::Quaterniond q(pose.linear());
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  const PoseVector numbers = to_xyz_wxyz(pose);
   return {{"matrix", matrix},
           {"position_m", vector_json(pose.translation())},
-          {"orientation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
+          {"orientation",
+           {{"w", numbers[3]}, {"x", numbers[4]}, {"y", numbers[5]}, {"z", numbers[6]}}}};
 }
 
 /// Values of a sensor that a sidecar lists after one of its keys.
