@@ -40,7 +40,7 @@ std::string header(const CloudFile& job, std::span<const PointField> fields) {
   std::string types;
   std::string counts;
   for (const PointField& field : fields) {
-    fmt::format_to(std::back_inserter(sizes), " {}", size_of(field.stored));
+    fmt::format_to(std::back_inserter(sizes), " {}", type_of(field.stored).bytes);
     fmt::format_to(std::back_inserter(types), " {}", pcd_type(field.stored, encoding));
     counts += " 1";
   }
@@ -64,7 +64,7 @@ std::vector<std::byte> by_field(std::span<const PointField> fields, std::size_t 
   std::vector<std::byte> bytes(row_bytes(fields) * count);
   std::size_t offset = 0;
   for (const PointField& field : fields) {
-    const std::size_t size = size_of(field.stored) * count;
+    const std::size_t size = type_of(field.stored).bytes * count;
     pack_rows(std::span(&field, 1), 0, count, std::span(bytes).subspan(offset, size));
     offset += size;
   }

@@ -19,25 +19,6 @@ void append_renamed(const Column& column, const std::array<const char*, 3>& name
   for (std::size_t c = 0; c < names.size(); ++c) fields.push_back({names[c], &column, c, stored});
 }
 
-std::string_view ply_type(Stored stored) {
-  switch (stored) {
-    case Stored::f32:
-      return "float";
-    case Stored::f64:
-    case Stored::i64:  // stored as f64
-      return "double";
-    case Stored::u16:
-      return "ushort";
-    case Stored::u8:
-    case Stored::colour_byte:
-      return "uchar";
-    case Stored::u32:
-    case Stored::packed_rgb:
-      break;
-  }
-  return "uint";
-}
-
 std::string ply_header(const CloudFile& job, std::span<const PointField> fields) {
   std::string text = fmt::format("ply\nformat {} 1.0\ncomment glidar {}, metres in the frame {}\n",
                                  job.options.ply_ascii ? "ascii" : "binary_little_endian",
@@ -48,7 +29,7 @@ std::string ply_header(const CloudFile& job, std::span<const PointField> fields)
   }
   fmt::format_to(std::back_inserter(text), "element vertex {}\n", job.cloud.size());
   for (const PointField& field : fields) {
-    fmt::format_to(std::back_inserter(text), "property {} {}\n", ply_type(field.stored),
+    fmt::format_to(std::back_inserter(text), "property {} {}\n", type_of(field.stored).ply_name,
                    field.name);
   }
   return text + "end_header\n";

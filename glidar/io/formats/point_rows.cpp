@@ -165,7 +165,7 @@ void append_row(fmt::memory_buffer& text, std::span<const PointField> fields, co
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (f > 0) text.push_back(separator);
     append_stored(text, fields[f].stored, row);
-    row += size_of(fields[f].stored);
+    row += type_of(fields[f].stored).bytes;
   }
   text.push_back('\n');
 }
@@ -176,22 +176,18 @@ void report_progress(const ProgressCallback& progress, std::size_t done, std::si
 
 }  // namespace
 
-std::size_t size_of(Stored stored) {
-  switch (stored) {
-    case Stored::f64:
-    case Stored::i64:
-      return 8;
-    case Stored::u16:
-      return 2;
-    case Stored::u8:
-    case Stored::colour_byte:
-      return 1;
-    case Stored::f32:
-    case Stored::u32:
-    case Stored::packed_rgb:
-      break;
-  }
-  return 4;
+const StoredType& type_of(Stored stored) {
+  static constexpr std::array<StoredType, 8> kTypes = {{
+      {4, "f32", "float"},  // in the order of Stored
+      {8, "f64", "double"},
+      {1, "u8", "uchar"},
+      {2, "u16", "ushort"},
+      {4, "u32", "uint"},
+      {8, "i64", "double"},  // PLY has no 64-bit integers
+      {1, "u8", "uchar"},
+      {4, "packed_rgb", "uint"},
+  }};
+  return kTypes[static_cast<std::size_t>(stored)];
 }
 
 Stored native_type(const Column& column) {
@@ -231,7 +227,7 @@ GLIDAR_SIMD bool float_is_enough(const Column& column) {
 
 std::size_t row_bytes(std::span<const PointField> fields) {
   std::size_t bytes = 0;
-  for (const PointField& field : fields) bytes += size_of(field.stored);
+  for (const PointField& field : fields) bytes += type_of(field.stored).bytes;
   return bytes;
 }
 

@@ -35,8 +35,14 @@ struct PointField {
   Stored stored = Stored::f32;
 };
 
-/// Size of a stored number in bytes.
-std::size_t size_of(Stored stored);
+/// How files describe a stored type.
+struct StoredType {
+  std::size_t bytes;
+  std::string_view name;  ///< in a sidecar
+  std::string_view ply_name;
+};
+
+const StoredType& type_of(Stored stored);
 
 /// The type of a column in memory.
 Stored native_type(const Column& column);

@@ -77,7 +77,7 @@ Json columns_json(std::span<const PointField> fields) {
   Json columns = Json::array();
   for (const StoredColumn& stored : stored_columns(fields)) {
     columns.push_back({{"name", stored.column->name},
-                       {"type", type_name(stored.stored)},
+                       {"type", type_of(stored.stored).name},
                        {"components", stored.fields}});
   }
   return columns;

@@ -34,27 +34,6 @@ std::vector<StoredColumn> stored_columns(std::span<const PointField> fields) {
   return columns;
 }
 
-std::string_view type_name(Stored stored) {
-  switch (stored) {
-    case Stored::f32:
-      return "f32";
-    case Stored::f64:
-      return "f64";
-    case Stored::u8:
-    case Stored::colour_byte:
-      return "u8";
-    case Stored::u16:
-      return "u16";
-    case Stored::u32:
-      return "u32";
-    case Stored::i64:
-      return "i64";
-    case Stored::packed_rgb:
-      break;
-  }
-  return "packed_rgb";
-}
-
 std::string rounding_warning(std::span<const PointField> fields, std::string_view remedy) {
   std::string moves;
   for (const StoredColumn& stored : stored_columns(fields)) {

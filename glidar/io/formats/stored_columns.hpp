@@ -21,9 +21,6 @@ struct StoredColumn {
 
 std::vector<StoredColumn> stored_columns(std::span<const PointField> fields);
 
-/// "f32", "f64", "u8", "u16", "u32", "i64", "packed_rgb".
-std::string_view type_name(Stored stored);
-
 /// The warning for doubles that are stored as float, when that moves a coordinate or depth by more
 /// than kFinePosition_m: the distance and the remedy. Empty otherwise.
 std::string rounding_warning(std::span<const PointField> fields, std::string_view remedy);
