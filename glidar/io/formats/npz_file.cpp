@@ -29,14 +29,9 @@ struct Array {
 using RowMajor4d = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 template <class T>
-constexpr const char* numpy_type() {
-  if constexpr (std::is_same_v<T, float>) return "<f4";
-  if constexpr (std::is_same_v<T, double>) return "<f8";
-  if constexpr (std::is_same_v<T, std::uint8_t>) return "|u1";
-  if constexpr (std::is_same_v<T, std::uint16_t>) return "<u2";
-  if constexpr (std::is_same_v<T, std::uint32_t>) return "<u4";
-  if constexpr (std::is_same_v<T, std::uint64_t>) return "<u8";
-  if constexpr (std::is_same_v<T, std::int64_t>) return "<i8";
+std::string numpy_type() {
+  const char kind = std::is_floating_point_v<T> ? 'f' : std::is_signed_v<T> ? 'i' : 'u';
+  return fmt::format("{}{}{}", sizeof(T) == 1 ? '|' : '<', kind, sizeof(T));
 }
 
 template <class T>

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -74,17 +76,8 @@ std::string up_sentence(const Model& model) {
 }  // namespace
 
 std::string to_string(Winding winding) {
-  switch (winding) {
-    case Winding::outward:
-      return "outward";
-    case Winding::inward:
-      return "inward";
-    case Winding::inconsistent:
-      return "inconsistent";
-    case Winding::undecided:
-      return "undecided";
-  }
-  return "";
+  constexpr std::array kWords = {"outward", "inward", "inconsistent", "undecided"};
+  return kWords[static_cast<std::size_t>(winding)];
 }
 
 std::string guess_unit(double longest_side_m) {
