@@ -45,12 +45,16 @@ Json json_of(const lockstep::Body& body) {
   return numbers;
 }
 
+/// Throws an exception that names the key of the value.
+[[noreturn]] void refuse_value(const Json& json, const std::string& found) {
+  throw Json::other_error::create(502, found, &json);
+}
+
 lockstep::Body body_of(const Json& json) {
   const auto numbers = json.get<std::vector<double>>();
   if (numbers.size() != kPoseNumbers && numbers.size() != kBodyNumbers) {
-    throw Json::other_error::create(
-        502, "a body of " + std::to_string(numbers.size()) + " numbers, instead of 12 or 18",
-        &json);
+    refuse_value(json,
+                 "a body of " + std::to_string(numbers.size()) + " numbers, instead of 12 or 18");
   }
   lockstep::Body body;
   for (std::size_t i = 0; i < kPoseNumbers; ++i) {
@@ -58,7 +62,7 @@ lockstep::Body body_of(const Json& json) {
         numbers[i];
   }
   if (!is_rigid(body.world_from_body)) {
-    throw Json::other_error::create(502, "a body whose matrix is not a rigid transform", &json);
+    refuse_value(json, "a body whose matrix is not a rigid transform");
   }
   if (numbers.size() == kBodyNumbers) {
     body.rate_rad_s = Eigen::Map<const Eigen::Vector3d>(numbers.data() + kPoseNumbers);
@@ -74,16 +78,13 @@ Count count_of(const Json& json, const char* key) {
   const bool fits =
       value.is_number_unsigned() && value.get<std::uint64_t>() <= std::numeric_limits<Count>::max();
   if (fits) return value.get<Count>();
-  throw Json::other_error::create(
-      502, std::string(key) + ": " + shown_json(value) + " is not a count", &json);
+  refuse_value(json, std::string(key) + ": " + shown_json(value) + " is not a count");
 }
 
 RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
   if (count_of<std::uint64_t>(json, "recording") != kFormat) {
-    throw Json::other_error::create(502,
-                                    "a recording of format " + shown_json(json.at("recording")) +
-                                        ", this program reads format 1",
-                                    &json);
+    refuse_value(json, "a recording of format " + shown_json(json.at("recording")) +
+                           ", this program reads format 1");
   }
   RecordingHead head;
   head.version = json.at("glidar").get<std::string>();
@@ -108,12 +109,12 @@ RecordedFrame frame_of(const Json& json) {
   frame.moment.number = count_of<std::uint32_t>(json, "number");
   frame.moment.seed = count_of<std::uint64_t>(json, "seed");
   if (!json.at("stamp_ns").is_number_integer()) {
-    throw Json::other_error::create(502, "stamp_ns: not a whole number", &json);
+    refuse_value(json, "stamp_ns: not a whole number");
   }
   frame.moment.t_ns = json.at("stamp_ns").get<std::int64_t>();
   frame.frame_hash = json.at("frame_hash").get<std::string>();
   if (frame.frame_hash.size() != kHashDigits) {
-    throw Json::other_error::create(502, "frame_hash: not 32 digits", &json);
+    refuse_value(json, "frame_hash: not 32 digits");
   }
   frame.is_placed = json.contains("rig");
   if (!frame.is_placed) return frame;
