@@ -43,6 +43,8 @@ class Digest {
       add_bytes(values.data(), values.size(), sizeof(Value));  // contiguous numbers without padding
     }
   }
+  template <class... Values>
+  requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
   [[nodiscard]] std::string text() const { return hex(hash_.value()); }
 
  private:
@@ -55,19 +57,10 @@ class Digest {
 };
 
 void add(const Mesh& mesh, Digest& digest) {
-  digest.add(mesh.origin_m);
-  digest.add(mesh.positions_m);
-  digest.add(mesh.normals);
-  for (const auto& uvs : mesh.uvs) digest.add(uvs);
-  digest.add(mesh.tangents);
-  digest.add(mesh.colours);
-  digest.add(mesh.triangles);
-  digest.add(mesh.material_slots);
-  digest.add(mesh.origins.size());
+  digest.add(mesh.origin_m, mesh.positions_m, mesh.normals, mesh.uvs[0], mesh.uvs[1], mesh.tangents,
+             mesh.colours, mesh.triangles, mesh.material_slots, mesh.origins.size());
   for (const MeshOrigin& run : mesh.origins) {
-    digest.add(run.first_vertex);
-    digest.add(run.first_triangle);
-    digest.add(run.origin_m);
+    digest.add(run.first_vertex, run.first_triangle, run.origin_m);
   }
 }
 
@@ -103,10 +96,7 @@ void add(const Brdf& backscatter, Digest& digest) {
 }
 
 void add(const Texture& texture, Digest& digest) {
-  digest.add(texture.width);
-  digest.add(texture.height);
-  digest.add(texture.channels);
-  digest.add(texture.texels);
+  digest.add(texture.width, texture.height, texture.channels, texture.texels);
 }
 
 /// Adds the contents that instances refer to, so that neither indices nor unused data
@@ -118,15 +108,11 @@ class Contents {
   void add(const Instance& instance, Digest& digest) {
     const MeshSource& source = scene_.sources[instance.mesh];
     const bool is_stretched = source.stretch != Eigen::Vector3d::Ones();
-    digest.add(instance.name);
-    digest.add(hash_of(meshes_, scene_.meshes, is_stretched ? source.unstretched : instance.mesh));
-    digest.add(source.stretch);
-    digest.add(Eigen::Matrix4d(instance.world_from_object.matrix()));
-    digest.add(instance.scale);
-    digest.add(instance.id);
-    digest.add(instance.class_id);
-    digest.add(scene_.class_names[instance.class_id]);
-    digest.add(instance.materials.size());
+    const std::string& mesh_hash =
+        hash_of(meshes_, scene_.meshes, is_stretched ? source.unstretched : instance.mesh);
+    digest.add(instance.name, mesh_hash, source.stretch,
+               Eigen::Matrix4d(instance.world_from_object.matrix()), instance.scale, instance.id,
+               instance.class_id, scene_.class_names[instance.class_id], instance.materials.size());
     for (const std::uint32_t index : instance.materials) add(scene_.materials[index], digest);
   }
 
@@ -149,24 +135,13 @@ class Contents {
     digest.add(use.used());
     if (!use.used()) return;
     digest.add(hash_of(textures_, scene_.textures, static_cast<std::size_t>(use.texture)));
-    digest.add(use.uv_set);
-    digest.add(use.wrap_u);
-    digest.add(use.wrap_v);
-    digest.add(use.filter);
-    digest.add(use.uv_scale_rotate);
-    digest.add(use.uv_offset);
+    digest.add(use.uv_set, use.wrap_u, use.wrap_v, use.filter, use.uv_scale_rotate, use.uv_offset);
   }
 
   void add(const Material& material, Digest& digest) {
-    digest.add(material.name);
-    for (const Eigen::Vector3f* colour :
-         {&material.ambient, &material.diffuse, &material.specular}) {
-      digest.add(*colour);
-    }
-    for (const float number : {material.shininess, material.opacity, material.alpha_cutoff,
-                               material.mirror, material.noise_scale, material.normal_scale}) {
-      digest.add(number);
-    }
+    digest.add(material.name, material.ambient, material.diffuse, material.specular,
+               material.shininess, material.opacity, material.alpha_cutoff, material.mirror,
+               material.noise_scale, material.normal_scale);
     python::add(material.backscatter, digest);
     digest.add(material.spectrum);
     for (const TextureUse* use :
