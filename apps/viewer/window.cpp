@@ -158,10 +158,6 @@ WindowSize Window::size() const {
   return now;
 }
 
-void Window::set_title(const std::string& title) {
-  glfwSetWindowTitle(window_.get(), title.c_str());
-}
-
 void Window::begin() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
@@ -197,16 +193,14 @@ Picture Window::picture() const {
   const WindowSize now = size();
   const auto width = static_cast<std::size_t>(now.width);
   const auto height = static_cast<std::size_t>(now.height);
-  Picture upside_down = make_picture(width, height, {});
+  Picture picture = make_picture(width, height, {});
   glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
   glReadBuffer(GL_BACK);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, now.width, now.height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.pixels.data());
-  Picture picture = upside_down;
-  for (std::size_t row = 0; row < height; ++row) {
-    const auto from = upside_down.pixels.begin() + static_cast<std::ptrdiff_t>(row * width);
-    std::copy_n(from, width,
-                picture.pixels.begin() + static_cast<std::ptrdiff_t>((height - 1 - row) * width));
+  glReadPixels(0, 0, now.width, now.height, GL_RGB, GL_UNSIGNED_BYTE, picture.pixels.data());
+  for (std::size_t row = 0; row < height / 2; ++row) {  // OpenGL has the first row at the bottom
+    Colour* const lower = &picture.pixels[row * width];
+    std::swap_ranges(lower, lower + width, &picture.pixels[(height - 1 - row) * width]);
   }
   return picture;
 }

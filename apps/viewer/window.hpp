@@ -70,7 +70,6 @@ class Window {
   [[nodiscard]] bool is_lost() const;
   [[nodiscard]] WindowSize size() const;
   [[nodiscard]] const MouseInput& mouse() const { return mouse_; }
-  void set_title(const std::string& title);
 
   /// Panels are added between these two; end() draws them.
   void begin();
