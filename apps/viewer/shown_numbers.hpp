@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 namespace glidar::app {
 
@@ -12,6 +11,6 @@ double rounded(double value, int decimals);
 
 /// Removes the minus sign of every zero number: "-0.00" becomes "0.00". All numbers in the window
 /// use this or rounded().
-std::string without_negative_zeros(std::string_view text);
+std::string without_negative_zeros(const std::string& text);
 
 }  // namespace glidar::app
