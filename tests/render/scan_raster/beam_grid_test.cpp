@@ -3,8 +3,6 @@
 // Beams are recognised as grids of a scanner or a camera, and others are not.
 #include <glidar/render/scan_raster/beam_grid.hpp>
 
-#include <glidar/io/config/sensor_file.hpp>
-#include <glidar/io/config/sensor_presets.hpp>
 #include <render/scan_raster/scanner.hpp>
 
 #include <set>
@@ -13,6 +11,7 @@ namespace glidar::scan_raster {
 namespace {
 
 using testing::Draws;
+using testing::preset_beams;
 using testing::Scanner;
 using testing::scanner_beams;
 
@@ -21,10 +20,6 @@ BeamGrid grid_of(const Beams& beams) {
   BeamGrid grid;
   grid.measure(beams, thread_pool);
   return grid;
-}
-
-Beams preset_beams(const char* name) {
-  return make_beams(load_sensor_file(find_sensor_file(name)));
 }
 
 TEST(BeamGrid, AcceptsSpinningAndLineScannerPresets) {
@@ -98,6 +93,21 @@ TEST(BeamGrid, HasEveryBeamInOneCell) {
   }
 }
 
+/// Expects a direction in the frame of its sector within the bounds of its cell; returns the row.
+/// `across` is its coordinate along the row.
+std::int32_t expect_in_bounds(const GridView& view, std::size_t cell, const Eigen::Vector3d& d,
+                              double across) {
+  const auto row = static_cast<std::int32_t>(cell / view.pitch);
+  const double column = across * view.columns_per_unit + view.middle_column;
+  const double deviation = column - static_cast<double>(cell % view.pitch);
+  EXPECT_GE(deviation, view.low_deviation[row]);
+  EXPECT_LE(deviation, view.high_deviation[row]);
+  EXPECT_LT(std::abs(d.y() / d.x()), view.max_slope);
+  EXPECT_GT(d.z() / d.x(), view.lowest_slope);
+  EXPECT_LT(d.z() / d.x(), view.highest_slope);
+  return row;
+}
+
 /// The bounds of rows and columns hold for the directions themselves.
 TEST(BeamGrid, BoundsTheBeamsOfAScanner) {
   const Beams beams = scanner_beams({.rows = 33, .cols = 500, .stagger_rad = 0.05, .uneven = 0.8});
@@ -108,14 +118,7 @@ TEST(BeamGrid, BoundsTheBeamsOfAScanner) {
       if (sector.start()[cell] < 0.0F) continue;
       const Eigen::Vector3d d =
           sector.frame().sector_from_sensor * beams.directions[sector.beam(cell)];
-      const auto row = static_cast<std::int32_t>(cell / view.pitch);
-      const double column = std::atan(d.y() / d.x()) * view.columns_per_unit + view.middle_column;
-      const double deviation = column - static_cast<double>(cell % view.pitch);
-      EXPECT_GE(deviation, view.low_deviation[row]);
-      EXPECT_LE(deviation, view.high_deviation[row]);
-      EXPECT_LT(std::abs(d.y() / d.x()), view.max_slope);
-      EXPECT_GT(d.z() / d.x(), view.lowest_slope);
-      EXPECT_LT(d.z() / d.x(), view.highest_slope);
+      const std::int32_t row = expect_in_bounds(view, cell, d, std::atan(d.y() / d.x()));
       const double tangent = d.z() / std::hypot(d.x(), d.y());
       const ElevationRows& rows = view.elevations;
       const auto bin =
@@ -137,14 +140,7 @@ TEST(BeamGrid, BoundsTheBeamsOfACamera) {
       if (sector.start()[cell] < 0.0F) continue;
       const Eigen::Vector3d d =
           sector.frame().slopes_from_sensor * beams.directions[sector.beam(cell)];
-      const auto row = static_cast<std::int32_t>(cell / view.pitch);
-      const double column = d.y() / d.x() * view.columns_per_unit + view.middle_column;
-      const double deviation = column - static_cast<double>(cell % view.pitch);
-      EXPECT_GE(deviation, view.low_deviation[row]);
-      EXPECT_LE(deviation, view.high_deviation[row]);
-      EXPECT_LT(std::abs(d.y() / d.x()), view.max_slope);
-      EXPECT_GT(d.z() / d.x(), view.lowest_slope);
-      EXPECT_LT(d.z() / d.x(), view.highest_slope);
+      const std::int32_t row = expect_in_bounds(view, cell, d, d.y() / d.x());
       EXPECT_LE(d.z() / d.x() * view.slopes.rows_per_slope + view.slopes.first_row, row);
       EXPECT_GE(d.z() / d.x() * view.slopes.rows_per_slope + view.slopes.last_row, row);
     }

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <render/scan_raster/scanner.hpp>
 
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+
 #include <cstring>
 
 namespace glidar::testing {
@@ -25,6 +28,21 @@ void expect_same_bytes(const std::vector<T>& found, const std::vector<T>& expect
 }
 
 }  // namespace
+
+Beams lens_beams(std::uint32_t width, std::uint32_t height, double focal_px,
+                 const Distortion& distortion) {
+  return make_beams(Pinhole{.intrinsics = {.width = width,
+                                           .height = height,
+                                           .fx = focal_px,
+                                           .fy = 1.1 * focal_px,
+                                           .cx = 0.45 * width,
+                                           .cy = 0.55 * height},
+                            .distortion = distortion});
+}
+
+Beams preset_beams(const char* name) {
+  return make_beams(load_sensor_file(find_sensor_file(name)));
+}
 
 std::size_t expect_same_hits(const Hits& found, const Hits& expected) {
   expect_same_bytes(found.instance, expected.instance, "instance");

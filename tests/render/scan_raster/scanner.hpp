@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/sensor/optics/pinhole.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <cstddef>
@@ -47,6 +48,12 @@ inline Beams scanner_beams(const Scanner& s, std::uint64_t seed = 1) {
   }
   return beams;
 }
+
+/// A camera with this lens, whose principal point is beside the image centre.
+Beams lens_beams(std::uint32_t width, std::uint32_t height, double focal_px,
+                 const Distortion& distortion);
+
+Beams preset_beams(const char* name);
 
 inline Hits cast_with(const char* kind, const Scene& scene, const CastRequest& request) {
   Hits hits;
