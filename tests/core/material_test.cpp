@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/material.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <gtest/gtest.h>
 
@@ -59,7 +60,7 @@ TEST(Sample, CopiesGreyToRgbAndKeepsAlpha) {
 
 TEST(Sample, SurvivesHugeAndUndefinedCoordinates) {
   const TextureUse use{.texture = 0};
-  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float nan = kNaNf;
   EXPECT_TRUE(sample(use, grey(), {1e30F, -1e30F}).allFinite());
   EXPECT_EQ(sample(use, grey(), {nan, 0.0F}), Eigen::Vector4f::Ones());
 }

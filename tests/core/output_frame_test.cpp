@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/core/output_frame.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,14 +55,9 @@ TEST(OutputFrame, EveryNameIsKnown) {
 }
 
 TEST(OutputFrame, UnknownNameIsAnErrorWithTheClosestMatch) {
-  try {
-    output_frame("optcal", camera(), Pose::Identity());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "coordinate frame: 'optcal'; allowed: sensor, optical, ros, gl, world, legacy; "
-                 "did you mean optical?");
-  }
+  EXPECT_EQ(error_text([&] { output_frame("optcal", camera(), Pose::Identity()); }),
+            "coordinate frame: 'optcal'; allowed: sensor, optical, ros, gl, world, legacy; "
+            "did you mean optical?");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/core/pose.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <gtest/gtest.h>
 
@@ -83,7 +84,7 @@ TEST(MakePose, AcceptsVeryLargeAndVerySmallQuaternions) {
 }
 
 TEST(MakePose, RejectsZeroAndNaN) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = kNaN;
   EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0)), Error);
   EXPECT_THROW(make_pose({1e30, 0.0, 0.0}, Eigen::Quaterniond::Identity()), Error);
   EXPECT_THROW(look_at({1e30, 0.0, 0.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()), Error);
@@ -98,7 +99,7 @@ TEST(IsRigid, RejectsMirrorsScalesAndNaN) {
   EXPECT_FALSE(is_rigid(pose));
   pose.linear()(0, 0) = 1.001;
   EXPECT_FALSE(is_rigid(pose));
-  pose.linear()(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  pose.linear()(0, 0) = kNaN;
   EXPECT_FALSE(is_rigid(pose));
 }
 

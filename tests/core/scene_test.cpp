@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/math/constants.hpp>
+#include <support/error_text.hpp>
 
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 
 namespace glidar {
 namespace {
@@ -32,12 +33,7 @@ Scene one_triangle() {
 std::string error_of(const std::function<void(Scene&)>& spoil) {
   Scene scene = one_triangle();
   spoil(scene);
-  try {
-    validate(scene);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return error_text([&] { validate(scene); });
 }
 
 TEST(MeshBounds, IncludeTheOrigin) {
@@ -57,7 +53,7 @@ TEST(SceneBounds, IncludePoseAndScale) {
 }
 
 TEST(SceneValidate, AcceptsAValidScene) {
-  EXPECT_EQ(error_of([](Scene&) {}), "");
+  EXPECT_EQ(error_of([](Scene&) {}), "no error");
 }
 
 /// The triangle with this corner instead of the one farthest from its origin.
@@ -70,13 +66,13 @@ std::string error_of_reach(float reach, double scale) {
 }
 
 TEST(SceneValidate, LimitsTheDistanceOfVerticesFromTheOrigin) {
-  EXPECT_EQ(error_of_reach(0.0F, 1.0), "");
+  EXPECT_EQ(error_of_reach(0.0F, 1.0), "no error");
   for (const double scale : {kMinScale, 1.0, 1e6}) {
     const auto most = static_cast<float>(0.9 * kMaxCoordinate_m / scale);
     const auto least = static_cast<float>(1.1 * kMinReach_m / scale);
-    for (const float reach : {most, least}) EXPECT_EQ(error_of_reach(reach, scale), "");
+    for (const float reach : {most, least}) EXPECT_EQ(error_of_reach(reach, scale), "no error");
     for (const float reach : {2.0F * most, 0.5F * least}) {
-      EXPECT_NE(error_of_reach(reach, scale), "") << reach << " at scale " << scale;
+      EXPECT_NE(error_of_reach(reach, scale), "no error") << reach << " at scale " << scale;
     }
   }
   EXPECT_EQ(error_of_reach(0x1p100F, 1.0),
@@ -113,9 +109,7 @@ TEST(SceneValidate, ReportsTheInvalidField) {
             "mesh 't', triangles: a corner is vertex 3; allowed: below 3");
   EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].normals.resize(2); }),
             "mesh 't', normals: 2 entries; allowed: 0 or 3");
-  EXPECT_EQ(error_of([](Scene& s) {
-              s.meshes[0].positions_m[0].x() = std::numeric_limits<float>::quiet_NaN();
-            }),
+  EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].positions_m[0].x() = kNaNf; }),
             "mesh 't', positions_m: a coordinate is not finite; allowed: finite metres");
 }
 

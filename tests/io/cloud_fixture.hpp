@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/io/formats/file_sink.hpp>
+#include <glidar/math/constants.hpp>
 #include <support/test_folder.hpp>
 
 #include <cmath>
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,23 +48,21 @@ void add_column(PointCloud& cloud, std::string name, std::vector<std::string> co
 }
 
 inline void add_columns(PointCloud& cloud) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
   add_column<double>(cloud, "xyz", {"x", "y", "z"}, [](std::size_t i, std::size_t c) {
     const double at = static_cast<double>(i);
     const double xyz[3] = {at * 0.125 + 1.0 / 3.0, -at / 7.0, 2.0 + at * 0.01};
-    return is_miss(i) ? kNan : xyz[c];
+    return is_miss(i) ? kNaN : xyz[c];
   });
   add_column<float>(cloud, "intensity", {"intensity"}, [](std::size_t i, std::size_t) {
     return is_miss(i) ? 0.0F : static_cast<float>(i) / 20.0F;
   });
   add_column<double>(cloud, "depth", {"depth"}, [](std::size_t i, std::size_t) {
-    return is_miss(i) ? kNan : 1.0 + static_cast<double>(i % 100) / 3.0;
+    return is_miss(i) ? kNaN : 1.0 + static_cast<double>(i % 100) / 3.0;
   });
   add_column<float>(cloud, "normal", {"normal_x", "normal_y", "normal_z"},
                     [](std::size_t i, std::size_t c) {
                       const float normal[3] = {0.6F, -0.8F, 0.0F};
-                      return is_miss(i) ? kNanF : normal[c];
+                      return is_miss(i) ? kNaNf : normal[c];
                     });
   add_column<float>(cloud, "colour", {"red", "green", "blue"}, [](std::size_t i, std::size_t c) {
     const float at = static_cast<float>(i) / 20.0F;
@@ -85,11 +83,10 @@ inline void add_columns(PointCloud& cloud) {
 /// Additional columns of ground truth images.
 inline void add_image_columns(PointCloud& cloud) {
   add_column<float>(cloud, "incidence", {"incidence"}, [](std::size_t i, std::size_t) {
-    return is_miss(i) ? std::numeric_limits<float>::quiet_NaN()
-                      : 0.01F * static_cast<float>(i % 150);
+    return is_miss(i) ? kNaNf : 0.01F * static_cast<float>(i % 150);
   });
   add_column<double>(cloud, "range", {"range"}, [](std::size_t i, std::size_t) {
-    return is_miss(i) ? std::numeric_limits<double>::quiet_NaN() : 1.0 + static_cast<double>(i);
+    return is_miss(i) ? kNaN : 1.0 + static_cast<double>(i);
   });
   add_column<std::uint32_t>(cloud, "class", {"class"}, [](std::size_t i, std::size_t) {
     return is_miss(i) ? kInvalidId : static_cast<std::uint32_t>(i % 3);
@@ -98,7 +95,6 @@ inline void add_image_columns(PointCloud& cloud) {
 
 /// Additional columns of scanners, which layouts need.
 inline void add_scan_columns(PointCloud& cloud) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto add_angle = [&](const char* name, double first_rad, double step_rad) {
     add_column<double>(cloud, name, {name}, [=](std::size_t i, std::size_t) {
       return first_rad + step_rad * static_cast<double>(i % 24);
@@ -107,7 +103,7 @@ inline void add_scan_columns(PointCloud& cloud) {
   add_angle("azimuth", -3.0, 0.25);
   add_angle("elevation", -0.25, 0.0125);
   add_column<double>(cloud, "range", {"range"}, [=](std::size_t i, std::size_t) {
-    return is_miss(i) ? kNan : 1.0 + static_cast<double>(i) * 0.001234;
+    return is_miss(i) ? kNaN : 1.0 + static_cast<double>(i) * 0.001234;
   });
   add_column<std::uint32_t>(cloud, "time", {"time"}, [](std::size_t i, std::size_t) {
     return static_cast<std::uint32_t>(i * 55296);

@@ -3,6 +3,7 @@
 #include <glidar/io/model/png_texture.hpp>
 #include <glidar/io/pictures/font.hpp>
 #include <glidar/io/pictures/point_colours.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
@@ -14,14 +15,11 @@
 
 #include <array>
 #include <fstream>
-#include <limits>
 
 namespace glidar {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A LiDAR's cloud of four beams: two on a car, one miss, one echo of noise.
 struct Made {
@@ -55,10 +53,10 @@ Made make(bool is_camera = false) {
   if (!is_camera) made.beams.boresight = Eigen::Vector3d::UnitX();
   made.beams.directions.assign(4, made.beams.boresight);
   made.cloud.frame_id = "lidar_frame";
-  made.frame.range_m = {4.0, 5.0, kNan, 90.0};
-  add<double>(made.cloud, "xyz", {4, 1, 0, 5, -1, 1, kNan, kNan, kNan, 0, 90, 2});
+  made.frame.range_m = {4.0, 5.0, kNaN, 90.0};
+  add<double>(made.cloud, "xyz", {4, 1, 0, 5, -1, 1, kNaN, kNaN, kNaN, 0, 90, 2});
   add<double>(made.cloud, "range", made.frame.range_m);
-  add<float>(made.cloud, "intensity", {1.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F, 3.0F});
+  add<float>(made.cloud, "intensity", {1.0F, kNaNf, 0.0F, 3.0F});
   add<std::uint16_t>(made.cloud, "ring", {0, 0, 1, 1});
   add<std::uint32_t>(made.cloud, "class", {1, 0, kInvalidId, kInvalidId});
   add<std::uint32_t>(made.cloud, "instance", {7, 7, kInvalidId, kInvalidId});
@@ -196,8 +194,8 @@ Made one_point(bool is_camera, const std::vector<double>& xyz) {
   Made made = make(is_camera);
   made.options.picture.colour_by = ColourBy::object_class;
   made.scene.class_names = {"unlabelled", "car"};
-  made.cloud.columns[0].values = std::vector<double>{xyz[0], xyz[1], xyz[2], kNan, kNan, kNan,
-                                                     kNan,   kNan,   kNan,   kNan, kNan, kNan};
+  made.cloud.columns[0].values = std::vector<double>{xyz[0], xyz[1], xyz[2], kNaN, kNaN, kNaN,
+                                                     kNaN,   kNaN,   kNaN,   kNaN, kNaN, kNaN};
   return made;
 }
 
@@ -207,7 +205,7 @@ TEST(CloudPicture, IsDrawnWithoutPoints) {
   for (const char* name : {"a.bev.png", "a.view.png"}) {
     EXPECT_GT(spots_of(made, name, point).count, 0U) << name;
   }
-  made.cloud.columns[0].values = std::vector<double>(12, kNan);
+  made.cloud.columns[0].values = std::vector<double>(12, kNaN);
   for (const char* name : {"a.bev.png", "a.view.png"}) {
     EXPECT_EQ(spots_of(made, name, point).count, 0U) << name;
   }

@@ -6,6 +6,7 @@
 // at that distance.
 
 #include <glidar/io/model/model.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -14,7 +15,6 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 namespace glidar {
 namespace {
@@ -69,7 +69,6 @@ std::vector<Ray> pinhole_rays(const nlohmann::json& p) {
 }
 
 std::vector<Ray> lidar_rays(const nlohmann::json& p, std::size_t count) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const std::size_t columns = count / p["elevation_deg"].size();
   const Eigen::Vector3d reported = vector(p["origin"]);
   // Files of z up were turned to y up for the reference.

@@ -6,6 +6,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/model.hpp>
+#include <support/error_text.hpp>
 #include <support/test_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -44,15 +45,10 @@ inline Model load(const std::filesystem::path& path,
   return load_model(path.string(), options, {});
 }
 
-/// The text of the Error that loading gives; "" when it loads.
+/// The text of the Error that loading gives; "no error" when it loads.
 inline std::string load_error(const std::string& source,
                               const ModelOptions& options = without_cache()) {
-  try {
-    load_model(source, options, {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return error_text([&] { load_model(source, options, {}); });
 }
 
 /// A picture that stb_image reads: binary PPM of one colour.

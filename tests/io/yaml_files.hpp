@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/error.hpp>
+#include <support/error_text.hpp>
 #include <support/test_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -13,20 +14,15 @@ namespace glidar {
 
 using testing::TestFolder;
 
-/// The error message of `action` without the folder's name; "" without an error.
+/// The error message of `action` without the folder's name; "no error" without one.
 template <class Action>
 std::string error_of(const TestFolder& folder, Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    std::string text = error.what();
-    const std::string prefix = folder.path().string() + "/";
-    for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) {
-      text.erase(at, prefix.size());
-    }
-    return text;
+  std::string text = error_text(action);
+  const std::string prefix = folder.path().string() + "/";
+  for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) {
+    text.erase(at, prefix.size());
   }
-  return "";
+  return text;
 }
 
 /// A file with one error, and the expected message.

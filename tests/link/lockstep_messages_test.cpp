@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/link/lockstep/messages.hpp>
+#include <glidar/math/constants.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,12 +58,7 @@ Hand good() {
 
 std::string error_of(const std::vector<std::byte>& bytes) {
   std::uint64_t id = 0;
-  try {
-    decode_request(bytes, id);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return error_text([&] { decode_request(bytes, id); });
 }
 
 /// The good request with other bytes at a place.
@@ -142,7 +139,7 @@ TEST(DecodeRequest, ReportsTheInvalidField) {
 }
 
 TEST(DecodeRequest, RejectsNumbersThatAreNotFinite) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = kNaN;
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinity, -infinity, 1e300}) {
     EXPECT_THAT(error_with(kSensor, bad), HasSubstr("moment 0, sensor, position"));
@@ -156,7 +153,7 @@ TEST(DecodeRequest, RejectsNumbersThatAreNotFinite) {
 TEST(DecodeRequest, RejectsQuaternionsThatAreNotOfLengthOne) {
   EXPECT_THAT(error_with(kSensor + 24, 0.0), HasSubstr("length 0"));
   EXPECT_THAT(error_with(kSensor + 24, 1.1), HasSubstr("length 1.1"));
-  EXPECT_EQ(error_with(kSensor + 24, 1.0005), "") << "written with few digits";
+  EXPECT_EQ(error_with(kSensor + 24, 1.0005), "no error") << "written with few digits";
 }
 
 TEST(EncodeHead, HasTheLayoutOfTheTables) {

@@ -3,6 +3,7 @@
 #include <glidar/link/recording.hpp>
 
 #include <glidar/core/error.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 
@@ -96,12 +97,8 @@ TEST(Recording, ReportsTheInvalidKey) {
   const Folder folder;
   std::ofstream(folder / "r.jsonl")
       << R"({"recording": 1, "glidar": "1", "command": {"arguments": ["stream"], "folder": 5}})";
-  try {
-    const RecordingReader reader(folder / "r.jsonl");
-    FAIL() << "it was read";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("/command/folder"));
-  }
+  EXPECT_THAT(error_text([&] { const RecordingReader reader(folder / "r.jsonl"); }),
+              ::testing::HasSubstr("/command/folder"));
 }
 
 TEST(Recording, RejectsNamesThatAreNotUtf8) {

@@ -4,6 +4,8 @@
 #include <glidar/motion/motion.hpp>
 #include <glidar/motion/pose_block.hpp>
 
+#include <support/error_text.hpp>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,12 +53,7 @@ TEST(TimedPoses, KeepNanosecondsOfTimesSinceTheEpoch) {
 }
 
 std::string error_of(std::vector<TimedPose> poses) {
-  try {
-    const TimedPoses made(std::move(poses));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return error_text([&] { const TimedPoses made(std::move(poses)); });
 }
 
 TEST(TimedPoses, ReportTheInvalidEntry) {

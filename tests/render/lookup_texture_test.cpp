@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/constants.hpp>
 #include <glidar/render/lookup_texture.hpp>
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ std::vector<float> coordinates() {
   std::vector<float> values = {0.0F,   1.0F,   -1.0F, 0.5F,   0.25F,      1e-30F,
                                1e6F,   -1e6F,  1e20F, -1e30F, 3.4e38F,    -0.0F,
                                0.875F, 1.125F, 2.0F,  -2.0F,  0.9999999F, 16777217.0F};
-  values.push_back(std::numeric_limits<float>::quiet_NaN());
+  values.push_back(kNaNf);
   values.push_back(std::numeric_limits<float>::infinity());
   values.push_back(-std::numeric_limits<float>::infinity());
   std::mt19937 random(7);

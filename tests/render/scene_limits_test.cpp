@@ -4,6 +4,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/scene.hpp>
 #include <render/renderer_suite.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 
@@ -48,15 +49,12 @@ class SceneLimits : public RendererSuite {
   static std::string error_of_cast(const Scene& scene, const Pose& world_from_instance) {
     const Beams beams = camera_beams(4, 3, 4.0);
     Hits hits;
-    try {
+    return error_text([&] {
       renderer(scene)->cast({.beams = beams,
                              .world_from_instance = std::vector<Pose>{world_from_instance},
                              .hit_columns = kAllHitColumns},
                             hits);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    });
   }
 };
 
@@ -99,7 +97,7 @@ TEST_P(SceneLimits, ACastWithAnInstanceOutOfReachNamesIt) {
     pose.translation().y() = far_m;
     EXPECT_THAT(error_of_cast(scene, pose), HasSubstr("instance 'box' is out of reach"));
   }
-  EXPECT_EQ(error_of_cast(scene, Pose::Identity()), "");
+  EXPECT_EQ(error_of_cast(scene, Pose::Identity()), "no error");
 }
 
 /// The raster alone: OpenGL clips in single precision.

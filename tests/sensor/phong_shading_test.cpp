@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/sensor/phong_shading.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace glidar {
 namespace {
@@ -63,8 +63,7 @@ TEST(PhongHeadlight, IsZeroWhereNothingIsReported) {
 TEST(PhongHeadlight, RejectsNegativeAndUndefinedNumbers) {
   EXPECT_NO_THROW(validate(PhongHeadlight{}));
   EXPECT_THROW(validate(PhongHeadlight{.attenuation_linear_per_m = -1.0}), Error);
-  EXPECT_THROW(validate(PhongHeadlight{.ambient = std::numeric_limits<double>::quiet_NaN()}),
-               Error);
+  EXPECT_THROW(validate(PhongHeadlight{.ambient = kNaN}), Error);
   EXPECT_THROW(validate(PhongHeadlight{.attenuation_constant = 0.0,
                                        .attenuation_linear_per_m = 0.0,
                                        .attenuation_quadratic_per_m2 = 0.0}),

@@ -3,6 +3,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 #include <glidar/sensor/view_placement.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -191,12 +192,8 @@ TEST(Framing, FisheyeOfMoreThanHalfASphereContainsEverything) {
 }
 
 void expect_error(const Beams& beams, const Scene& scene, const std::string& text) {
-  try {
-    fit_camera_to_scene(beams, scene, kFrom, kUp);
-    FAIL() << "no error, expected: " << text;
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr(text));
-  }
+  EXPECT_THAT(error_text([&] { fit_camera_to_scene(beams, scene, kFrom, kUp); }),
+              ::testing::HasSubstr(text));
 }
 
 TEST(Framing, ReportsWhyItCannotFrame) {

@@ -4,6 +4,7 @@
 #include <glidar/math/gaussian.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <simulate/panels.hpp>
+#include <support/error_text.hpp>
 
 #include <gtest/gtest.h>
 
@@ -201,12 +202,8 @@ TEST(Explain, TracesThePulseOfASelectedEntry) {
 
 TEST(Explain, RejectsAnInvalidEntry) {
   PointTrace trace;
-  try {
-    Stage().shoot(1200, &trace);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "index: 1200; allowed: 0 to 1199, the entries of this frame");
-  }
+  EXPECT_EQ(error_text([&] { Stage().shoot(1200, &trace); }),
+            "index: 1200; allowed: 0 to 1199, the entries of this frame");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -17,7 +18,7 @@ namespace glidar::testing {
 struct Judged {
   std::uint32_t instance = kInvalidId;
   std::uint32_t primitive = kInvalidId;
-  double range_m = std::numeric_limits<double>::quiet_NaN();
+  double range_m = kNaN;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< world, front side
   /// Distance in metres, over all triangles in front of the beam's hit, from the beam to the
   /// nearest border: if it is tiny, single precision may report another triangle, or none.

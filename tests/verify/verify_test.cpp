@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/constants.hpp>
 #include <glidar/verify/cases.hpp>
 #include <glidar/verify/known_failures.hpp>
 #include <glidar/verify/special_cases.hpp>
@@ -69,14 +70,13 @@ void lose_one_hit(Hits& hits) {
   const auto hit = std::find_if(hits.instance.begin(), hits.instance.end(),
                                 [](std::uint32_t i) { return i != kInvalidId; });
   if (hit == hits.instance.end()) return;
-  hits.range_m[static_cast<std::size_t>(hit - hits.instance.begin())] =
-      std::numeric_limits<double>::quiet_NaN();
+  hits.range_m[static_cast<std::size_t>(hit - hits.instance.begin())] = kNaN;
   *hit = kInvalidId;
 }
 
 void lose_every_hit(Hits& hits) {
   std::fill(hits.instance.begin(), hits.instance.end(), kInvalidId);
-  std::fill(hits.range_m.begin(), hits.range_m.end(), std::numeric_limits<double>::quiet_NaN());
+  std::fill(hits.range_m.begin(), hits.range_m.end(), kNaN);
 }
 
 class SpecialCases : public ::testing::Test {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/orbit.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace glidar::app {
@@ -79,7 +79,7 @@ TEST(Zoom, MovesTenPercentCloserPerStepWithinLimits) {
 
 TEST(PointAt, FindsThePointUnderThePointerClosestToTheEye) {
   const Orbit orbit = {.pitch_rad = 0.0, .distance_m = 10.0};  // the eye at x = 10
-  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float nan = kNaNf;
   const std::vector<Eigen::Vector3f> points = {{-2.0F, 0.0F, 0.0F},
                                                {2.0F, 0.0F, 0.0F},
                                                {nan, nan, nan},

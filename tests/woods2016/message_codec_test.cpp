@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/constants.hpp>
 #include <glidar/woods2016/message_codec.hpp>
 
 #include "link/message_bytes.hpp"
@@ -8,15 +9,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 
 namespace glidar::woods2016 {
 namespace {
 
 using ::testing::HasSubstr;
 using testing::MessageBytes;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 MessageBytes placement_bytes(std::array<double, 11> numbers) {
   MessageBytes message;
@@ -75,7 +73,7 @@ TEST(PlacementMessage, NumbersThatAreNotFiniteAreErrorsWithTheirName) {
       "object w",      "object x", "object y", "object z", "translation x", "translation y",
       "translation z", "sensor w", "sensor x", "sensor y", "sensor z"};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    for (const double bad : {kNan, HUGE_VAL, -HUGE_VAL}) {
+    for (const double bad : {kNaN, HUGE_VAL, -HUGE_VAL}) {
       auto numbers = kNumbers;
       numbers.at(i) = bad;
       EXPECT_THAT(error_text([&] { decode_placement(placement_bytes(numbers).bytes); }),
@@ -126,7 +124,7 @@ std::vector<std::byte> encoded(const PointCloud& cloud, std::uint64_t timestamp)
 
 TEST(CloudMessage, HasTheDocumentedBytesWithoutMisses) {
   const PointCloud cloud =
-      cloud_of({1.0, 2.0, -0.5, kNan, kNan, kNan, 0.25, 0.0, 8.0}, {0.5F, 0.0F, 1.0F});
+      cloud_of({1.0, 2.0, -0.5, kNaN, kNaN, kNaN, 0.25, 0.0, 8.0}, {0.5F, 0.0F, 1.0F});
   const MessageBytes expected = MessageBytes()
                                     .text("c")
                                     .raw({5, 1, 0, 0, 0, 0, 0, 0})
@@ -138,7 +136,7 @@ TEST(CloudMessage, HasTheDocumentedBytesWithoutMisses) {
 }
 
 TEST(CloudMessage, WithoutHitsIsTheHeaderOnly) {
-  const PointCloud cloud = cloud_of({kNan, kNan, kNan}, {0.0F});
+  const PointCloud cloud = cloud_of({kNaN, kNaN, kNaN}, {0.0F});
   EXPECT_EQ(encoded(cloud, 0).size(), 9U);
   EXPECT_TRUE(decode_cloud(encoded(cloud, 0)).points.empty());
 }
@@ -157,11 +155,7 @@ TEST(CloudMessage, IncompletePointsAreErrors) {
   EXPECT_THAT(error_text([&] { decode_cloud(bytes); }), HasSubstr("24 bytes"));
   EXPECT_THAT(error_text([&] { decode_cloud(std::span(bytes).first(8)); }), HasSubstr("8 bytes"));
   EXPECT_THAT(error_text([] { decode_cloud({}); }), HasSubstr("it is empty"));
-  const auto nan = MessageBytes()
-                       .text("c")
-                       .number(std::uint64_t{1})
-                       .number(1.0F)
-                       .number(std::numeric_limits<float>::quiet_NaN());
+  const auto nan = MessageBytes().text("c").number(std::uint64_t{1}).number(1.0F).number(kNaNf);
   MessageBytes with_nan = nan;
   with_nan.number(0.0F).number(0.0F);
   EXPECT_THAT(error_text([&] { decode_cloud(with_nan.bytes); }), HasSubstr("point 0"));

@@ -6,6 +6,7 @@
 #include <glidar/core/output_frame.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 #include <glidar/sensor/optics/spinning.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -132,12 +133,8 @@ TEST(PoseOptions, ScaleIsThatOfTheInstance) {
 }
 
 void expect_sensor_error(const PoseFlags& flags, const std::string& text) {
-  try {
-    pose_sensor(flags, {}, camera(), one_triangle());
-    FAIL() << "no error, expected: " << text;
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr(text));
-  }
+  EXPECT_THAT(error_text([&] { pose_sensor(flags, {}, camera(), one_triangle()); }),
+              ::testing::HasSubstr(text));
 }
 
 TEST(PoseOptions, ErrorsNameTheOptions) {

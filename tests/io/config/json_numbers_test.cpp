@@ -6,6 +6,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/formats/sidecar.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <gtest/gtest.h>
@@ -13,13 +14,11 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 namespace glidar {
 namespace {
 
 TEST(InUnit, ADecimalNumberOfUpTo15DigitsComesBack) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   for (const double unit : {1e-9, 1e-3, 1e3, kDegree, 1.0}) {
     for (const double number : {903.0, 0.1, -15.0, 1.133, 55.296, 123456.789012345, 1e-7, 0.0}) {
       EXPECT_EQ(in_unit(number * unit, unit), number) << number << " in " << unit;

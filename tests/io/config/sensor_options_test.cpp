@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/sensor_options.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <support/preset.hpp>
 #include "io/yaml_files.hpp"
@@ -80,7 +81,7 @@ TEST(SensorOptions, RefuseWhatTheSensorDoesNotHave) {
 
 TEST(SensorOptions, RefuseNumbersOutOfRange) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = kNaN;
   EXPECT_EQ(error_with("VLP-16", &SensorOptions::rate_hz, 0.0),
             "rate_hz: 0; allowed: hertz above 0");
   EXPECT_EQ(error_with("VLP-16", &SensorOptions::rate_hz, kInfinite),

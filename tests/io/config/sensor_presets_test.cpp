@@ -4,6 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/sensor_file.hpp>
+#include <glidar/math/constants.hpp>
+#include <support/error_text.hpp>
 #include <support/preset.hpp>
 
 #include <gtest/gtest.h>
@@ -16,8 +18,6 @@
 
 namespace glidar {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Values of a sensor's data sheet; fields of view in degrees, edge to edge.
 struct PublishedValues {
@@ -212,13 +212,8 @@ TEST(Presets, AreFoundInCapitalsOrNot) {
 }
 
 TEST(Presets, UnknownNamesAreToldTheNearest) {
-  try {
-    preset("VLP-61");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("did you mean VLP-"), std::string::npos)
-        << error.what();
-  }
+  const std::string error = error_text([&] { preset("VLP-61"); });
+  EXPECT_NE(error.find("did you mean VLP-"), std::string::npos) << error;
 }
 
 TEST(Presets, NumbersFromMemoryAreMarked) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/surface_presets.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/sensor/lidar/lidar_equation.hpp>
 
 #include "io/material_keys.hpp"
@@ -10,8 +11,6 @@
 
 namespace glidar {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Written down from the spectral libraries apart from the file, in percent.
 struct Row {

@@ -3,6 +3,7 @@
 #include <glidar/io/model/import_process.hpp>
 
 #include <io/model_test_support.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 
@@ -36,12 +37,7 @@ class ImportProcess : public ::testing::Test {
   }
 
   std::string error(const ImportRequest& request) {
-    try {
-      take_model(run_import(request, {}), request);
-    } catch (const Error& caught) {
-      return caught.what();
-    }
-    return "";
+    return error_text([&] { take_model(run_import(request, {}), request); });
   }
 
   TestFolder temp_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -102,7 +103,7 @@ TEST(MeshBlob, AFlippedBitIsAnError) {
 
 // A process led astray writes a sound block around an unsound model.
 TEST(MeshBlob, InvalidModelsAreRejectedDespiteAValidChecksum) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float nan = kNaNf;
   const std::vector<void (*)(Model&)> harms = {
       [](Model& m) { m.mesh.triangles[0][2] = 4; },
       [](Model& m) { m.mesh.triangles.clear(); },

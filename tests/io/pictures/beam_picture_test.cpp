@@ -3,6 +3,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <glidar/sensor/sensor.hpp>
 
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <set>
 
@@ -18,7 +18,6 @@ namespace glidar {
 namespace {
 
 constexpr double kRadian = std::numbers::pi / 180.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Two rows of a whole turn, clockwise from ahead, the lower one ahead of the other by an angle.
 Beams staggered(double offset_deg, std::uint32_t cols = 360, double step_deg = -1.0) {
@@ -43,7 +42,7 @@ double azimuth_deg(const Beams& beams, std::uint32_t beam) {
 double widest_column_deg(const BeamPicture& picture, const Beams& beams) {
   double widest = 0.0;
   for (std::uint32_t col = 0; col < picture.cols; ++col) {
-    double first = kNan;
+    double first = kNaN;
     for (std::uint32_t row = 0; row < picture.rows; ++row) {
       const std::uint32_t beam = picture.beam_at(row * picture.cols + col);
       if (beam == BeamPicture::kNoBeam) continue;
@@ -57,7 +56,7 @@ double widest_column_deg(const BeamPicture& picture, const Beams& beams) {
 }
 
 std::vector<double> no_returns(const Beams& beams) {
-  return std::vector<double>(beams.size(), kNan);
+  return std::vector<double>(beams.size(), kNaN);
 }
 
 TEST(BeamPicture, ShowsAVerticalEdgeVertical) {
@@ -213,7 +212,7 @@ TEST(BeamPicture, ShowsScatteredBeamsAtTheirDirections) {
 
 TEST(BeamPicture, PrefersReturnsToMisses) {
   const Beams beams = scattered();
-  const std::vector<double> range_m = {5.0, 7.0, kNan};
+  const std::vector<double> range_m = {5.0, 7.0, kNaN};
   const BeamPicture picture = make_beam_picture(beams, range_m);
   EXPECT_EQ(picture.beam_at(pixel_at(picture, -20.0, -10.0)), 1U);
 }
@@ -225,7 +224,7 @@ TEST(BeamPicture, ShowsASingleLineScannerFromAbove) {
   beams.boresight = Eigen::Vector3d::UnitX();
   beams.directions = {direction_at(0.0, 0.0), direction_at(90.0 * kRadian, 0.0),
                       direction_at(45.0 * kRadian, 0.0)};
-  const std::vector<double> range_m = {4.0, 2.0, kNan};
+  const std::vector<double> range_m = {4.0, 2.0, kNaN};
   const BeamPicture picture = make_beam_picture(beams, range_m);
   ASSERT_EQ(picture.kind, BeamPicture::Kind::top);
   EXPECT_LT(picture.left, 0.0) << "the sensor is in it";

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/pictures/colour_scale.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,7 +89,7 @@ TEST(ColourScale, ClipsOneOutlierOfAConstant) {
 
 TEST(ColourScale, IsEmptyWithoutValues) {
   EXPECT_FALSE(make_colour_scale({}).has_values);
-  const std::vector<double> none(5, std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> none(5, kNaN);
   EXPECT_FALSE(make_colour_scale(none).has_values);
   EXPECT_THAT(scale_ends(make_colour_scale(none), "m"), ElementsAre("", ""));
 }

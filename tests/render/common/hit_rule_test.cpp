@@ -4,6 +4,7 @@
 // hit_rule_test.py compares it with rational arithmetic.
 #include <glidar/render/common/hit_rule.hpp>
 
+#include <glidar/math/constants.hpp>
 #include <glidar/render/common/exact_product.hpp>
 #include <glidar/render/common/hit_arithmetic.hpp>
 #include <render/common/rays.hpp>
@@ -249,7 +250,7 @@ TEST(HitLimits, RaysOutsideThemHitNothingAndAreNamed) {
   EXPECT_GT(distance_of({0, 0, -kMaxHitOrigin}, ahead, large), 0.0);
   EXPECT_GT(distance_of(zero, kMinHitDirection * ahead, large), 0.0);
   EXPECT_GT(distance_of(zero, kMaxHitDirection * ahead, large), 0.0);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = kNaN;
   const std::vector<TestRay> outside = {{{0, 0, -1.01 * kMaxHitOrigin}, ahead},
                                         {{nan, 0, 0}, ahead},
                                         {{0, 0, -kInfinity}, ahead},

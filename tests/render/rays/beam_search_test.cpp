@@ -4,6 +4,7 @@
 // triangles of all instances.
 #include <glidar/render/rays/scene_search.hpp>
 
+#include <glidar/math/constants.hpp>
 #include <glidar/render/rays/exact_test.hpp>
 #include <render/renderer_suite.hpp>
 
@@ -376,7 +377,7 @@ TEST(BeamSearch, FindsNothingInAnEmptySceneOrForNanBeams) {
   Stage none(empty, some_beams(20, false, true, 11), Pose::Identity());
   EXPECT_EQ(none.hits(none.search()), 0U);
   Beams beams = some_beams(32, true, true, 12);
-  beams.directions[5].setConstant(std::numeric_limits<double>::quiet_NaN());
+  beams.directions[5].setConstant(kNaN);
   beams.origins_m[9].x() = std::numeric_limits<double>::infinity();
   beams.origins_m[20].y() = 1e200;
   Scene around = builtin_scene("box");

@@ -3,6 +3,7 @@
 #include <glidar/sensor/lidar/lidar_equation.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <gtest/gtest.h>
 
@@ -44,7 +45,6 @@ TEST(Backscatter, MatchesThePublishedFormulasAtAnyAngle) {
 }
 
 TEST(Backscatter, OfNarrowLobesIsTheDiffusePartAtGrazingIncidence) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   for (int tenth = 0; tenth <= 900; ++tenth) {
     const double c = std::max(0.0, std::cos(0.1 * kDegree * tenth));
     for (const double width_deg : {0.1, 1.0, 2.0}) {

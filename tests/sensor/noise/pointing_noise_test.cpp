@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/constants.hpp>
 #include "sensor/noise_stage.hpp"
 
 #include <numbers>
@@ -10,8 +11,6 @@ namespace {
 using testing::expect_normal;
 using testing::moments;
 using testing::NoiseStage;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Eigen::Vector3d direction(double azimuth, double elevation) {
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),

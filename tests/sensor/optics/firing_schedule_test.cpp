@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
+#include <glidar/math/constants.hpp>
 #include <tests/support/error_text.hpp>
 
 #include <gmock/gmock.h>
@@ -25,11 +26,10 @@ std::string error_of(const FiringSchedule& ticks) {
 /// tick would not end.
 TEST(FiringSchedule, PeriodsBeyondAHundredDaysAreErrors) {
   for (const double period_ns :
-       {8.65e15, 9.3e18, 1e21, 1e300, std::numeric_limits<double>::infinity(),
-        std::numeric_limits<double>::quiet_NaN(), 0.5, -1.0}) {
+       {8.65e15, 9.3e18, 1e21, 1e300, std::numeric_limits<double>::infinity(), kNaN, 0.5, -1.0}) {
     EXPECT_THAT(error_of({0.0, period_ns}), HasSubstr("optics, period")) << period_ns;
   }
-  for (const double first_ns : {1e21, -1e21, std::numeric_limits<double>::quiet_NaN()})
+  for (const double first_ns : {1e21, -1e21, kNaN})
     EXPECT_THAT(error_of({first_ns, 100.0}), HasSubstr("optics, first time")) << first_ns;
 }
 

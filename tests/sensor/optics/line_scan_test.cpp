@@ -3,12 +3,11 @@
 #include "sensor/windows.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/sensor/optics/line_scan.hpp>
 
 namespace glidar {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// 3 lines of 5 points at 15 scans per second, which does not divide a second into nanoseconds.
 LineScan small_raster() {

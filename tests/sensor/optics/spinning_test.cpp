@@ -3,12 +3,12 @@
 #include "sensor/windows.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/sensor/optics/spinning.hpp>
 
 namespace glidar {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 /// Times and elevations of the VLP-16's manual, in the order in which its lasers fire.
