@@ -5,8 +5,6 @@
 #include <glidar/core/field_visitor.hpp>
 
 #include <array>
-#include <string>
-#include <vector>
 
 namespace glidar {
 
@@ -14,12 +12,5 @@ namespace glidar {
 /// them.
 inline constexpr std::array<Named<double>, 4> kLengthUnits = {
     {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}}};
-
-/// The names, in the same order.
-inline std::vector<std::string> length_unit_names() {
-  std::vector<std::string> names;
-  for (const Named<double>& unit : kLengthUnits) names.emplace_back(unit.name);
-  return names;
-}
 
 }  // namespace glidar

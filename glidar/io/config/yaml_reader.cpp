@@ -242,12 +242,6 @@ double number(const YamlField& field, const NumberRule& rule) {
   reject(field, content_text(field), rule.allowed, quoted ? "remove the quotes" : "");
 }
 
-double number_or(const YamlField& map, std::string_view key, const NumberRule& rule,
-                 double otherwise) {
-  const auto field = find(map, key);
-  return field ? number(*field, rule) : otherwise;
-}
-
 std::uint32_t whole_number(const YamlField& field, std::uint32_t min, std::uint32_t max) {
   const std::string allowed =
       "a whole number from " + std::to_string(min) + " to " + std::to_string(max);

@@ -73,8 +73,6 @@ std::optional<YamlField> find(const YamlField& map, std::string_view key);
 YamlField need(const YamlField& map, std::string_view key);
 
 double number(const YamlField& field, const NumberRule& rule);
-double number_or(const YamlField& map, std::string_view key, const NumberRule& rule,
-                 double otherwise);
 /// A whole number from min to max.
 std::uint32_t whole_number(const YamlField& field, std::uint32_t min, std::uint32_t max);
 bool boolean(const YamlField& field);

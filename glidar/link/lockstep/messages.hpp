@@ -24,7 +24,6 @@ inline constexpr std::size_t kNameBytes = 24;  ///< of a column's name, padded w
 inline constexpr std::uint32_t kMaxColumns = 64;
 inline constexpr std::uint32_t kMaxMoments = 65536;
 inline constexpr std::uint32_t kMaxObjects = 1'000'000;
-inline constexpr std::size_t kMaxRequest_bytes = std::size_t{256} << 20;
 
 /// The pose of a body and its motion during the frame: its origin has a constant velocity, and it
 /// rotates at a constant rate about an axis fixed in the world.
