@@ -167,7 +167,7 @@ int main(int argc, char** argv) {
     ratios.push_back({at + "boxes on a ground / over it", at + "1000 boxes over a ground",
                       at + "1000 boxes on a ground", 0.7});
     ratios.push_back({at + "simulate / cast", at + "cast", at + "simulate", 0.6});
-    ratios.push_back({at + "moving along timed poses / cast", at + "cast", at + "moving", 0.5});
+    ratios.push_back({at + "moving along timed poses / cast", at + "cast", at + "moving", 0.6});
     ratios.push_back(
         {at + "moving along timed poses / simulate", at + "simulate", at + "moving", 0.6});
     ratios.push_back({at + "footprint of seven sub-rays / seven casts", at + "seven casts",
