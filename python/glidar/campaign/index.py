@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The index: one row per trial, as Parquet."""
 
+import contextlib
 from collections import Counter
 
 import numpy as np
@@ -15,6 +16,7 @@ FACTS = ["beams", "hits", "range_min_m", "range_max_m", "intensity_mean"]
 POSE = ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"]
 HIT = 0  # value in the column status
 NO_BEAM = 4
+WRITE_BYTES = 1 << 20  # size of the buffer for writing
 
 
 def facts_of(frame):
@@ -70,28 +72,35 @@ def rows(plan, shard, trials, errors, facts):
     return pa.table(columns)
 
 
+def _buffered(path):
+    """The file for writing. Arrow writes a column in many small pieces, each a system call without the buffer."""
+    import pyarrow as pa
+
+    return pa.output_stream(path, compression=None, buffer_size=WRITE_BYTES)
+
+
 def write_part(path, table):
     import pyarrow.parquet as pq
 
-    pq.write_table(table, path, compression="zstd")
+    with _buffered(path) as sink:
+        pq.write_table(table, sink, compression="zstd")
 
 
 def join(parts, path):
     """Concatenates all parts in order, with only one part in memory."""
     import pyarrow.parquet as pq
 
-    writer = None
-    try:
+    with contextlib.ExitStack() as stack:
+        writer = None
         for part in parts:
             table = read(part)
             if writer and table.schema != writer.schema:
                 raise Error(str(part), "its columns differ from those of the other parts", "parts of one campaign",
                             "remove its receipt and run the part again")
-            writer = writer or pq.ParquetWriter(path, table.schema, compression="zstd")
+            if writer is None:
+                sink = stack.enter_context(_buffered(path))
+                writer = stack.enter_context(pq.ParquetWriter(sink, table.schema, compression="zstd"))
             writer.write_table(table)
-    finally:
-        if writer:
-            writer.close()
 
 
 def count_errors(parts):
