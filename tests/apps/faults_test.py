@@ -18,8 +18,9 @@ from faults import CALLS, ERRORS, NO_LIBRARY, Faults, library, random_below
 from waiting import MAX_WAIT_S
 
 SIZE = ("--width", "16", "--height", "12", "--fov", "40", "--threads", "1", "--quiet")
-RENDER = ("render", "builtin:asteroid", *SIZE, "-o", "out/a.pcd", "-o", "out/b.npz", "-o", "out/c.depth.tiff")
-STREAM = ("stream", "builtin:asteroid", *SIZE, "--object-rate", "0,0.5,0", "--rate", "max", "--frames", "40")
+RENDER = ("render", "builtin:box", *SIZE, "-o", "out/a.pcd", "-o", "out/b.npz", "-o", "out/c.depth.tiff")
+MOVING = ("stream", "builtin:box", *SIZE, "--object-rate", "0,0.5,0", "--rate", "max")
+STREAM = (*MOVING, "--frames", "40")
 RECORD = (*STREAM, "--record", "out/r.jsonl")
 DURABLE = (*RECORD, "--durable")
 SEED = 17
@@ -147,7 +148,7 @@ class Recording(FaultTest):
         self.assertEqual(self.contents(), whole)
 
     def test_a_recording_beside_a_cloud_that_cannot_be_written_is_complete(self):
-        command = (*DURABLE, "-o", "out/scan.pcd")
+        command = (*MOVING, "--frames", "8", "--record", "out/r.jsonl", "--durable", "-o", "out/scan.pcd")
         self.succeed(*command)
         whole = self.contents()
         frames = self.recorded()
