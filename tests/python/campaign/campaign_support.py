@@ -10,7 +10,7 @@ import sys
 from waiting import MAX_WAIT_S
 
 SCENE = """models:
-  - {name: rock, model: builtin:asteroid, scale: 1}
+  - {name: rock, model: builtin:box, scale: 1}
   - {name: moon, model: builtin:sphere, scale: 0.3, pose: {position: [1.2, 0, 0]}}
 """
 CAMERA = """optics: {type: pinhole, width: 32, height: 24, fov_deg: 40}
