@@ -27,8 +27,8 @@ PATH=$venv:$PATH auditwheel repair "${drivers[@]/#/--exclude=}" -w "$folder/repa
 /usr/bin/python3 -m zipfile -e "$folder"/repaired/glidar-*.whl "$folder/unpacked"
 "$root/scripts/check_binaries.py" "$folder/unpacked"
 
-python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --disable-pip-version-check -q "$folder"/repaired/glidar-*.whl \
+python3 -m venv --without-pip "$folder/venv"
+"$venv/pip" --python "$folder/venv/bin/python" install --disable-pip-version-check --no-compile -q "$folder"/repaired/glidar-*.whl \
   "$(grep -o '^numpy==[0-9.]*' "$root/scripts/requirements.txt")"
 cd "$folder/venv"
 env -u PYTHONPATH -u GLIDAR_SENSORS -u GLIDAR_MATERIALS XDG_CACHE_HOME="$folder/cache" \
