@@ -3,6 +3,7 @@
 """Runs the built program, found in PATH, in a temporary folder."""
 
 import fcntl
+import functools
 import os
 import random
 import re
@@ -68,6 +69,12 @@ def box_of(size):
         repr(float(x) * size / 2) for x in m.group(1).split()), BOX)
 
 
+@functools.cache
+def verified(*arguments):
+    """A run of `glidar verify`, which takes seconds; the tests of a file share it."""
+    return subprocess.run(["glidar", "verify", *arguments], capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
+
+
 class CliTest(unittest.TestCase):
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory()
@@ -84,6 +91,11 @@ class CliTest(unittest.TestCase):
 
     def succeed(self, *arguments):
         done = self.run_program(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def verify(self, *arguments):
+        done = verified(*arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
 
