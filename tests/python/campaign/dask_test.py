@@ -61,6 +61,15 @@ def test_a_killed_worker_does_not_change_the_data(campaign, cluster):
     assert campaign.contents("out") == campaign.contents("whole")
 
 
+IMPATIENT = """import sys
+from glidar.campaign import cli, dask_executor
+dask_executor.CONNECT_S = 0.1
+sys.exit(cli.main())
+"""
+
+
 def test_a_missing_scheduler_is_reported(campaign):
-    printed = campaign.run("out", "--executor", "dask", "--scheduler", "tcp://127.0.0.1:9", code=2)
-    assert "no Dask scheduler answers at tcp://127.0.0.1:9" in printed
+    done = subprocess.run([sys.executable, "-c", IMPATIENT, "run", "campaign.yaml", "-o", "out", "--executor", "dask",
+                           "--scheduler", "tcp://127.0.0.1:9"], cwd=campaign.folder, env=campaign.environment,
+                          capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
+    assert done.returncode == 2 and "no Dask scheduler answers at tcp://127.0.0.1:9" in done.stderr, done.stderr
