@@ -4,6 +4,9 @@
 
 #include <glidar/math/simd.hpp>
 
+#include <limits>
+#include <span>
+
 namespace glidar {
 namespace {
 

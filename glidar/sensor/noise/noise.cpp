@@ -96,7 +96,7 @@ void load_column(const std::vector<From>& column, const NoiseBatch& batch, To re
 
 GLIDAR_SIMD void project(const Eigen::Vector3d* vectors, const Eigen::Vector3d& axis,
                          std::size_t count, double* along_axis) {
-  const Eigen::Vector3d unit = axis;  // a copy, so that the loop vectorises
+  const Eigen::Vector3d unit(axis.x(), axis.y(), axis.z());  // a copy, so that the loop vectorises
   for (std::size_t i = 0; i < count; ++i) along_axis[i] = dot_product(vectors[i], unit);
 }
 
