@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The renderers of the processor beside each other, over triangles per beam: where the raster is quicker than rays,
-and what "auto" makes of it. They take turns; medians of the clock. --plot draws it."""
+"""The renderers of the processor beside each other, over triangles per beam: where the raster is faster than rays,
+and what "auto" selects. They take turns; medians of wall-clock times. --plot draws it."""
 
 import argparse
 import os
@@ -17,7 +17,7 @@ except ImportError as missing:
     sys.exit(f"{missing}; install GLIDAR (docs/python.md) and what scripts/requirements.txt names")
 
 KINDS = ("rays", "raster", "auto")
-SIDES = (32, 64, 128, 256, 512, 1024)
+SIDES = (32, 48, 64, 96, 128, 256, 512, 1024)
 EXAMPLE = """example:
   PYTHONPATH=build/release/python build/venv/bin/python bench/renderers_bench.py --plot docs/images/raster.png \\
       builtin:asteroid $GLIDAR_DATA/models/stanford/bun_zipper.ply"""

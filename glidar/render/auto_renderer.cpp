@@ -19,8 +19,8 @@ namespace glidar {
 namespace {
 
 /// The raster processes every triangle in view, a ray only a few: above this many triangles per
-/// beam, rays are faster (bench/renderers_bench.py: from 30 to 60).
-constexpr std::uint64_t kMaxPerBeam = 40;
+/// beam that may hit something, rays are faster (bench/renderers_bench.py: from 17 to 20).
+constexpr std::uint64_t kMaxPerBeam = 18;
 /// The same for scanners (bench/scan_bench: the raster takes half the time at 2 triangles per beam,
 /// and the same time at 25).
 constexpr double kMaxPerScannerBeam = 12.0;
@@ -47,11 +47,11 @@ class AutoRenderer final : public Renderer {
   void cast(const CastRequest& request, Hits& hits) override {
     check(request, base_->resolver.scene());
     if (is_for_scan_raster(request)) return scan_raster_->cast_prepared(request, hits);
-    quicker(request).cast(request, hits);
+    faster(request).cast(request, hits);
   }
 
  private:
-  Renderer& quicker(const CastRequest& request) {
+  Renderer& faster(const CastRequest& request) {
     if (is_for_raster(request)) {
       if (raster_ == nullptr) raster_ = make_raster_renderer(base_);
       return *raster_;
