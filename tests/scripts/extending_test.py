@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The example of docs/extending.md: its patch applies, compiles and works, and touches five files."""
+"""The example of docs/extending.md: its patch applies, keeps the rules of includes, compiles and works, and
+touches five files."""
 
 import os
 import re
@@ -57,6 +58,7 @@ class NoiseStepExample(unittest.TestCase):
             shutil.copytree(ROOT / "glidar", folder / "glidar")
             shutil.copytree(ROOT / "tests/sensor", folder / "tests/sensor")
             subprocess.run(["patch", "-p1", "--quiet"], input=patch_text(), text=True, cwd=folder, check=True)
+            subprocess.run([sys.executable, "-B", ROOT / "scripts/check_includes.py", folder], check=True)
             (folder / "unit.cpp").write_text(unit_text(folder), encoding="utf-8")
             command = shlex.split(os.environ["GLIDAR_CXX"]) + [
                 "-std=c++20", "-ffp-contract=off", *shlex.split(os.environ["GLIDAR_CXX_FLAGS"]), "-O0", "-I.", "-Itests",
