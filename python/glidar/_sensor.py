@@ -99,8 +99,8 @@ class Sensor(Immutable):
         rate_hz: float | None = None,
         columns_per_turn: int | None = None,
         visibility_m: float | None = None,
-        rain_mm_h: float | None = None,
-        snow_mm_h: float | None = None,
+        rain_mm_per_h: float | None = None,
+        snow_mm_per_h: float | None = None,
     ) -> Sensor:
         """The same sensor with other settings, as with the command line's options of the same names.
 
@@ -110,19 +110,24 @@ class Sensor(Immutable):
             rate_hz: frames per second; of a spinning sensor: rotations per second.
             columns_per_turn: columns per rotation of a spinning sensor, 1 to 1048576.
             visibility_m: visibility in fog, 1 to 1e6 m; 0: no fog. For pulsed sensors only.
-            rain_mm_h: rain rate, 0 to 1000 mm/h. For pulsed sensors only.
-            snow_mm_h: snowfall rate as melted water, 0 to 1000 mm/h. For pulsed sensors only.
+            rain_mm_per_h: rain rate, 0 to 1000 mm/h. For pulsed sensors only.
+            snow_mm_per_h: snowfall rate as melted water, 0 to 1000 mm/h. For pulsed sensors only.
 
         None keeps the sensor's setting.
 
         Raises:
             Error: a number is out of range, or the sensor has no such property.
         """
-        settings = (returns, rate_hz, columns_per_turn, visibility_m, rain_mm_h, snow_mm_h)
+        settings = (returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h)
         if all(setting is None for setting in settings):
             return self
         options = _core.SensorOptions()
-        given = {"rate_hz": rate_hz, "visibility_m": visibility_m, "rain_mm_h": rain_mm_h, "snow_mm_h": snow_mm_h}
+        given = {
+            "rate_hz": rate_hz,
+            "visibility_m": visibility_m,
+            "rain_mm_per_h": rain_mm_per_h,
+            "snow_mm_per_h": snow_mm_per_h,
+        }
         for name, value in given.items():
             if value is not None:
                 setattr(options, name, _number(value, name))
@@ -284,15 +289,15 @@ def load_sensor(
     rate_hz: float | None = None,
     columns_per_turn: int | None = None,
     visibility_m: float | None = None,
-    rain_mm_h: float | None = None,
-    snow_mm_h: float | None = None,
+    rain_mm_per_h: float | None = None,
+    snow_mm_per_h: float | None = None,
 ) -> Sensor:
     """A sensor by the name of a preset (``sensor_names()``), or from a sensor file (YAML).
 
     Args:
         name_or_path: name of a preset, or path of a sensor file.
-        returns, rate_hz, columns_per_turn, visibility_m, rain_mm_h, snow_mm_h: settings that replace those
-            of the preset or file, as for ``Sensor.replace``.
+        returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h: settings that replace
+            those of the preset or file, as for ``Sensor.replace``.
 
     Raises:
         Error: there is no such sensor (with the nearest names), the file is malformed (with line, column and
@@ -304,8 +309,8 @@ def load_sensor(
         rate_hz=rate_hz,
         columns_per_turn=columns_per_turn,
         visibility_m=visibility_m,
-        rain_mm_h=rain_mm_h,
-        snow_mm_h=snow_mm_h,
+        rain_mm_per_h=rain_mm_per_h,
+        snow_mm_per_h=snow_mm_per_h,
     )
 
 

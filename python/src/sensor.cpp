@@ -153,8 +153,8 @@ void bind_options(nb::module_& module) {
       .def_rw("rate_hz", &SensorOptions::rate_hz)
       .def_rw("columns_per_turn", &SensorOptions::columns_per_turn)
       .def_rw("visibility_m", &SensorOptions::visibility_m)
-      .def_rw("rain_mm_h", &SensorOptions::rain_mm_per_h)
-      .def_rw("snow_mm_h", &SensorOptions::snow_mm_per_h)
+      .def_rw("rain_mm_per_h", &SensorOptions::rain_mm_per_h)
+      .def_rw("snow_mm_per_h", &SensorOptions::snow_mm_per_h)
       .def(
           "set_returns",
           [](SensorOptions& self, const std::vector<std::string>& words) {

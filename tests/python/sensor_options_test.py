@@ -14,11 +14,12 @@ CASES = {
     "rate": ("VLP-16", {"rate_hz": 20.0}, ["--rate", "20"]),
     "columns": ("OS1-32", {"columns_per_turn": 300}, ["--columns-per-turn", "300"]),
     "fog": ("VLP-16", {"visibility_m": 77.7}, ["--visibility", "77.7"]),
-    "rain": ("VLP-16", {"rain_mm_h": 30}, ["--rain", "30"]),
-    "snow": ("VLP-16", {"snow_mm_h": 2.5}, ["--snow", "2.5"]),
+    "rain": ("VLP-16", {"rain_mm_per_h": 30}, ["--rain", "30"]),
+    "snow": ("VLP-16", {"snow_mm_per_h": 2.5}, ["--snow", "2.5"]),
     "all": (
         "OS1-32",
-        {"returns": 2, "rate_hz": 5, "columns_per_turn": 256, "visibility_m": 50, "rain_mm_h": 20, "snow_mm_h": 1},
+        {"returns": 2, "rate_hz": 5, "columns_per_turn": 256, "visibility_m": 50, "rain_mm_per_h": 20,
+         "snow_mm_per_h": 1},
         "--returns 2 --rate 5 --columns-per-turn 256 --visibility 50 --rain 20 --snow 1".split(),
     ),
 }
@@ -51,17 +52,17 @@ ERRORS = {
     "columns of a prism": ("Livox-Mid-40", {"columns_per_turn": 9}, ["--columns-per-turn", "9"]),
     "fog beyond all": ("VLP-16", {"visibility_m": 2e6}, ["--visibility", "2e6"]),
     "fog too thick": ("VLP-16", {"visibility_m": 0.5}, ["--visibility", "0.5"]),
-    "rain below zero": ("VLP-16", {"rain_mm_h": -1}, ["--rain=-1"]),
-    "snow that is no number": ("VLP-16", {"snow_mm_h": np.nan}, ["--snow", "nan"]),
-    "weather of a camera": ("Kinect-v2", {"rain_mm_h": 1}, ["--rain", "1"]),
+    "rain below zero": ("VLP-16", {"rain_mm_per_h": -1}, ["--rain=-1"]),
+    "snow that is no number": ("VLP-16", {"snow_mm_per_h": np.nan}, ["--snow", "nan"]),
+    "weather of a camera": ("Kinect-v2", {"rain_mm_per_h": 1}, ["--rain", "1"]),
 }
 NAMES = {
     "--returns": "returns",
     "--rate": "rate_hz",
     "--columns-per-turn": "columns_per_turn",
     "--visibility": "visibility_m",
-    "--rain": "rain_mm_h",
-    "--snow": "snow_mm_h",
+    "--rain": "rain_mm_per_h",
+    "--snow": "snow_mm_per_h",
 }
 
 
@@ -80,7 +81,7 @@ def test_errors_match_the_command_line_except_for_the_arguments_name(case, tmp_p
     ("settings", "message"),
     [
         ({"rate_hz": "fast"}, "rate_hz: 'fast'; allowed: a number"),
-        ({"rain_mm_h": [1, 2]}, r"rain_mm_h: \[1, 2\]; allowed: a number"),
+        ({"rain_mm_per_h": [1, 2]}, r"rain_mm_per_h: \[1, 2\]; allowed: a number"),
         ({"columns_per_turn": 7.5}, "columns_per_turn: 7.5; allowed: a whole number from 1 to 1048576"),
         ({"columns_per_turn": 2**80}, "columns_per_turn: 12.*; allowed: a whole number from 1 to 1048576"),
         ({"returns": [1, 2]}, "returns: 1; allowed: a string"),

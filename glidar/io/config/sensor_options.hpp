@@ -27,8 +27,8 @@ struct SensorOptionNames {
   std::string columns_per_turn = "columns_per_turn";
   std::string returns = "returns";
   std::string visibility = "visibility_m";
-  std::string rain = "rain_mm_h";
-  std::string snow = "snow_mm_h";
+  std::string rain = "rain_mm_per_h";
+  std::string snow = "snow_mm_per_h";
 };
 
 /// Returns by name ("strongest", "last" ...), or a single number: how many of the nearest.

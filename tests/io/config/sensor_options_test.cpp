@@ -93,9 +93,9 @@ TEST(SensorOptions, RefuseNumbersOutOfRange) {
   EXPECT_EQ(error_with("VLP-16", &SensorOptions::visibility_m, -1.0),
             "visibility_m: -1; allowed: a number from 0 to 1000000");
   EXPECT_EQ(error_with("VLP-16", &SensorOptions::rain_mm_per_h, 1001.0),
-            "rain_mm_h: 1001; allowed: a number from 0 to 1000");
+            "rain_mm_per_h: 1001; allowed: a number from 0 to 1000");
   EXPECT_EQ(error_with("VLP-16", &SensorOptions::snow_mm_per_h, kNone),
-            "snow_mm_h: nan; allowed: a number from 0 to 1000");
+            "snow_mm_per_h: nan; allowed: a number from 0 to 1000");
 }
 
 }  // namespace
