@@ -136,7 +136,7 @@ void write_lidar_equation(TraceWriter& out, const LidarEquation& light) {
              std::exp(-2.0 * per_m * hits.range_m[i]));
   }
   if (!out.trace.waveform && !out.trace.receiver_noise.empty()) {
-    out.line("", "noise of sigma {:.3g}, normal {:.6f}; threshold 1", light.noise_sigma,
+    out.line("", "noise of sigma {:.3g}, standard normal {:.6f}; threshold 1", light.noise_sigma,
              out.trace.receiver_noise.front());
   }
 }
@@ -205,9 +205,9 @@ void write_echoes(TraceWriter& out, const WaveformTrace& pulse) {
   for (std::size_t k = 0; k < pulse.echoes.size(); ++k) {
     const PulseEcho& echo = pulse.echoes[k];
     const std::vector<double>& noise = out.trace.receiver_noise;
-    out.line("", "{:.6f} m, signal {:.6g}, width {:.3g} m, {}{}{}", echo.range_m, echo.signal,
+    out.line("", "{:.6f} m, signal {:.6g}, sigma {:.3g} m, {}{}{}", echo.range_m, echo.signal,
              echo.sigma_m, source(echo), echo.is_mixed ? ", mixed" : "",
-             noise.empty() ? "" : fmt::format("; normal {:.6f}", noise[k]));
+             noise.empty() ? "" : fmt::format("; standard normal {:.6f}", noise[k]));
   }
   out.line("received", "{} after noise of sigma {:.3g}, threshold 1", pulse.received.size(),
            out.sensor.lidar_equation->noise_sigma);
@@ -229,10 +229,11 @@ void write_noise(TraceWriter& out) {
       continue;
     }
     for (const RandomSample& sample : step.samples) {
-      out.line("", "{} {:.6f}: {}{}",
-               sample.distribution == RandomSample::Distribution::normal ? "normal" : "uniform",
-               sample.value, sample.use,
-               sample.probability ? fmt::format(" {:.6g}", *sample.probability) : "");
+      out.line(
+          "", "{} {:.6f}: {}{}",
+          sample.distribution == RandomSample::Distribution::normal ? "standard normal" : "uniform",
+          sample.value, sample.use,
+          sample.probability ? fmt::format(" {:.6g}", *sample.probability) : "");
     }
     out.line("", "result {}", measurement_text(step.after));
   }

@@ -57,7 +57,7 @@ class Echo(SameContent):
     signal: float
     """Received signal in units of the detection threshold."""
     sigma_m: float
-    """Standard deviation of the range, m."""
+    """Width of the echo as a standard deviation, m."""
     is_mixed: bool
     """Whether it merges the light of several surfaces."""
 

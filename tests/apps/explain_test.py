@@ -71,7 +71,7 @@ class Explain(CliTest):
                                        "received", "measured", "noise 1", "noise 2", "reported", "error"][:len(trace)])
         self.assertIn("asteroid", trace["hit"][0])
         self.assertIn("sub-rays", trace["paths"][0])
-        self.assertIn("; normal", trace["echoes"][1])
+        self.assertRegex(trace["echoes"][1], r", sigma \S+ m, .*; standard normal -?\d+\.\d+$")
         self.assertIn("range_gaussian sigma_m 0.02", trace["noise 1"][0])
 
     def test_the_trace_lists_thresholds_and_window_means(self):
@@ -83,7 +83,7 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
                      "--columns", "xyz,range,intensity,status")
         trace = self.trace_of("a.csv", "--row", "10", "--col", "12")
         kinect, chance = trace["noise 1"], trace["noise 2"]
-        self.assertRegex(kinect[2], r"normal \S+: error of the disparity: the mean of 5 x 5 pixels' numbers")
+        self.assertRegex(kinect[2], r"^standard normal \S+: error of the disparity: the mean of 5 x 5 pixels' numbers")
         drawn = re.match(r"uniform (\S+): lost if below 0.55$", chance[1])
         self.assertIsNotNone(drawn, chance)
         self.assertEqual(chance[-1].startswith("result dropped"), float(drawn[1]) < 0.55)

@@ -61,7 +61,7 @@ struct EchoContribution {
 struct PulseEcho {
   double range_m;           ///< mean of its contributions, weighted by their signals
   double signal;            ///< height of the peak
-  double sigma_m;           ///< width: of the pulse and of the spread of the contributions
+  double sigma_m;           ///< of the pulse and of the spread of the contributions
   std::uint32_t strongest;  ///< index of its strongest contribution
   bool is_mixed;            ///< of several surfaces with a gap between them
 };
