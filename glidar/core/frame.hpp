@@ -59,7 +59,7 @@ struct Woods2016Framebuffer {
 };
 
 /// One measurement: what the sensor reports per beam, with the ground truth. N = rows * cols,
-/// row-major, as in Beams.
+/// row-major, as in Beams. range_m is without Beams::range_offset_m, a cloud's `range` with it.
 struct Frame {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;

@@ -245,12 +245,13 @@ Measurement final_measurement(const PointTrace& trace) {
 
 void write_result(TraceWriter& out) {
   const Measurement measurement = final_measurement(out.trace);
-  out.line("reported", "{}", measurement_text(measurement));
+  Measurement reported = measurement;
   const double offset_m = out.beams.range_offset_m;
   if (measurement.status == Status::hit && offset_m != 0.0) {
-    out.line("", "{:.6f} m in the cloud, with the sensor's range offset",
-             measurement.range_m + offset_m);
+    out.line("offset", "{:+.6f} m, added to the range in the cloud", offset_m);
+    reported.range_m += offset_m;
   }
+  out.line("reported", "{}", measurement_text(reported));
   if (measurement.status == Status::hit && out.has_hit()) {
     out.line("error", "{:+.6f} m relative to the ground truth",
              measurement.range_m - out.frame.ground_truth.range_m[out.trace.entry]);

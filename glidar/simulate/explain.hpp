@@ -17,7 +17,7 @@ namespace glidar {
 struct Measurement {
   Status status = Status::miss;
   ReturnSource return_source = ReturnSource::none;
-  double range_m = 0.0;  ///< NaN unless hit
+  double range_m = 0.0;  ///< without Beams::range_offset_m; NaN unless hit
   float intensity = 0.0F;
   float sigma_m = 0.0F;  ///< of the range's random error so far
 };

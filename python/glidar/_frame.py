@@ -110,7 +110,7 @@ class Frame(Immutable):
 
     @property
     def range_m(self) -> FloatArray:
-        """Measured distance along the beam from its origin, m; NaN unless status is hit."""
+        """Measured distance from the beam's origin, m; NaN unless hit. The column ``range`` adds the range offset."""
         return self._measured("range_m")
 
     @property

@@ -19,7 +19,8 @@ class Measurement(SameContent):
     status: Status
     return_source: ReturnSource
     range_m: float
-    """Measured distance along the beam, m; NaN unless status is hit."""
+    """Measured distance along the beam from its origin, m, without the sensor's range offset; NaN unless status
+    is hit."""
     intensity: float
     sigma_m: float
     """Standard deviation of the range, m."""

@@ -88,6 +88,19 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
         self.assertIsNotNone(drawn, chance)
         self.assertEqual(chance[-1].startswith("result dropped"), float(drawn[1]) < 0.55)
 
+    def test_the_reported_range_includes_the_sensors_range_offset(self):
+        self.write("s.yaml", """
+optics: {type: spinning, elevation_deg: [0], columns_per_turn: 60, beam_origin_mm: 500}
+""")
+        self.succeed("render", "builtin:box", "--sensor", "s.yaml", "--eye", "0,0,0", "-o", "a.csv", "--columns",
+                     "xyz,range,intensity,status")
+        trace = self.trace_of("a.csv", "--index", "7")
+        self.assert_is_trace_of(trace, self.points_of("a.csv")[7])
+        self.assertEqual(trace["offset"], ["+0.500000 m, added to the range in the cloud"])
+        measured, reported = (float(trace[head][0].split()[0]) for head in ("measured", "reported"))
+        self.assertAlmostEqual(reported, measured + 0.5, delta=2e-6)
+        self.assertEqual(trace["error"], ["+0.000000 m relative to the ground truth"])
+
     def test_the_documented_example_prints_the_output_shown(self):
         with open(os.path.join(ROOT, "docs", "explain.md"), encoding="utf-8") as file:
             shown = file.read()

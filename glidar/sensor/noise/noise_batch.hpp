@@ -12,7 +12,7 @@ namespace glidar {
 /// noise steps are applied one after the other. Beams beyond the last, and beams without a return,
 /// have the range NaN, so that arithmetic needs no conditions.
 struct alignas(64) NoiseBatch {
-  Batch<double> range_m;
+  Batch<double> range_m;      ///< from the beam's origin, without Beams::range_offset_m
   Batch<double> variance_m2;  ///< variance of the range error, summed over the steps so far
   Batch<double> intensity;
   Batch<double> scale;          ///< factor of the surface on standard deviations
