@@ -61,7 +61,7 @@ std::string limit_text(const Limits& limits) {
 void show_sensor_numbers(const Snapshot& snapshot) {
   const Sensor& sensor = *snapshot.sensor;
   const Beams& beams = *snapshot.beams;
-  text(fmt::format("{} x {} beams{}, {:g} Hz", beams.cols, beams.rows / beams.returns,
+  text(fmt::format("{} x {} beams{}, {:g} Hz", beams.rows / beams.returns, beams.cols,
                    beams.returns > 1 ? fmt::format(", {} returns", beams.returns) : "",
                    sensor.rate_hz));
   if (beams.pinhole) {

@@ -76,7 +76,7 @@ class Render(CliTest):
     def test_summary_and_files(self):
         done = self.succeed("render", "builtin:box", "-w", "40", "--height", "30",
                             "-o", "a.pcd", "-o", "b.ply", "-o", "c.png")
-        self.assertRegex(done.stdout, r"40 x 30 beams, \d+ hits \(\d+\.\d %\), range [\d.]+ to [\d.]+ m")
+        self.assertRegex(done.stdout, r"30 x 40 beams, \d+ hits \(\d+\.\d %\), range [\d.]+ to [\d.]+ m")
         self.assertIn("wrote a.pcd b.ply c.png", done.stdout)
         self.assertEqual(done.stderr, "")
         self.assertEqual(self.files(), ["a.pcd", "a.pcd.json", "b.ply", "b.ply.json", "c.png"])
@@ -269,16 +269,16 @@ sensor_pose:
     def test_sensor_and_pose_of_the_file_are_used(self):
         ids, summary = self.ids()
         self.assertEqual(ids, {"7", "9"})
-        self.assertIn("60 x 20 beams", summary)
+        self.assertIn("20 x 60 beams", summary)
 
     def test_options_override_the_file(self):
         ids, summary = self.ids("-w", "30", "--height", "40", "--eye", "-3,-8,0", "--target", "-3,0,0")
         self.assertEqual(ids, {"7"})
-        self.assertIn("30 x 40 beams", summary)
+        self.assertIn("40 x 30 beams", summary)
 
     def test_sensor_file_overrides_the_scene_file(self):
         self.write("sensor.yaml", "optics: {type: pinhole, width: 33, height: 11, fov_deg: 30}\n")
-        self.assertIn("33 x 11 beams", self.ids("--sensor", "sensor.yaml")[1])
+        self.assertIn("11 x 33 beams", self.ids("--sensor", "sensor.yaml")[1])
         self.assertIn("both are given; give one of them",
                       self.refused("render", "scene.yaml", "--sensor", "sensor.yaml", "--fov", "9",
                                    "-o", "x.pcd"))

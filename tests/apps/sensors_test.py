@@ -77,7 +77,7 @@ class Sensors(CliTest):
     def test_renders_with_a_preset(self):
         done = self.succeed("render", "builtin:box", "--sensor", "vlp-16", "--eye", "0,0,0",
                             "--columns", "xyz,range,ring,time", "-o", "room.npz")
-        self.assertIn("1809 x 16 beams, 28944 hits (100.0 %)", done.stdout)
+        self.assertIn("16 x 1809 beams, 28944 hits (100.0 %)", done.stdout)
         with open(os.path.join(self.folder, "room.npz.json"), encoding="utf-8") as file:
             sensor = json.load(file)["sensor"]
         self.assertEqual(sensor["optics"]["type"], "spinning")
@@ -140,10 +140,10 @@ class Sensors(CliTest):
     def test_returns_can_be_selected(self):
         room = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "--returns")
         done = self.succeed(*room, "strongest,last", "-o", "a.pcd")
-        self.assertIn("1809 x 32 beams, 28944 hits (50.0 %)", done.stdout)  # a wall returns one echo
+        self.assertIn("16 x 1809 beams, 2 returns, 28944 hits (50.0 %)", done.stdout)  # a wall returns one echo
         with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file)["sensor"]["receiver"]["returns"], ["strongest", "last"])
-        self.assertIn("1809 x 48 beams", self.succeed(*room, "3", "-o", "a.pcd").stdout)
+        self.assertIn("16 x 1809 beams, 3 returns, ", self.succeed(*room, "3", "-o", "a.pcd").stdout)
         for wrong, reported in (("lst", "'lst'; allowed: 1 to 16 of first, second, third, last, strongest, "),
                             ("strongst", "did you mean strongest?"), ("first,", "an empty part"),
                             ("0", "how many of the nearest, 1 to 16"), (",".join(["last"] * 17), "17 returns")):
@@ -155,7 +155,7 @@ class Sensors(CliTest):
     def test_columns_and_rate_can_be_selected(self):
         done = self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "OS1-32",
                             "--columns-per-turn", "512", "--rate", "20", "-o", "a.pcd")
-        self.assertIn("512 x 32 beams", done.stdout)
+        self.assertIn("32 x 512 beams", done.stdout)
         self.assertIn("does not spin", self.refused(
             "render", "builtin:box", "--sensor", "D435", "--columns-per-turn", "5", "-o", "x.pcd"))
 

@@ -54,8 +54,9 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
   const FrameSummary s = summarise(view.frame);
   const double percent =
       100.0 * static_cast<double>(s.hits) / static_cast<double>(view.beams.size());
-  fmt::print(to, "{} x {} beams, {} hits ({:.1f} %)", view.beams.cols, view.beams.rows, s.hits,
-             percent);
+  fmt::print(to, "{} x {} beams", view.beams.rows / view.beams.returns, view.beams.cols);
+  if (view.beams.returns > 1) fmt::print(to, ", {} returns", view.beams.returns);
+  fmt::print(to, ", {} hits ({:.1f} %)", s.hits, percent);
   const double offset_m = view.beams.range_offset_m;
   if (s.hits > 0) {
     fmt::print(to, ", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
