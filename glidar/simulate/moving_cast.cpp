@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/moving_cast.hpp>
 
-#include <glidar/simulate/start_frame.hpp>
+#include <glidar/simulate/start_from_sensor.hpp>
 
 #include <algorithm>
 #include <array>

@@ -19,7 +19,7 @@ namespace {
 
 /// Sizes the columns, empties those that not every frame has, and places the sensor and all
 /// objects.
-void start_frame(const Simulation& s) {
+void reset_frame(const Simulation& s) {
   Frame& frame = s.frame;
   frame.rows = s.beams.rows;
   frame.cols = s.beams.cols;
@@ -136,7 +136,7 @@ void check_limits(const Limits& limits, const Beams& beams, BeamRange tile, Fram
 
 void simulate(std::span<Simulation> frames) {
   for (Simulation& s : frames) {
-    start_frame(s);
+    reset_frame(s);
     s.fired = &perturb_directions(s.sensor.noise, s.beams, s.frame, s.renderer.thread_pool(),
                                   s.workspace.fired);
   }

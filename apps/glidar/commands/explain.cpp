@@ -125,7 +125,7 @@ int run_explain(const ExplainFlags& flags) {
   check_models(sidecar, prepared.scene);
   Frame frame;
   const ActiveSensor& active = only_sensor(prepared);
-  start_frame(render, sidecar.frame, active, frame);
+  set_frame_header(render, sidecar.frame, active, frame);
   const auto pick = [&](const Frame& repeated) {
     check_frame(sidecar, repeated);
     return entry_of(flags, sidecar, repeated, *active.simulator->beams(repeated.number));

@@ -135,7 +135,7 @@ void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active,
         plan_outputs(files_of(flags, files, active, k), flags.input, context, console.report(),
                      [&console](double fraction) { console.set_progress(fraction); });
     refuse_overwrite_of_inputs(prepared.files, outputs);
-    start_frame(flags, k, active, frame);
+    set_frame_header(flags, k, active, frame);
     measure(active, needed_hit_columns(flags, outputs), console, frame);
     if (k == 0) print_advice(view_advice(view), console);
     write(flags, view, outputs, console);

@@ -261,8 +261,8 @@ Motion motion_of(RigMotion motion, const ActiveSensor& active) {
           .world_from_instance = std::move(motion.world_from_instance)};
 }
 
-void start_frame(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
-                 Frame& frame) {
+void set_frame_header(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
+                      Frame& frame) {
   frame.number = number;
   frame.sensor_id = active.id;
   frame.stamp_ns = frame_interval(active.sensor, number).start_ns;

@@ -57,9 +57,9 @@ ActiveSensor& only_sensor(PreparedScene& prepared);
 /// The motion of a sensor and all instances.
 Motion motion_of(RigMotion motion, const ActiveSensor& active);
 
-/// Starts a frame of the sequence: sets its number, sensor, stamp and seed.
-void start_frame(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
-                 Frame& frame);
+/// Sets number, sensor, stamp and seed of a frame of the sequence.
+void set_frame_header(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
+                      Frame& frame);
 
 /// A simulator of the scene, with the framebuffer that its options select.
 std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,

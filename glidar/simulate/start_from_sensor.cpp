@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/simulate/start_frame.hpp>
+#include <glidar/simulate/start_from_sensor.hpp>
 
 #include <glidar/math/simd.hpp>
 
