@@ -71,7 +71,7 @@ struct Frame {
   Pose world_from_sensor = Pose::Identity();
   std::vector<Pose> world_from_instance;    ///< one per instance of the scene, at stamp_ns
   std::vector<double> range_m;              ///< N, measured; NaN unless status is hit
-  std::vector<float> intensity;             ///< N, received signal of a full-scale 1; 0 unless hit
+  std::vector<float> intensity;             ///< N, signal in units of the sensor; 0 unless hit
   std::vector<Status> status;               ///< N
   std::vector<ReturnSource> return_source;  ///< N; empty: `surface` wherever there is a return
   std::vector<float> sigma_m;  ///< N, standard deviation of the random error of range_m; empty: 0

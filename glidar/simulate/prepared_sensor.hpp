@@ -22,7 +22,7 @@ struct PulseModel {
   std::vector<SubRay> sub_rays;            ///< of each beam; without a footprint a single one
   std::optional<PreparedWeather> weather;  ///< empty: clear air
   LidarEquation lidar_equation;            ///< with the weather's extinction
-  bool has_mirrors = false;                ///< the scene has
+  bool has_mirrors = false;                ///< whether the scene has mirrors
 };
 
 /// A sensor with everything about it that is the same for all frames of a scene.

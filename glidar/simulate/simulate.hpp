@@ -15,7 +15,8 @@ void simulate(std::span<Simulation> frames);
 
 /// Range, intensity and status of a tile of beams (or pulses) from their hits: checks limits and
 /// computes the received signal, by the paper's Phong model, the lidar equation or a waveform.
-/// Called once for every tile, on the renderer's threads.
+/// Called once for every tile: on the renderer's threads, or for pulses after their sub-rays are
+/// cast.
 void measure_tile(const Simulation& s, BeamRange tile);
 
 /// True when the renderer casts the beams of the frame once, as they are.

@@ -17,7 +17,7 @@ struct alignas(64) NoiseBatch {
   Batch<double> intensity;
   Batch<double> scale;          ///< factor of the surface on standard deviations
   Batch<double> cosine;         ///< of the incidence angle; 1 unless a step requires it
-  Batch<double> depth_per_m;    ///< depth = depth_at_zero_m + depth_per_m * range; these two are
+  Batch<double> depth_per_m;    ///< depth = depth_at_zero + depth_per_m * range; these two are
   Batch<double> depth_at_zero;  ///< 1 and 0 unless a step requires depth
   Batch<Status> status;
   std::size_t first = 0;  ///< index of the first beam
