@@ -36,7 +36,8 @@ void apply_first(const Simulation& s, std::size_t count, const Columns& measured
   s.frame.intensity = measured.intensity;
   s.frame.status = measured.status;
   s.frame.return_source = measured.return_source;
-  apply_noise(s.sensor.noise, s.beams, s.renderer.thread_pool(), s.workspace.noise, s.frame, count);
+  apply_noise(s.prepared.noise, s.beams, s.renderer.thread_pool(), s.workspace.noise, s.frame,
+              count);
 }
 
 std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame,
@@ -66,8 +67,8 @@ PointTrace begin_trace(const Simulation& s, std::size_t entry) {
   PointTrace trace;
   trace.entry = entry;
   trace.direction = s.fired->directions[entry];
-  if (s.sensor.pulse_model) trace.waveform = trace_waveform(s, pulse, frame);
-  trace.receiver_noise = receiver_noise(s.sensor.sensor, frame, trace, pulse);
+  if (s.prepared.pulse_model) trace.waveform = trace_waveform(s, pulse, frame);
+  trace.receiver_noise = receiver_noise(s.prepared.sensor, frame, trace, pulse);
   return trace;
 }
 
@@ -81,7 +82,7 @@ PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelect
   simulate({&s, 1});
   if (s.fired != &s.beams) s.workspace.fired.directions = frame.true_directions;
   const Columns measured{frame.range_m, frame.intensity, frame.status, frame.return_source};
-  const NoisePlan& noise = s.sensor.noise;
+  const NoisePlan& noise = s.prepared.noise;
   apply_first(s, noise.steps.size(), measured);
   PointTrace trace = begin_trace(s, pick(frame));
   apply_first(s, 0, measured);

@@ -38,7 +38,7 @@ void cast_mirrored(const Simulation& s) {
 /// Casts the sub-rays of a block of pulses.
 void cast_block(const Simulation& s, BeamRange block) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
-  const PulseModel& model = *s.sensor.pulse_model;
+  const PulseModel& model = *s.prepared.pulse_model;
   HitColumnMask hit_columns = s.hit_columns | kSignalFields;
   hit_columns.shading_normal = hit_columns.shading_normal || model.has_mirrors;
   hit_columns.normal = hit_columns.normal || model.sub_rays.size() > 1;
@@ -58,7 +58,7 @@ void cast_block(const Simulation& s, BeamRange block) {
 }  // namespace
 
 std::size_t first_sub_ray(const Simulation& s, std::size_t pulse) {
-  return (pulse - s.workspace.sub_rays.first_pulse) * s.sensor.pulse_model->sub_rays.size();
+  return (pulse - s.workspace.sub_rays.first_pulse) * s.prepared.pulse_model->sub_rays.size();
 }
 
 void cast_pulses(const Simulation& s, BeamRange pulses, FunctionRef<void(BeamRange)> on_tile_done) {
@@ -66,7 +66,7 @@ void cast_pulses(const Simulation& s, BeamRange pulses, FunctionRef<void(BeamRan
   s.frame.return_source.resize(s.fired->size());
   ThreadPool& threads = s.renderer.thread_pool();
   const std::size_t sub_rays = kSubRaysPerBlock * threads.threads();
-  const std::size_t tasks = sub_rays / s.sensor.pulse_model->sub_rays.size() / kPulsesPerTask;
+  const std::size_t tasks = sub_rays / s.prepared.pulse_model->sub_rays.size() / kPulsesPerTask;
   const std::size_t step = std::max<std::size_t>(1, tasks) * kPulsesPerTask;
   for (std::size_t begin = pulses.begin; begin < pulses.end; begin += step) {
     const BeamRange block{begin, std::min(begin + step, pulses.end)};

@@ -68,7 +68,7 @@ void cast_beams(std::span<const Simulation> frames, const MeasureTile& measure) 
   const Simulation& s = frames.front();
   const auto measure_one = [&](BeamRange tile) { measure(s, tile); };
   const FunctionRef<void(BeamRange)> on_tile_done(measure_one);
-  if (s.sensor.pulse_model) return cast_pulses(s, {0, s.fired->firings()}, on_tile_done);
+  if (s.prepared.pulse_model) return cast_pulses(s, {0, s.fired->firings()}, on_tile_done);
   cast(s, beam_request(s, on_tile_done), s.frame.ground_truth);
 }
 
@@ -137,25 +137,25 @@ void check_limits(const Limits& limits, const Beams& beams, BeamRange tile, Fram
 void simulate(std::span<Simulation> frames) {
   for (Simulation& s : frames) {
     reset_frame(s);
-    s.fired = &perturb_directions(s.sensor.noise, s.beams, s.frame, s.renderer.thread_pool(),
+    s.fired = &perturb_directions(s.prepared.noise, s.beams, s.frame, s.renderer.thread_pool(),
                                   s.workspace.fired);
   }
   cast_beams(frames, [](const Simulation& s, BeamRange tile) { measure_tile(s, tile); });
   for (const Simulation& s : frames) {
-    const Sensor& sensor = s.sensor.sensor;
+    const Sensor& sensor = s.prepared.sensor;
     ThreadPool& threads = s.renderer.thread_pool();
     if (s.replace_returns) s.replace_returns({sensor, s.beams, *s.fired, threads}, s.frame);
     if (sensor.projector_origin_m) occlude_from_projector(s, *sensor.projector_origin_m);
     if (s.is_moving) deskew(timed_scene(s), s.beams, *s.fired, s.frame.deskewed);
     record_beam_poses(s.motion, s.beams, s.hit_columns.poses, threads, s.frame);
-    apply_noise(s.sensor.noise, s.beams, threads, s.workspace.noise, s.frame, s.noise_steps);
+    apply_noise(s.prepared.noise, s.beams, threads, s.workspace.noise, s.frame, s.noise_steps);
     if (s.fired != &s.beams) s.frame.true_directions.swap(s.workspace.fired.directions);
   }
 }
 
 void measure_tile(const Simulation& s, BeamRange tile) {
-  if (s.sensor.pulse_model) return measure_waveforms(s, tile);
-  const Sensor& sensor = s.sensor.sensor;
+  if (s.prepared.pulse_model) return measure_waveforms(s, tile);
+  const Sensor& sensor = s.prepared.sensor;
   check_limits(sensor.limits, *s.fired, tile, s.frame);
   if (sensor.lidar_equation) {
     shade_lidar(*sensor.lidar_equation, s.scene, sensor.wavelength_m, tile, s.frame);
@@ -165,7 +165,7 @@ void measure_tile(const Simulation& s, BeamRange tile) {
 }
 
 bool takes_one_cast(const Simulation& s) {
-  return !s.sensor.pulse_model && !s.is_moving;
+  return !s.prepared.pulse_model && !s.is_moving;
 }
 
 }  // namespace glidar

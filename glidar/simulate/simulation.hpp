@@ -34,7 +34,7 @@ struct Workspace {
 /// One frame to be simulated: what is measured, with what, and where the result is written.
 struct Simulation {
   const Scene& scene;
-  const PreparedSensor& sensor;
+  const PreparedSensor& prepared;
   Renderer& renderer;
   const Beams& beams;  ///< as the sensor reports them
   const Motion& motion;

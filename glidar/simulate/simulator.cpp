@@ -14,9 +14,9 @@ namespace glidar {
 
 struct Simulator::State {
   const Scene& scene;
-  std::shared_ptr<const BeamCache> beams;
+  std::shared_ptr<const BeamCache> beam_cache;
   Renderer& renderer;
-  PreparedSensor sensor;
+  PreparedSensor prepared;
   std::unique_ptr<Renderer> own_renderer = {};  ///< empty: shared
   ReturnReplacement replace_returns = {};
   std::deque<Workspace> workspaces = {};  ///< of frames that are simulated together
@@ -35,12 +35,14 @@ void require_motions(std::size_t motions, std::size_t frames) {
 
 }  // namespace
 
-Simulator::Simulator(const Scene& scene, const std::shared_ptr<const BeamCache>& sensor,
+Simulator::Simulator(const Scene& scene, const std::shared_ptr<const BeamCache>& beam_cache,
                      Renderer& renderer)
-    : state_(std::make_unique<State>(State{.scene = scene,
-                                           .beams = sensor,
-                                           .renderer = renderer,
-                                           .sensor = prepare_sensor(sensor->sensor(), scene)})) {}
+    : state_(
+          std::make_unique<State>(State{.scene = scene,
+                                        .beam_cache = beam_cache,
+                                        .renderer = renderer,
+                                        .prepared = prepare_sensor(beam_cache->sensor(), scene)})) {
+}
 
 Simulator::Simulator(const Scene& scene, Sensor sensor, Renderer& renderer)
     : Simulator(scene, std::make_shared<const BeamCache>(std::move(sensor)), renderer) {}
@@ -67,7 +69,7 @@ Frame Simulator::simulate(const Pose& world_from_sensor, const HitColumnMask& hi
 
 void Simulator::simulate(const Motion& motion, const HitColumnMask& hit_columns, Frame& frame,
                          const ProgressCallback& progress) {
-  const std::shared_ptr<const Beams> beams = state_->beams->beams(frame.number);
+  const std::shared_ptr<const Beams> beams = state_->beam_cache->beams(frame.number);
   Simulation simulation = prepare(*beams, motion, hit_columns, frame, progress);
   glidar::simulate({&simulation, 1});
 }
@@ -78,7 +80,7 @@ void Simulator::simulate_batch(std::span<const Motion> motions, const HitColumnM
   std::vector<std::shared_ptr<const Beams>> beams;
   std::vector<Simulation> together;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    beams.push_back(state_->beams->beams(frames[i].number));
+    beams.push_back(state_->beam_cache->beams(frames[i].number));
     Simulation one =
         prepare(*beams.back(), motions[i], hit_columns, frames[i], progress, together.size());
     if (takes_one_cast(one)) {
@@ -96,11 +98,11 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
   State& state = *state_;
   while (state.workspaces.size() <= slot) state.workspaces.emplace_back();
   return {.scene = state.scene,
-          .sensor = state.sensor,
+          .prepared = state.prepared,
           .renderer = state.renderer,
           .beams = beams,
           .motion = motion,
-          .hit_columns = hit_columns | state.sensor.required_hit_columns,
+          .hit_columns = hit_columns | state.prepared.required_hit_columns,
           .workspace = state.workspaces[slot],
           .frame = frame,
           .progress = progress,
@@ -116,7 +118,7 @@ const Scene& Simulator::scene() const {
 }
 
 const Sensor& Simulator::sensor() const {
-  return state_->beams->sensor();
+  return state_->beam_cache->sensor();
 }
 
 Renderer& Simulator::renderer() const {
@@ -124,7 +126,7 @@ Renderer& Simulator::renderer() const {
 }
 
 std::shared_ptr<const Beams> Simulator::beams(std::uint32_t frame) const {
-  return state_->beams->beams(frame);
+  return state_->beam_cache->beams(frame);
 }
 
 }  // namespace glidar

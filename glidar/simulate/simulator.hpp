@@ -28,7 +28,8 @@ class Simulator {
   /// With a renderer over the same scene, which must outlive it.
   Simulator(const Scene& scene, Sensor sensor, Renderer& renderer);
   /// With a sensor whose beams are shared.
-  Simulator(const Scene& scene, const std::shared_ptr<const BeamCache>& sensor, Renderer& renderer);
+  Simulator(const Scene& scene, const std::shared_ptr<const BeamCache>& beam_cache,
+            Renderer& renderer);
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
   ~Simulator();

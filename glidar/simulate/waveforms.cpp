@@ -23,17 +23,17 @@ EchoContribution ghost_path(const Simulation& s, std::size_t mirrored, double en
   const double share = material_hit(s.scene, memory.hits, ray).mirror;
   const double range_m = memory.hits.range_m[ray] + hits.range_m[mirrored];
   const double sent = energy * share * share *
-                      backscatter_at(s.scene, s.sensor.sensor.wavelength_m, hits, mirrored);
-  return {range_m, received_signal(s.sensor.pulse_model->lidar_equation, sent, range_m), ray,
+                      backscatter_at(s.scene, s.prepared.sensor.wavelength_m, hits, mirrored);
+  return {range_m, received_signal(s.prepared.pulse_model->lidar_equation, sent, range_m), ray,
           ReturnSource::ghost, kGhostSurface};
 }
 
 /// All contributions of surfaces to the waveform of a pulse.
-void collect_paths(const Simulation& s, std::size_t beam, BeamSurfaces& surfaces,
+void collect_paths(const Simulation& s, std::size_t pulse, BeamSurfaces& surfaces,
                    WaveformBuffer& waveform) {
   const SubRayWorkspace& memory = s.workspace.sub_rays;
-  const std::vector<SubRay>& rays = s.sensor.pulse_model->sub_rays;
-  const std::size_t first = first_sub_ray(s, beam);
+  const std::vector<SubRay>& rays = s.prepared.pulse_model->sub_rays;
+  const std::size_t first = first_sub_ray(s, pulse);
   const bool is_spread = rays.size() > 1;
   if (is_spread) surfaces.find(memory.beams, memory.hits, first, rays.size());
   waveform.paths = 0;
@@ -85,8 +85,8 @@ void detect_echoes(const LidarEquation& light, const RngKey& key, double first_n
 void report_echo(const Simulation& s, const PulseEcho& echo, const EchoContribution& path,
                  std::size_t entry) {
   Frame& frame = s.frame;
-  const Sensor& sensor = s.sensor.sensor;
-  const double saturation = s.sensor.pulse_model->lidar_equation.saturation;
+  const Sensor& sensor = s.prepared.sensor;
+  const double saturation = s.prepared.pulse_model->lidar_equation.saturation;
   const double range_m = reported_range_m(sensor.receiver, echo);
   Status status = check_limits(sensor.limits, *s.fired, entry, range_m);
   if (status == Status::hit && saturation > 0.0 && echo.signal >= saturation)
@@ -109,11 +109,11 @@ EchoContribution strongest_surface(const WaveformBuffer& waveform) {
 
 /// Why a pulse has no echo: no surface, or too weak a signal, maybe by weather.
 Status missing_return_status(const Simulation& s, const EchoContribution& surface,
-                             double strongest_signal, std::size_t beam) {
+                             double strongest_signal, std::size_t pulse) {
   if (surface.source == kInvalidId) {
-    return std::isnan(s.fired->directions[beam].x()) ? Status::invalid_pixel : Status::miss;
+    return std::isnan(s.fired->directions[pulse].x()) ? Status::invalid_pixel : Status::miss;
   }
-  return classify_weak_return(s.sensor.pulse_model->lidar_equation, strongest_signal,
+  return classify_weak_return(s.prepared.pulse_model->lidar_equation, strongest_signal,
                               surface.range_m);
 }
 
@@ -153,14 +153,14 @@ std::uint32_t reflected_by(const SubRayWorkspace& memory, std::uint32_t sub_ray)
   return memory.mirrored_hits.instance[static_cast<std::size_t>(at - memory.mirrored_from.begin())];
 }
 
-bool traces(const Simulation& s, std::size_t beam) {
-  return s.trace != nullptr && s.trace->pulse == beam;
+bool traces(const Simulation& s, std::size_t pulse) {
+  return s.trace != nullptr && s.trace->pulse == pulse;
 }
 
-void trace_echoes(const Simulation& s, std::size_t beam, const WaveformBuffer& waveform) {
+void trace_echoes(const Simulation& s, std::size_t pulse, const WaveformBuffer& waveform) {
   WaveformTrace& trace = *s.trace;
-  const std::vector<SubRay>& rays = s.sensor.pulse_model->sub_rays;
-  const std::size_t first = first_sub_ray(s, beam);
+  const std::vector<SubRay>& rays = s.prepared.pulse_model->sub_rays;
+  const std::size_t first = first_sub_ray(s, pulse);
   trace.sub_rays = rays.size();
   trace.light_paths.clear();
   for (std::size_t k = 0; k < waveform.paths; ++k) {
@@ -180,45 +180,45 @@ void trace_echoes(const Simulation& s, std::size_t beam, const WaveformBuffer& w
 }
 
 /// Finds the echoes that the receiver detects. Returns the status of a pulse without any.
-Status find_returns(const Simulation& s, std::size_t beam, const EchoContribution& surface,
+Status find_returns(const Simulation& s, std::size_t pulse, const EchoContribution& surface,
                     PulseMemory& memory) {
   WaveformBuffer& waveform = memory.waveform;
-  const Sensor& sensor = s.sensor.sensor;
-  const PulseModel& model = *s.sensor.pulse_model;
+  const Sensor& sensor = s.prepared.sensor;
+  const PulseModel& model = *s.prepared.pulse_model;
   const double width_m =
       sensor.footprint && waveform.paths > 0 ? diameter_m(*sensor.footprint, surface.range_m) : 0.0;
   RngKey key = memory.samples.key;
-  key.beam = static_cast<std::uint32_t>(beam);
+  key.beam = static_cast<std::uint32_t>(pulse);
   add_weather(model.weather, key, surface.range_m, memory.weather, waveform);
   detect_peaks(pulse_sigma_m(sensor.receiver), width_m, waveform);
-  if (traces(s, beam)) trace_echoes(s, beam, waveform);
+  if (traces(s, pulse)) trace_echoes(s, pulse, waveform);
   double strongest_signal = 0.0;
   for (std::size_t k = 0; k < waveform.echoes; ++k) {
     const bool is_surface = waveform.path[waveform.echo[k].strongest].source != kInvalidId;
     if (is_surface) strongest_signal = std::max(strongest_signal, waveform.echo[k].signal);
   }
-  const std::size_t in_run = beam - memory.samples.key.beam;
+  const std::size_t in_run = pulse - memory.samples.key.beam;
   detect_echoes(model.lidar_equation, key, memory.samples.noise[in_run], waveform);
   enforce_min_separation(sensor.receiver.min_return_separation_m, waveform);
-  return missing_return_status(s, surface, strongest_signal, beam);
+  return missing_return_status(s, surface, strongest_signal, pulse);
 }
 
-void measure_pulse(const Simulation& s, std::size_t beam, PulseMemory& memory) {
+void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) {
   WaveformBuffer& waveform = memory.waveform;
-  const Receiver& receiver = s.sensor.sensor.receiver;
-  collect_paths(s, beam, memory.surfaces, waveform);
+  const Receiver& receiver = s.prepared.sensor.receiver;
+  collect_paths(s, pulse, memory.surfaces, waveform);
   const EchoContribution surface = strongest_surface(waveform);
-  const Status missing = find_returns(s, beam, surface, memory);
+  const Status missing = find_returns(s, pulse, surface, memory);
   std::array<int, kMaxReturns> chosen;
   select_returns(receiver, {waveform.echo.data(), waveform.echoes}, chosen);
-  if (traces(s, beam)) {
+  if (traces(s, pulse)) {
     s.trace->received.assign(waveform.echo.begin(),
                              waveform.echo.begin() + static_cast<std::ptrdiff_t>(waveform.echoes));
     s.trace->returns.assign(chosen.begin(),
                             chosen.begin() + static_cast<std::ptrdiff_t>(receiver.returns.size()));
   }
   for (std::size_t r = 0; r < receiver.returns.size(); ++r) {
-    const std::size_t entry = r * s.fired->firings() + beam;
+    const std::size_t entry = r * s.fired->firings() + pulse;
     if (chosen[r] >= 0) {
       const PulseEcho& echo = waveform.echo[static_cast<std::size_t>(chosen[r])];
       const EchoContribution& path = waveform.path[echo.strongest];
@@ -236,7 +236,7 @@ void measure_pulse(const Simulation& s, std::size_t beam, PulseMemory& memory) {
 void find_signals(const Simulation& s, BeamRange range) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
   const BeamRange sub_rays{first_sub_ray(s, range.begin), first_sub_ray(s, range.end)};
-  received_signals(s.sensor.pulse_model->lidar_equation, s.scene, s.sensor.sensor.wavelength_m,
+  received_signals(s.prepared.pulse_model->lidar_equation, s.scene, s.prepared.sensor.wavelength_m,
                    memory.hits, sub_rays, std::span(memory.signals).subspan(sub_rays.begin));
 }
 
@@ -247,7 +247,7 @@ void measure_waveforms(const Simulation& s, BeamRange tile) {
   for (std::size_t first = tile.begin; first < tile.end; first += kPulsesPerTask) {
     const BeamRange run{first, std::min(first + kPulsesPerTask, tile.end)};
     find_signals(s, run);
-    sample_receiver(s.sensor.pulse_model->lidar_equation, s.frame, first, memory.samples);
+    sample_receiver(s.prepared.pulse_model->lidar_equation, s.frame, first, memory.samples);
     for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) measure_pulse(s, pulse, memory);
   }
 }
@@ -256,7 +256,7 @@ WaveformTrace trace_waveform(const Simulation& s, std::size_t pulse, Frame frame
   WaveformTrace trace;
   trace.pulse = pulse;
   const Simulation again{.scene = s.scene,
-                         .sensor = s.sensor,
+                         .prepared = s.prepared,
                          .renderer = s.renderer,
                          .beams = s.beams,
                          .motion = s.motion,

@@ -270,8 +270,8 @@ void set_frame_header(const RenderFlags& flags, std::uint32_t number, const Acti
 }
 
 std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,
-                                          const std::shared_ptr<const BeamCache>& sensor) {
-  auto simulator = std::make_shared<Simulator>(prepared.scene, sensor, *prepared.renderer);
+                                          const std::shared_ptr<const BeamCache>& beam_cache) {
+  auto simulator = std::make_shared<Simulator>(prepared.scene, beam_cache, *prepared.renderer);
   if (prepared.woods2016_camera)
     simulator->set_return_replacement(woods2016_measurement(*prepared.woods2016_camera));
   return simulator;

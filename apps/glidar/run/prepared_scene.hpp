@@ -63,7 +63,7 @@ void set_frame_header(const RenderFlags& flags, std::uint32_t number, const Acti
 
 /// A simulator of the scene, with the framebuffer that its options select.
 std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,
-                                          const std::shared_ptr<const BeamCache>& sensor);
+                                          const std::shared_ptr<const BeamCache>& beam_cache);
 
 /// Prints advice as warnings.
 void print_advice(const std::vector<std::string>& advice, Console& console);
