@@ -56,7 +56,7 @@ void write_beam(TraceWriter& out) {
   out.line("beam", "{} of {}: row {}, col {}, ring {}", pulse, beams.firings(), pulse / beams.cols,
            pulse % beams.cols, ring_of(beams, entry));
   if (beams.returns > 1) {
-    out.line("", "return {} of {}", entry / beams.firings() + 1, beams.returns);
+    out.line("", "return {} of {}", entry / beams.firings(), beams.returns);
   }
   const std::uint32_t time_ns = beams.times_ns.empty() ? 0U : beams.times_ns[entry];
   out.line("fired", "{} ns after the start of frame {} at {} ns; seed {}", time_ns,
@@ -188,11 +188,11 @@ void write_paths(TraceWriter& out, const WaveformTrace& pulse) {
     out.line("", "... and {} more", pulse.light_paths.size() - kMax);
 }
 
-/// The returns of the receiver that report an echo: " -> return 1".
+/// The returns of the receiver that report an echo: " -> return 0".
 std::string returns_of(const WaveformTrace& pulse, std::size_t echo) {
   std::string text;
   for (std::size_t r = 0; r < pulse.returns.size(); ++r) {
-    if (pulse.returns[r] == static_cast<int>(echo)) text += fmt::format(" -> return {}", r + 1);
+    if (pulse.returns[r] == static_cast<int>(echo)) text += fmt::format(" -> return {}", r);
   }
   return text;
 }

@@ -60,7 +60,7 @@ class Explain(CliTest):
             trace = self.trace_of("dense.csv", "--index", str(index))
             self.assert_is_trace_of(trace, point)
             by_pixel = self.trace_of("dense.csv", "--row", point["row"], "--col", point["col"], "--return",
-                                     str(int(point["return"]) + 1))
+                                     point["return"])
             self.assertEqual(by_pixel, trace)
 
     def test_the_trace_lists_beam_hit_light_echoes_and_random_numbers(self):
@@ -143,7 +143,8 @@ optics: {type: spinning, elevation_deg: [0], columns_per_turn: 60, beam_origin_m
         self.assertIn("--index N, or --row R and --col C", explain("b.pcd", "--index", "1", "--return", "1"))
         self.assertIn("in two ways", explain("b.pcd", "--index", "1", "--row", "1", "--col", "1"))
         self.assertIn("--index: 64; allowed: below 39", explain("b.pcd", "--index", "64"))
-        self.assertIn("8 rows, 8 columns, 1 returns", explain("b.pcd", "--row", "8", "--col", "0"))
+        self.assertIn("8 rows, 8 columns, 1 returns, each from 0", explain("b.pcd", "--row", "8", "--col", "0"))
+        self.assertIn("0, 0, 1; allowed", explain("b.pcd", "--row", "0", "--col", "0", "--return", "1"))
         self.assertIn("-1", explain("b.pcd", "--index", "-1"))
         self.write("box.obj", box_of(2.5))
         self.assertIn("the models have changed", explain("b.pcd", "--index", "0"))

@@ -70,14 +70,14 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
                      const Beams& beams) {
   if (flags.row) {
     const auto pulses_rows = static_cast<std::int64_t>(beams.rows / beams.returns);
-    const std::int64_t return_number = flags.return_number.value_or(1);
-    if (*flags.row >= pulses_rows || *flags.col >= beams.cols || return_number > beams.returns) {
-      throw Error(
-          {"--row, --col, --return",
-           fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
-           fmt::format("{} rows, {} columns, {} returns", pulses_rows, beams.cols, beams.returns)});
+    const std::int64_t return_number = flags.return_number.value_or(0);
+    if (*flags.row >= pulses_rows || *flags.col >= beams.cols || return_number >= beams.returns) {
+      throw Error({"--row, --col, --return",
+                   fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
+                   fmt::format("{} rows, {} columns, {} returns, each from 0", pulses_rows,
+                               beams.cols, beams.returns)});
     }
-    const std::int64_t row = (return_number - 1) * pulses_rows + *flags.row;
+    const std::int64_t row = return_number * pulses_rows + *flags.row;
     return static_cast<std::size_t>(row * beams.cols + *flags.col);
   }
   const auto index = static_cast<std::size_t>(*flags.index);
@@ -155,8 +155,8 @@ Command add_explain(CLI::App& program) {
   group.add("--index", "N", "Which point, from 0 in the order of the file", flags->index, index);
   group.add("--row", "R", "Which row of the sensor's beams, from 0; with --col", flags->row, index);
   group.add("--col", "C", "Which column, from 0; with --row", flags->col, index);
-  group.add("--return", "K", "Which return of that beam, from 1 [1]", flags->return_number,
-            whole<std::int64_t>(1, 16));
+  group.add("--return", "K", "Which return of that beam, from 0 [0]", flags->return_number,
+            whole<std::int64_t>(0, 15));
   return [flags] { return run_explain(*flags); };
 }
 
