@@ -24,7 +24,7 @@ struct InterpolationWeights {
   PoseBlock::Component after;
 };
 
-/// As Eigen::Quaterniond::slerp(), to the bit; what is the same at all times is computed once.
+/// As Eigen::Quaterniond::slerp(), bit for bit; what is the same at all times is computed once.
 void find_slerp_weights(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after,
                         InterpolationWeights& weights) {
   const double cosine = before.dot(after);

@@ -284,7 +284,7 @@ TEST(BeamSearch, IsExactWithInstancesAtVastlyDifferentDistances) {
 }
 
 /// Squares of very different sizes on a plane, and one of 2 m at this height above it. Sizes are
-/// powers of two, so that distances to the plane are the same to the bit.
+/// powers of two, so that distances to the plane are the same bit for bit.
 std::vector<Instance> squares_of_all_sizes(const Instance& square, double height_m) {
   std::vector<Instance> squares(4, square);
   squares[1].scale = 0x1p30;
