@@ -241,8 +241,8 @@ TEST(BuiltinModels, WrongSizesAreErrors) {
       {"torus:tube_radius=1",
        "builtin:torus:tube_radius=1: a tube of radius 1; allowed: a "
        "tube_radius below the radius, 1"}};
-  for (const auto& [name, text] : errors) {
-    EXPECT_EQ(error_text([&] { make_builtin_model(name); }), text);
+  for (const auto& error : errors) {
+    EXPECT_EQ(error_text([&] { make_builtin_model(error.first); }), error.second);
   }
 }
 
