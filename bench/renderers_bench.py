@@ -17,7 +17,8 @@ except ImportError as missing:
     sys.exit(f"{missing}; install GLIDAR (docs/python.md) and what scripts/requirements.txt names")
 
 KINDS = ("rays", "raster", "auto")
-SIDES = (32, 48, 64, 96, 128, 256, 512, 1024)
+SIDES = (32, 48, 64, 80, 96, 128, 256, 512, 1024)
+WARM_UP = 4
 EXAMPLE = """example:
   PYTHONPATH=build/release/python build/venv/bin/python bench/renderers_bench.py --plot docs/images/raster.png \\
       builtin:asteroid $GLIDAR_DATA/models/stanford/bun_zipper.ply"""
@@ -32,12 +33,13 @@ def measure(path, side, rounds):
     camera = glidar.camera(side, side, fov_deg=40.0)
     simulators = {kind: glidar.Simulator(scene, camera, renderer=kind) for kind in KINDS}
     times = {kind: [] for kind in KINDS}
-    for turn in range(rounds + 3):
+    for _ in range(rounds):
         for kind, simulator in simulators.items():
-            start = time.perf_counter()
-            simulator.simulate(pose)
-            if turn >= 3:
-                times[kind].append(time.perf_counter() - start)
+            for frame in range(WARM_UP + 4):  # threads of the renderer before still wait for work
+                start = time.perf_counter()
+                simulator.simulate(pose)
+                if frame >= WARM_UP:
+                    times[kind].append(time.perf_counter() - start)
     triangles = sum(len(placed.mesh.triangles) for placed in scene.objects)
     return triangles / side**2, {kind: np.median(values) for kind, values in times.items()}
 

@@ -19,8 +19,8 @@ namespace glidar {
 namespace {
 
 /// The raster processes every triangle in view, a ray only a few: above this many triangles per
-/// beam that may hit something, rays are faster (bench/renderers_bench.py: from 17 to 20).
-constexpr std::uint64_t kMaxPerBeam = 18;
+/// beam that may hit something, rays are faster (bench/renderers_bench.py: about 10).
+constexpr std::uint64_t kMaxPerBeam = 11;
 /// The same for scanners (bench/scan_bench: the raster takes half the time at 2 triangles per beam,
 /// and the same time at 25).
 constexpr double kMaxPerScannerBeam = 12.0;
