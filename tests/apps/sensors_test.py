@@ -21,7 +21,7 @@ class Sensors(CliTest):
 
     def test_the_list_and_the_docs_count_the_values_with_sources(self):
         root = os.path.join(os.path.dirname(__file__), "..", "..")
-        with open(os.path.join(root, "docs", "sensors.md"), encoding="utf-8") as file:
+        with open(os.path.join(root, "docs", "sensor-presets.md"), encoding="utf-8") as file:
             rows = [[cell.strip() for cell in line.strip("|\n ").split("|")] for line in file if line.startswith("| ")]
         documented = {row[0]: row[-1] for row in rows if len(row) == 10}
         lines = {line.split()[0]: line for line in self.succeed("sensors").stdout.splitlines()[1:]}
