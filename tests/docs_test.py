@@ -46,6 +46,9 @@ class Pages(unittest.TestCase):
     def test_troubleshooting(self):
         self.run_page("docs/troubleshooting.md", ("5555", str(free_ports())))
 
+    def test_troubleshooting_of_models(self):
+        self.run_page("docs/troubleshooting-models.md")
+
     def test_figures_of_the_paper(self):
         try_opengl = ["glidar", "render", "builtin:box", "--renderer", "opengl", "-o", "-", "--format", "npy"]
         done = subprocess.run(try_opengl, capture_output=True, timeout=MAX_WAIT_S, check=False)
