@@ -31,11 +31,10 @@ constexpr const char* kExamples =
     R"(Left: the sensor's image. Right: its point cloud, with the sensor's frustum, axes and a grid.
 Keys: s saves the cloud (buffer.pcd and buffer.transform, or the files of -o and --legacy-output),
 + and - move the sensor, space pauses, r resets, f frames the selected object in both views, Esc
-quits. Keys and mouse act on the selected object: the first one, until another is selected in the
-list or by a click on one of its points. Drag on the left to rotate it, on the right to orbit the
-cloud. A click on a point also explains its measurement. In scene files with a rig of sensors,
-select the sensor in the list, or show one alone with --sensor-name. Drop a model or scene file to
-open it.
+quits. Keys and mouse act on the selected object, initially the first one; select another in the
+list or click one of its points. Drag on the left to rotate it, on the right to orbit the cloud. A
+click on a point also explains its measurement. In scene files with a rig of sensors, select the
+sensor in the list, or show one alone with --sensor-name. Drop a model or scene file to open it.
 Examples:
   glidar view builtin:asteroid
   glidar view builtin:torus --object-rate 0,0.5,0.2

@@ -31,7 +31,7 @@ struct ViewStyle {
 /// The state of the viewer and its reactions to keys and mouse, independent of the window.
 class Viewer {
  public:
-  /// Starts to open the input of the flags.
+  /// Starts loading the input named in `flags`.
   Viewer(const RenderFlags& flags, MeasurementThread& thread);
 
   // What is displayed.
@@ -136,7 +136,7 @@ class Viewer {
   Visibility visibility_ = Visibility::inside;
   bool keeps_in_view_ = false;
   std::optional<std::size_t> picked_;
-  std::optional<MeasureRequest> traced_;  ///< whose trace is requested
+  std::optional<MeasureRequest> traced_;  ///< the request whose trace is pending
   bool is_playing_ = true;
   double time_s_ = 0.0;
   FrameSummary summary_;

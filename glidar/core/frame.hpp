@@ -26,7 +26,7 @@ enum class Status : std::uint8_t {
   occluded = 7,            ///< the projector or the second camera does not see the surface
   phase_ambiguous = 8,     ///< the phases are inconsistent: the range is ambiguous
   saturated = 9,           ///< the echo is too strong to be timed
-  weather = 10,            ///< lost in rain, snow or fog
+  weather = 10,            ///< attenuated below the threshold by rain, snow or fog
   no_return_of_rank = 11,  ///< the beam has fewer echoes than the sensor can report
 };
 

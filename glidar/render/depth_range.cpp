@@ -26,7 +26,8 @@ void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, dou
 DepthRange tight_depth_range(double nearest_m, double farthest_m) {
   // Single precision rounds a depth by 6e-8 of it, and positions by 6e-8 of the farthest depth.
   constexpr double kRounding = 0x1p-22;
-  constexpr double kNearestPart = 1e-7;  // of the farthest depth; what is nearer is rounding
+  // Of the farthest depth; smaller depths are rounding errors.
+  constexpr double kNearestPart = 1e-7;
   const double margin = kRounding * (farthest_m - std::max(nearest_m, 0.0)) +
                         0x1p-50 * (std::abs(farthest_m) + std::abs(nearest_m));
   const double far_m = farthest_m + margin;

@@ -17,7 +17,7 @@ namespace glidar {
 /// weather.
 bool needs_waveform(const Sensor& sensor, const Scene& scene);
 
-/// How the pulses of a sensor spread and what dims them.
+/// The footprint and attenuation of a sensor's pulses.
 struct PulseModel {
   std::vector<SubRay> sub_rays;            ///< of each beam; without a footprint a single one
   std::optional<PreparedWeather> weather;  ///< empty: clear air

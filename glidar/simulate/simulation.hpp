@@ -17,8 +17,8 @@ struct SubRayWorkspace {
   std::size_t first_pulse = 0;  ///< whose sub-rays come first
   Beams beams;
   Hits hits;                                 ///< of `beams`
-  std::vector<double> signals;               ///< per sub-ray: what it would bring back alone
-  Beams mirrored;                            ///< what mirrors reflect
+  std::vector<double> signals;               ///< per sub-ray: its signal alone
+  Beams mirrored;                            ///< beams reflected by mirrors
   Hits mirrored_hits;                        ///< of `mirrored`
   std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-ray
 };

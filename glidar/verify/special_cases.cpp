@@ -19,7 +19,7 @@ namespace {
 /// are not compared.
 constexpr double kExactTolerance = 1e-13;
 
-/// Height of the sensor above a planet. Its case is called after the function that makes it.
+/// Height of the sensor above a planet.
 constexpr double kHeight_m = 1.5;
 
 /// A shape in the world.
@@ -108,7 +108,7 @@ VerifyResult several_instances(const VerifySubject& subject, const std::vector<S
   result.add(cast_view(subject, *renderer, exact, world_from_sensor, kWide_rad));
   if (subject.casts != BeamKind::any) return result;
   // Single precision is wrong for about one beam in a thousand here, and for fewer at short range:
-  // cast so many that several are wrong on any processor.
+  // cast enough beams that several are wrong on any processor.
   constexpr double kBeamsTimesDistance = 1.28e6;
   constexpr std::uint32_t kNumber = 90100;
   const auto casts = static_cast<std::uint32_t>(kBeamsTimesDistance / distance_m);

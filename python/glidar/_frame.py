@@ -100,7 +100,7 @@ class Frame(Immutable):
 
     @property
     def rows(self) -> int:
-        """Number of rows. With several returns, each return has so many rows, one block below the other."""
+        """Number of rows. With several returns, each return is a block of this many rows, stacked vertically."""
         return self._core.rows
 
     @property

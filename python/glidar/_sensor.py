@@ -102,7 +102,7 @@ class Sensor(Immutable):
         rain_mm_per_h: float | None = None,
         snow_mm_per_h: float | None = None,
     ) -> Sensor:
-        """The same sensor with other settings, as with the command line's options of the same names.
+        """The same sensor with other settings, like the command-line options of the same names.
 
         Args:
             returns: returns of a pulse: names such as ["strongest", "last"], or the number of nearest ones, 1 to
@@ -170,7 +170,7 @@ class Sensor(Immutable):
 
     @property
     def rows(self) -> int:
-        """Rows of a frame. With several returns, each return has so many rows, one block below the other."""
+        """Rows of a frame. With several returns, each return is a block of this many rows, stacked vertically."""
         return self._core.rows
 
     @property

@@ -28,7 +28,7 @@ void add_camera_options(const OptionGroup& group, SensorFlags& flags) {
   const auto focal_length = number(kAboveZero, kMaxPixels, "pixels above 0, up to 1e9");
   const auto centre = number(-kMaxPixels, kMaxPixels, "pixels from -1e9 to 1e9");
   group.add("-w,--width", "PX", "Image width [256]", flags.width, side);
-  group.add("--height", "PX", "Image height (-h is help) [256]", flags.height, side);
+  group.add("--height", "PX", "Image height; -h prints this help [256]", flags.height, side);
   group.add("--fov", "DEG", "Vertical field of view [20]", flags.fov_deg,
             number(kAboveZero, std::nextafter(180.0, 0.0), "degrees above 0 and below 180"));
   group.add("--fx", "PX", "Focal length along the width [= fy]", flags.fx, focal_length);

@@ -101,7 +101,7 @@ void LockstepRun::start(lockstep::Received received) {
   }
 }
 
-/// An error in a request goes to its client.
+/// Errors in a request are returned to its client.
 LockstepRun::Step LockstepRun::try_advance(Job& job) {
   try {
     return advance(job);
@@ -207,7 +207,7 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
   }
   const auto& columns = measure.columns;
   if (measure.drop_invalid && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
-    refuse_request("flags", "hits only, without the column xyz", "xyz among the columns");
+    refuse_request("flags", "drop_invalid, without the column xyz", "xyz among the columns");
   }
   const std::size_t points = prepared_.sensors[measure.sensor].beams.size();
   const std::int64_t bytes = reply_bytes(columns, points, measure.moments.size());

@@ -56,7 +56,7 @@ void visit_light(Sensor& sensor, FieldVisitor& visitor) {
   visitor.at_most_one({{"lidar_equation", "light"}, "one of light, lidar_equation"});
   for (const char* key : {"footprint", "receiver"}) {
     visitor.needs({key, "lidar_equation", "together with lidar_equation",
-                   "add lidar_equation, the range equation that weighs what comes back"});
+                   "add lidar_equation, the range equation, which computes the received signal"});
   }
   const bool is_pulsed = sensor.lidar_equation.has_value();
   const auto light = [&](FieldVisitor& nested) { describe(sensor.light, nested); };

@@ -86,6 +86,7 @@ inline double largest(double a, double b, double c) {
 /// True for an origin on the triangle, within rounding: not all corners are on one side of
 /// it, and `volume`, its distance from the plane times twice the area, is within the rounding error
 /// of zero. The second bound is for slivers, whose volume is always small: the distance itself
+/// must be within kTouchingHeight of the corners' size.
 inline bool is_touching(const Sheared& a, const Sheared& b, const Sheared& c, double volume) {
   if (std::min(std::min(a.z, b.z), c.z) > 0.0 || largest(a.z, b.z, c.z) < 0.0) return false;
   const double margin = sum_in_any_order(determinant_margin(c, b) * std::abs(a.z),

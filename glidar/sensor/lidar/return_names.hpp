@@ -11,7 +11,7 @@
 
 namespace glidar {
 
-/// The words for returns: "first", "second", "last", "strongest", ...
+/// The names of returns: "first", "second", "last", "strongest", ...
 std::span<const char* const> return_words();
 std::vector<std::string> return_names();
 
