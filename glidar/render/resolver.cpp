@@ -5,11 +5,14 @@
 #include <glidar/math/constants.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/render/coincident_triangles.hpp>
+#include <glidar/render/common/hit_rule.hpp>
+#include <glidar/render/common/triangle_blocks.hpp>
 #include <glidar/render/grazing.hpp>
 #include <glidar/render/shading.hpp>
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace glidar {
@@ -87,6 +90,18 @@ GLIDAR_SIMD void orient_to_sensor(const Eigen::Matrix3d& sensor_from_object,
     out.y[i] = static_cast<float>(sign * in_sensor.y[i]);
     out.z[i] = static_cast<float>(sign * in_sensor.z[i]);
   }
+}
+
+/// Whether the hit rule accepts every hit of a block. Single precision may accept no other.
+[[maybe_unused]] bool are_hits_of_rule(const Resolver& resolver, const HitBlock& block,
+                                       const ExactHits& exact) {
+  bool are_hits = true;
+  for_lanes(block.mask, [&](unsigned i) {
+    const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
+    const Mesh& mesh = resolver.mesh(block.instance[i]);
+    are_hits = are_hits && hit_distance(ray, corners_of(mesh, block.primitive[i])) > 0.0;
+  });
+  return are_hits;
 }
 
 bool needs_normals(const HitColumnMask& hit_columns) {
@@ -251,6 +266,8 @@ void Resolver::write_ranges(const HitBlock& block, const ExactHits& exact, Hits&
 
 void Resolver::write(const Beams& beams, const HitColumnMask& hit_columns, const HitBlock& block,
                      const ExactHits& exact, Hits& hits) const {
+  assert(are_hits_of_rule(*this, block, exact) &&
+         "a renderer was sure of a hit that the rule refuses");
   write_ranges(block, exact, hits);
   const bool has_more = hit_columns.incidence || hit_columns.depth || hit_columns.object_point;
   for_lanes(has_more ? block.mask : 0, [&](unsigned i) {

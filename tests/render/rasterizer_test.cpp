@@ -3,16 +3,17 @@
 // Rasterizers: which beams they accept, and that their results are those of rays, bit for bit.
 #include <glidar/core/error.hpp>
 #include <render/renderer_suite.hpp>
+#include <render/scan_raster/scanner.hpp>
 #include <support/error_text.hpp>
 
 #include <atomic>
-#include <cmath>
 
 namespace glidar {
 namespace {
 
 using testing::builtin_scene;
 using testing::camera_beams;
+using testing::expect_same_hits;
 using testing::pinhole_beams;
 using testing::turned;
 
@@ -28,36 +29,16 @@ class Rasterizer : public ::testing::TestWithParam<const char*> {
     return hits;
   }
 
+  /// Expects the bits of rays in every column; returns how many beams hit.
+  static std::size_t expect_bits_of_rays(const Scene& scene, const CastRequest& request) {
+    return expect_same_hits(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
+  }
+
   static Hits draw(const Scene& scene, const Beams& beams, const Pose& pose) {
     return cast_by(GetParam(), scene,
                    {.beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns});
   }
 };
-
-/// Number of beams that report another triangle than rays, and whether all others have the same
-/// bits.
-struct Compared {
-  std::size_t hits = 0;
-  std::size_t other_triangle = 0;  ///< at the same range, except for rounding
-  std::size_t other_surface = 0;
-};
-
-Compared compare(const Hits& drawn, const Hits& cast) {
-  Compared compared;
-  for (std::size_t i = 0; i < cast.range_m.size(); ++i) {
-    if (cast.instance[i] != kInvalidId) ++compared.hits;
-    if (drawn.instance[i] == cast.instance[i] && drawn.primitive[i] == cast.primitive[i]) {
-      if (cast.instance[i] == kInvalidId) continue;
-      EXPECT_EQ(drawn.range_m[i], cast.range_m[i]) << "beam " << i;
-      EXPECT_EQ(drawn.normal[i], cast.normal[i]) << "beam " << i;
-      EXPECT_EQ(drawn.shading_normal[i], cast.shading_normal[i]) << "beam " << i;
-      continue;
-    }
-    const bool is_near = std::abs(drawn.range_m[i] - cast.range_m[i]) < 1e-9 * cast.range_m[i];
-    ++(is_near ? compared.other_triangle : compared.other_surface);
-  }
-  return compared;
-}
 
 TEST_P(Rasterizer, EqualsRaysOnADenseMesh) {
   const Scene scene = builtin_scene("asteroid");
@@ -65,12 +46,7 @@ TEST_P(Rasterizer, EqualsRaysOnADenseMesh) {
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const CastRequest request{
       .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
-  const Compared compared =
-      compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
-  EXPECT_GT(compared.hits, 30'000U);
-  EXPECT_LE(compared.other_triangle, compared.hits / 10'000);
-  // The outline is some 1000 pixels long, and beams are uncertain within 1/128 of a pixel.
-  EXPECT_LE(compared.other_surface, 15U);
+  EXPECT_GT(expect_bits_of_rays(scene, request), 30'000U);
 }
 
 TEST_P(Rasterizer, EqualsRaysOnTheBunny) {
@@ -84,11 +60,7 @@ TEST_P(Rasterizer, EqualsRaysOnTheBunny) {
         look_at(middle + distance_m * Eigen::Vector3d(0.6, 0.0, 0.8), middle, {0.0, 1.0, 0.0});
     const CastRequest request{
         .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
-    const Compared compared =
-        compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
-    EXPECT_GT(compared.hits, 10'000U) << distance_m;
-    EXPECT_LE(compared.other_triangle, compared.hits / 2000) << distance_m;
-    EXPECT_LE(compared.other_surface, 10U) << distance_m;
+    EXPECT_GT(expect_bits_of_rays(scene, request), 10'000U) << distance_m;
   }
 }
 
@@ -99,12 +71,9 @@ TEST_P(Rasterizer, DrawsImagesLargerThanOneTile) {
   k.cy = 1300.75;
   const Pose pose = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Beams large = pinhole_beams(k);
-  const Hits drawn = draw(scene, large, pose);
-  const Hits cast = cast_by(
-      "rays", scene, {.beams = large, .world_from_sensor = pose, .hit_columns = kAllHitColumns});
-  const Compared compared = compare(drawn, cast);
-  EXPECT_GT(compared.hits, 500'000U);
-  EXPECT_LE(compared.other_surface, 50U);
+  EXPECT_GT(expect_bits_of_rays(
+                scene, {.beams = large, .world_from_sensor = pose, .hit_columns = kAllHitColumns}),
+            500'000U);
 }
 
 TEST_P(Rasterizer, AcceptsAnyPrincipalPointFocalLengthsAndPixelCentre) {
@@ -118,10 +87,7 @@ TEST_P(Rasterizer, AcceptsAnyPrincipalPointFocalLengthsAndPixelCentre) {
     scene.instances[0].world_from_object.translation() =
         5.0 * direction_through(plane_x(k, 100), plane_y(k, 50));
     const CastRequest request{.beams = beams, .hit_columns = kAllHitColumns};
-    const Compared compared =
-        compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
-    EXPECT_GT(compared.hits, 3'000U);
-    EXPECT_LE(compared.other_surface, 5U);
+    EXPECT_GT(expect_bits_of_rays(scene, request), 3'000U);
   }
 }
 
@@ -187,10 +153,21 @@ TEST_P(Rasterizer, AlphaMasksOfSomeSlotsKeepTriangleIds) {
   const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const CastRequest request{
       .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
-  const Compared compared =
-      compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
-  EXPECT_GT(compared.hits, 10'000U);
-  EXPECT_LE(compared.other_triangle + compared.other_surface, compared.hits / 200);
+  if (GetParam() == std::string("raster")) {
+    EXPECT_GT(expect_bits_of_rays(scene, request), 10'000U);
+    return;
+  }
+  // OpenGL cuts masks by texture coordinates in single precision (docs/opengl.md, "Exactness").
+  const Hits drawn = draw(scene, beams, pose);
+  const Hits cast = cast_by("rays", scene, request);
+  std::size_t hits = 0;
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    hits += cast.instance[i] != kInvalidId ? 1 : 0;
+    differing += drawn.primitive[i] != cast.primitive[i] ? 1 : 0;
+  }
+  EXPECT_GT(hits, 10'000U);
+  EXPECT_LE(differing, hits / 1000);
 }
 
 TEST_P(Rasterizer, DisabledInstancesAreNotDrawn) {

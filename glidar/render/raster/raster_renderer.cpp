@@ -11,6 +11,7 @@
 #include <glidar/render/raster/packed_mesh.hpp>
 #include <glidar/render/raster/tile_grid.hpp>
 #include <glidar/render/raster/visible_clusters.hpp>
+#include <glidar/render/rays/rays_renderer.hpp>
 #include <glidar/render/workspace_pool.hpp>
 
 #include <algorithm>
@@ -82,6 +83,7 @@ class RasterRenderer final : public Renderer {
     resize(hits, request.beams.size(), request.hit_columns);
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
+    if (is_on_surface(request)) return cast_rays(request, hits);
     if (!overlaps_) overlaps_.emplace(base_->resolver, base_->search.trees());
     overlaps_->prepare(request);
     find_plane_points(request.beams, points_);
@@ -100,6 +102,29 @@ class RasterRenderer final : public Renderer {
 
  private:
   [[nodiscard]] const Scene& scene() const { return base_->resolver.scene(); }
+
+  /// True where rounding may move a surface to the other side of the sensor, so that the hit rule
+  /// has to decide whether beams hit it. The set-up of triangles is accurate to some 2^-50 of the
+  /// distance of their corners.
+  [[nodiscard]] bool is_on_surface(const CastRequest& request) const {
+    constexpr double kRounding = 0x1p-40;
+    for (std::uint32_t i = 0; i < scene().instances.size(); ++i) {
+      if (!is_enabled(request, i)) continue;
+      const Eigen::AlignedBox3d& box = local_boxes_[scene().instances[i].mesh];
+      const Eigen::Vector3d& sensor = base_->resolver.view(i).sensor_in_object;
+      if (box.isEmpty()) continue;
+      const double reach = kRounding * ((box.center() - sensor).norm() + box.sizes().norm());
+      if (box.squaredExteriorDistance(sensor) > reach * reach) continue;
+      const rays::MeshTree& tree = base_->search.trees().of_instance(i);
+      if (rays::may_touch_triangle(tree, sensor, reach)) return true;
+    }
+    return false;
+  }
+
+  void cast_rays(const CastRequest& request, Hits& hits) {
+    if (rays_ == nullptr) rays_ = make_rays_renderer(base_);
+    rays_->cast(request, hits);
+  }
 
   [[nodiscard]] const raster::PackedMesh& packed_of(std::uint32_t instance) const {
     return packed_[scene().instances[instance].mesh];
@@ -264,6 +289,7 @@ class RasterRenderer final : public Renderer {
   std::vector<VisibleCluster> visible_clusters_;             ///< of all instances
   raster::TileGrid tiles_;
   WorkspacePool<TileScratch> scratch_pool_;
+  std::unique_ptr<Renderer> rays_;  ///< for a sensor on a surface
 };
 
 }  // namespace

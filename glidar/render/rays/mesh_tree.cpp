@@ -102,21 +102,41 @@ Eigen::AlignedBox3d triangle_box(const TriangleBlock& block, unsigned i) {
   return box;
 }
 
-bool has_triangle_in(const MeshTree& tree, std::int32_t index, const Eigen::AlignedBox3d& box) {
+/// Whether accepts(block, i) for a triangle whose box intersects this one.
+template <class Accepts>
+bool any_triangle_in(const MeshTree& tree, std::int32_t index, const Eigen::AlignedBox3d& box,
+                     const Accepts& accepts) {
   if (index < 0) {
     const TriangleCluster& cluster = tree.clusters[static_cast<std::uint32_t>(~index)];
     for (std::uint32_t i = 0; i < cluster.count; ++i) {
       const TriangleBlock& block = tree.blocks[cluster.first_block + i / kBlockSize];
-      if (triangle_box(block, i % kBlockSize).intersects(box)) return true;
+      const unsigned place = i % kBlockSize;
+      if (triangle_box(block, place).intersects(box) && accepts(block, place)) return true;
     }
     return false;
   }
   const TreeNode& node = tree.nodes[static_cast<std::size_t>(index)];
   for (unsigned i = 0; i < 8; ++i) {
     if (node.child[i] == kNoChild || !child_box(node, i).intersects(box)) continue;
-    if (has_triangle_in(tree, node.child[i], box)) return true;
+    if (any_triangle_in(tree, node.child[i], box, accepts)) return true;
   }
   return false;
+}
+
+/// Whether the plane of a triangle passes a point within a distance. A triangle without area has
+/// no plane, so that it passes everywhere.
+bool has_plane_near(const TriangleBlock& block, unsigned i, const Eigen::Vector3d& point,
+                    double distance) {
+  std::array<Eigen::Vector3d, 3> from_point;
+  for (unsigned k = 0; k < 3; ++k) {
+    const auto& corner = block.corner[k];
+    from_point[k] =
+        Eigen::Vector3d(double{corner[0][i]}, double{corner[1][i]}, double{corner[2][i]}) - point;
+  }
+  const Eigen::Vector3d normal =
+      (from_point[1] - from_point[0]).cross(from_point[2] - from_point[0]);
+  const double volume = std::abs(normal.dot(from_point[0]));
+  return !(volume > distance * normal.norm());
 }
 
 }  // namespace
@@ -132,7 +152,17 @@ Eigen::AlignedBox3d box_of(const MeshTree& tree) {
 
 bool has_triangle_near(const MeshTree& tree, const Eigen::AlignedBox3d& box, double margin) {
   const Eigen::Vector3d growth = Eigen::Vector3d::Constant(margin);
-  return !tree.nodes.empty() && has_triangle_in(tree, 0, {box.min() - growth, box.max() + growth});
+  return !tree.nodes.empty() &&
+         any_triangle_in(tree, 0, {box.min() - growth, box.max() + growth},
+                         [](const TriangleBlock&, unsigned) { return true; });
+}
+
+bool may_touch_triangle(const MeshTree& tree, const Eigen::Vector3d& point, double distance) {
+  const Eigen::Vector3d growth = Eigen::Vector3d::Constant(distance);
+  return !tree.nodes.empty() && any_triangle_in(tree, 0, {point - growth, point + growth},
+                                                [&](const TriangleBlock& block, unsigned i) {
+                                                  return has_plane_near(block, i, point, distance);
+                                                });
 }
 
 std::size_t MeshTree::bytes() const {

@@ -32,6 +32,9 @@ Eigen::AlignedBox3d box_of(const MeshTree& tree);
 /// True when the box of some triangle, grown by `margin`, intersects this one.
 bool has_triangle_near(const MeshTree& tree, const Eigen::AlignedBox3d& box, double margin);
 
+/// True when a point may be within a distance of some triangle: its box and its plane are.
+bool may_touch_triangle(const MeshTree& tree, const Eigen::Vector3d& point, double distance);
+
 struct TreeOptions {
   std::uint32_t cluster_size = 8;  ///< maximum triangles per leaf, 1 to 64
   std::uint32_t bins = 16;         ///< of the surface area heuristic per axis, 2 to 16

@@ -48,6 +48,17 @@ std::uint64_t hash_of(const std::vector<HitCandidate>& hits) {
   return hash;
 }
 
+/// Traces rays by every kernel; all must find the same bits.
+Traced trace_by_all(const MeshTree& tree, std::span<const TestRay> rays) {
+  Traced traced = trace(tree, rays, fastest());
+  const std::uint64_t expected = hash_of(traced.hits);
+  for (const Kernel* kernel : usable_kernels()) {
+    if (kernel == &fastest()) continue;
+    EXPECT_EQ(hash_of(trace(tree, rays, *kernel).hits), expected) << kernel->name;
+  }
+  return traced;
+}
+
 /// Rays at vertices and edges of a mesh from one point, and some beside them.
 std::vector<TestRay> aimed_rays(const TestMesh& mesh, const Eigen::Vector3d& origin,
                                 std::size_t count, Numbers& numbers) {
@@ -157,16 +168,21 @@ TEST(MeshTree, IsTheSameForAnyNumberOfThreads) {
 TEST(MeshTree, FourMillionRaysAtVerticesAndEdgesOfAClosedMeshDoNotLeak) {
   constexpr int kRounds = 20;  // of rays that fit into memory
   Numbers numbers(32);
-  const TestMesh mesh = make_sphere(5, 1.0, {0.5, 0.2, 0.1});
+  const Eigen::Vector3d centre(0.5, 0.2, 0.1);
+  const TestMesh mesh = make_sphere(5, 1.0, centre);
   const MeshTree tree = tree_of(mesh);
   std::vector<TestRay> rays(200000);
   for (int round = 0; round < kRounds; ++round) {
     for (TestRay& ray : rays) {
-      const Eigen::Vector3d from =
-          round % 2 == 0 ? Eigen::Vector3d(0.013, 0.21, -0.1) : numbers.in_cube(0.4);
-      ray = aimed(Eigen::Vector3d(0.5, 0.2, 0.1) + from, mesh.corner_or_edge(numbers));
+      const Eigen::Vector3d target = mesh.corner_or_edge(numbers);
+      Eigen::Vector3d from = Eigen::Vector3d(0.013, 0.21, -0.1);
+      if (round % 4 == 1) from = numbers.in_cube(0.4);
+      // From outside at the far half, so that no ray is tangent to the sphere.
+      if (round % 4 == 2) from = -3.0 * (target - centre);
+      if (round % 4 == 3) from = numbers.in_cube(0.4) - 1e4 * (target - centre);
+      ray = aimed(centre + from, target);
     }
-    ASSERT_EQ(misses(trace(tree, rays, fastest()).hits), 0U) << "round " << round;
+    ASSERT_EQ(misses(trace_by_all(tree, rays).hits), 0U) << "round " << round;
   }
 }
 
@@ -189,7 +205,7 @@ TEST(MeshTree, ASensorAboveAPlanetSeesTheGroundBelowIt) {
       if (direction.dot(up) > 0.0) direction = -direction;
       if (direction.dot(up) < -0.02) rays.push_back({ground + 1.5 * up, direction});
     }
-    const Traced traced = trace(tree, rays, fastest());
+    const Traced traced = trace_by_all(tree, rays);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       const double expected = -1.5 / rays[k].direction.dot(up);
       ASSERT_NEAR(traced.hits[k].distance, expected, 1e-6 * expected);
@@ -208,7 +224,7 @@ TEST(MeshTree, ASensorOnAVertexSeesNeitherThatVertexNorThroughTheMesh) {
     const Eigen::Vector3d direction = numbers.direction();
     if (std::abs(direction.dot(vertex)) > 0.05) rays.push_back({vertex, direction});
   }
-  const Traced traced = trace(tree, rays, fastest());
+  const Traced traced = trace_by_all(tree, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const double inwards = -rays[i].direction.dot(rays[i].origin);
     ASSERT_EQ(traced.hits[i].primitive != kNoTriangle, inwards > 0.0);
@@ -216,6 +232,21 @@ TEST(MeshTree, ASensorOnAVertexSeesNeitherThatVertexNorThroughTheMesh) {
       ASSERT_NEAR(traced.hits[i].distance, 2.0 * inwards, 0.05);
     }
   }
+}
+
+TEST(MeshTree, FindsWhetherAPointTouchesATriangle) {
+  TestMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {4, 0, 4}, {0, 4, 4}, {9, 9, 9}};
+  mesh.triangles = {{0, 1, 2}};
+  const MeshTree tree = tree_of(mesh);
+  const Eigen::Vector3d on(1, 1, 2);  // z = x + y
+  const Eigen::Vector3d normal = Eigen::Vector3d(1, 1, -1).normalized();
+  EXPECT_TRUE(may_touch_triangle(tree, on, 1e-12));
+  EXPECT_TRUE(may_touch_triangle(tree, on + 0.9e-6 * normal, 1e-6));
+  EXPECT_FALSE(may_touch_triangle(tree, on + 1.1e-6 * normal, 1e-6)) << "in its box only";
+  EXPECT_FALSE(may_touch_triangle(tree, {5, 0, 5}, 0.5)) << "in its plane only";
+  mesh.triangles = {{0, 3, 0}};
+  EXPECT_TRUE(may_touch_triangle(tree_of(mesh), {3, 4, 5}, 0.0)) << "without area";
 }
 
 TEST(MeshTree, AcceptsMeshesOfEverySize) {

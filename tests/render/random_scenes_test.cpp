@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Random scenes of difficult triangles: every renderer reports the bits of rays, and assertions in
+// the library hold: no renderer is sure of a hit that the hit rule refuses.
+#include <render/renderer_suite.hpp>
+#include <render/scan_raster/scanner.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace glidar {
+namespace {
+
+using testing::camera_beams;
+using testing::Draws;
+using testing::expect_same_hits;
+using testing::Scanner;
+using testing::scanner_beams;
+using testing::turned;
+
+double between(Draws& draws, double low, double high) {
+  return low + (high - low) * draws.next();
+}
+
+std::uint32_t below(Draws& draws, std::size_t end) {
+  return static_cast<std::uint32_t>(
+      std::min(static_cast<std::size_t>(draws.next() * static_cast<double>(end)), end - 1));
+}
+
+/// A new vertex of a mesh: anywhere, at one that exists, next to one, or on a coarse grid, on which
+/// vertices coincide and triangles are coplanar.
+Eigen::Vector3f next_vertex(Draws& draws, const Mesh& mesh) {
+  Eigen::Vector3d p(between(draws, -1, 1), between(draws, -1, 1), between(draws, -1, 1));
+  const std::uint32_t kind = below(draws, 4);
+  if (kind == 1) p = (4.0 * p).array().round() / 4.0;
+  if (kind >= 2 && !mesh.positions_m.empty()) {
+    const Eigen::Vector3f& other = mesh.positions_m[below(draws, mesh.positions_m.size())];
+    const double apart = kind == 2 ? 0.0 : std::pow(10.0, between(draws, -8.0, -1.0));
+    p = other.cast<double>() + apart * p;
+  }
+  return p.cast<float>();
+}
+
+/// Triangles of new and used vertices: neighbours, slivers, duplicates and some without area.
+Mesh random_mesh(Draws& draws, std::uint32_t triangles) {
+  Mesh mesh;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    Triangle corners{};
+    for (std::uint32_t& corner : corners) {
+      if (mesh.positions_m.size() > 3 && draws.next() < 0.5) {
+        corner = below(draws, mesh.positions_m.size());
+        continue;
+      }
+      corner = static_cast<std::uint32_t>(mesh.positions_m.size());
+      mesh.positions_m.push_back(next_vertex(draws, mesh));
+    }
+    mesh.triangles.push_back(corners);
+    if (t % 7 == 6) std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+    if (t % 7 == 6) mesh.triangles.push_back(corners);
+  }
+  return mesh;
+}
+
+/// Up to four instances of up to two meshes, of different sizes and at different distances, some in
+/// the same place; all of them far away from the world's origin.
+Scene random_scene(Draws& draws, const Eigen::Vector3d& centre) {
+  Scene scene = testing::builtin_scene("box");
+  scene.meshes[0] = random_mesh(draws, 1 + below(draws, 200));
+  scene.meshes.push_back(random_mesh(draws, 1 + below(draws, 3)));
+  scene.sources.push_back({});
+  const Instance first = scene.instances[0];
+  scene.instances.clear();
+  const std::uint32_t count = 1 + below(draws, 4);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Instance instance = first;
+    instance.mesh = below(draws, 2);
+    instance.scale = draws.next() < 0.5 ? 1.0 : std::pow(10.0, between(draws, -3.0, 3.0));
+    const double away = instance.scale * between(draws, 0.0, 2.0);
+    instance.world_from_object =
+        turned(between(draws, 0.0, 6.0), draws.direction(), centre + away * draws.direction());
+    if (i > 0 && draws.next() < 0.3) instance = scene.instances.back();
+    scene.instances.push_back(instance);
+  }
+  return scene;
+}
+
+/// Looks at the scene from one of its vertices, from beside it or from far away.
+Pose random_view(Draws& draws, const Scene& scene, const Eigen::Vector3d& centre) {
+  const Instance& at = scene.instances[below(draws, scene.instances.size())];
+  const Mesh& mesh = scene.meshes[at.mesh];
+  const Eigen::Vector3d vertex =
+      mesh.positions_m[below(draws, mesh.positions_m.size())].cast<double>();
+  const std::array distances = {0.0, 1.5, 1.5, 1000.0};
+  const Eigen::Vector3d on_vertex = at.world_from_object * (at.scale * vertex);
+  const double away = at.scale * distances[below(draws, distances.size())];
+  const Eigen::Vector3d eye = on_vertex + away * draws.direction();
+  const Eigen::Vector3d target = centre + 0.3 * at.scale * draws.direction();
+  return look_at(eye, target, draws.direction());
+}
+
+/// Casts by rays and by others; returns the number of hits.
+std::size_t compare(const Scene& scene, const Beams& beams, const Pose& pose,
+                    const std::vector<const char*>& others) {
+  const CastRequest request{
+      .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
+  const Hits rays = testing::cast_with("rays", scene, request);
+  std::size_t hits = 0;
+  for (const char* kind : others) {
+    SCOPED_TRACE(kind);
+    hits = expect_same_hits(testing::cast_with(kind, scene, request), rays);
+  }
+  return hits;
+}
+
+constexpr std::uint64_t kScenes = 120;
+
+TEST(RandomScenes, CamerasSeeTheSameBitsByEveryRenderer) {
+  std::size_t hits = 0;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Draws draws(seed);
+    const Eigen::Vector3d centre = (seed % 3 == 0 ? 1e6 : 0.0) * draws.direction();
+    const Scene scene = random_scene(draws, centre);
+    const Beams beams = camera_beams(96, 64, std::pow(10.0, between(draws, 1.5, 3.0)));
+    hits += compare(scene, beams, random_view(draws, scene, centre), {"raster", "auto"});
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(hits, 100'000U);
+}
+
+TEST(RandomScenes, ScannersSeeTheSameBitsByEveryRenderer) {
+  std::size_t hits = 0;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Draws draws(1000 + seed);
+    const Eigen::Vector3d centre = (seed % 3 == 0 ? 1e6 : 0.0) * draws.direction();
+    const Scene scene = random_scene(draws, centre);
+    const Beams beams = scanner_beams({.rows = 16,
+                                       .cols = 256,
+                                       .stagger_rad = seed % 2 == 0 ? 0.0 : 0.01,
+                                       .origin_m = seed % 4 == 0 ? 0.02 : 0.0},
+                                      seed);
+    hits += compare(scene, beams, random_view(draws, scene, centre), {"raster", "auto"});
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(hits, 20'000U);
+}
+
+}  // namespace
+}  // namespace glidar
