@@ -33,7 +33,7 @@ sensor: sensor.yaml
 trials: {trials}
 pose:
   position: {{shell: {{radius_m: [3, 5]}}}}
-  orientation: {{look_at: {{off_deg: 3, roll_deg: {{uniform: [-180, 180]}}}}}}
+  orientation: {{look_at: {{max_offset_deg: 3, roll_deg: {{uniform: [-180, 180]}}}}}}
 outputs: {outputs}
 """
 

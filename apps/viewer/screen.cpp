@@ -174,7 +174,7 @@ void Screen::show_sensor_view(Viewer& viewer) {
 
 void Screen::use_mouse_on_sensor(Viewer& viewer) {
   const Eigen::Vector2d drag = dragged(ImGuiMouseButton_Left);
-  if (drag != Eigen::Vector2d::Zero()) viewer.turn_objects(drag);
+  if (drag != Eigen::Vector2d::Zero()) viewer.rotate_objects(drag);
   if (ImGui::IsItemHovered() && ImGui::GetIO().MouseWheel != 0.0F) {
     viewer.step_sensor(ImGui::GetIO().MouseWheel);
   }

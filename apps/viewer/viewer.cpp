@@ -323,7 +323,7 @@ Pose& Viewer::moved_object(std::size_t object) {
   return request_.objects_moved.at(object);
 }
 
-void Viewer::turn_objects(const Eigen::Vector2d& drag) {
+void Viewer::rotate_objects(const Eigen::Vector2d& drag) {
   if (!is_open()) return;
   const SensorAxes axes = axes_of(*snapshot()->beams);
   const Eigen::Matrix3d rotation = snapshot()->frame.world_from_sensor.linear();

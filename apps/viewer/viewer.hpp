@@ -91,7 +91,7 @@ class Viewer {
   /// While on, aims the sensor whenever the centre of the selected objects leaves its image.
   void set_keeps_in_view(bool is_on);
   /// Rotates the selected objects about their centre; the drag is in heights of the sensor's image.
-  void turn_objects(const Eigen::Vector2d& drag);
+  void rotate_objects(const Eigen::Vector2d& drag);
   /// Moves the sensor towards the selected objects; a step is 1/20 of the distance.
   void step_sensor(double steps);
   void set_sensor_pose(const Pose& world_from_sensor);

@@ -11,7 +11,7 @@ namespace glidar {
 namespace {
 
 /// Hash of a position's bits (finaliser of SplitMix64); -0 counts as 0.
-std::uint64_t mixed(const Eigen::Vector3f& p) {
+std::uint64_t position_hash(const Eigen::Vector3f& p) {
   std::uint64_t hash = 0;
   for (int k = 0; k < 3; ++k) {
     hash += std::bit_cast<std::uint32_t>(p[k] + 0.0F) + 0x9e3779b97f4a7c15U;
@@ -41,7 +41,7 @@ struct CornerKey {
 /// Triangles by a hash of their corners that does not depend on the corners' order, then by index.
 std::vector<CornerKey> sorted_keys(const Mesh& mesh) {
   std::vector<std::uint64_t> vertex_hash(mesh.positions_m.size());
-  std::transform(mesh.positions_m.begin(), mesh.positions_m.end(), vertex_hash.begin(), mixed);
+  std::transform(mesh.positions_m.begin(), mesh.positions_m.end(), vertex_hash.begin(), position_hash);
   std::vector<CornerKey> keys(mesh.triangles.size());
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
     const Triangle& t = mesh.triangles[i];

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/render/renderer.hpp>
-#include <glidar/render/woods2016_framebuffer.hpp>
+#include <glidar/render/woods2016_camera.hpp>
 
 #include <functional>
 #include <memory>

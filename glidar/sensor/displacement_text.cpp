@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/sensor/fisher_information.hpp>
+#include <glidar/sensor/displacement_text.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/displacement_text.hpp>
 
 #include <Eigen/Eigenvalues>
 

@@ -68,9 +68,4 @@ struct FisherInformation {
 FisherInformation pose_information(const Frame& frame, const Beams& beams,
                                    const FisherOptions& options = {});
 
-/// A displacement in words, in its own coordinate frame: a translation, or a rotation about an axis
-/// through a point, with a pitch if it is a screw motion. Lengths much smaller than `length_m` are
-/// omitted.
-std::string describe_displacement(const Vector6& displacement, double length_m);
-
 }  // namespace glidar

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/woods2016_framebuffer.hpp>
+#include <glidar/render/woods2016_camera.hpp>
 #include <glidar/simulate/return_replacement.hpp>
 
 #include <optional>

@@ -294,7 +294,7 @@ Frame FramePool::take() {
   return frame;
 }
 
-void FramePool::give_back(Frame frame) noexcept {
+void FramePool::release(Frame frame) noexcept {
   const std::size_t beams = frame.range_m.capacity();
   if (beams == 0) return;
   const std::lock_guard lock(mutex_);

@@ -16,7 +16,7 @@ class FramePool {
  public:
   FramePool();
   Frame take();
-  void give_back(Frame frame) noexcept;
+  void release(Frame frame) noexcept;
 
  private:
   std::mutex mutex_;
@@ -31,7 +31,7 @@ struct Measured {
   Measured(const Measured&) = delete;
   Measured& operator=(const Measured&) = delete;
   ~Measured() {
-    if (pool) pool->give_back(std::move(frame));
+    if (pool) pool->release(std::move(frame));
   }
   /// The scene that it measured, possibly without a renderer. Throws Error when a restored
   /// frame has none yet.

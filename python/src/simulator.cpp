@@ -5,6 +5,7 @@
 #include "report.hpp"
 
 #include <glidar/core/point_cloud.hpp>
+#include <glidar/sensor/lidar_placement.hpp>
 #include <glidar/sensor/view_placement.hpp>
 #include <glidar/simulate/simulator.hpp>
 

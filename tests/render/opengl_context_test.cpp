@@ -4,7 +4,7 @@
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
-#include <glidar/render/woods2016_framebuffer.hpp>
+#include <glidar/render/woods2016_camera.hpp>
 #include <render/renderer_suite.hpp>
 #include <support/error_text.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Memory and open files stay constant, however many frames are drawn or renderers are created.
-#include <glidar/render/woods2016_framebuffer.hpp>
+#include <glidar/render/woods2016_camera.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <unistd.h>

@@ -36,8 +36,9 @@ double border_px(const std::string& renderer) {
 }
 
 /// Compares every beam with brute force; returns how many were compared (not near an edge).
-std::size_t expect_judged(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
-                          const Hits& hits, double band_px = 0.0) {
+std::size_t expect_hits_of_rule(const Scene& scene, const Beams& beams,
+                                const Pose& world_from_sensor, const Hits& hits,
+                                double band_px = 0.0) {
   const double size = bounds(scene).diagonal().norm();
   const double focal_px = beams.pinhole ? beams.pinhole->fx : 1.0;
   const double farthest_m =
@@ -74,7 +75,8 @@ TEST_P(RendererSuite, EqualsBruteForceOnASphere) {
   const Beams beams = camera_beams(61, 43, 60.0);  // odd sizes: tiles beyond the border
   const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Hits hits = cast(scene, beams, pose);
-  EXPECT_GT(expect_judged(scene, beams, pose, hits, border_px(GetParam())), beams.size() * 9 / 10);
+  EXPECT_GT(expect_hits_of_rule(scene, beams, pose, hits, border_px(GetParam())),
+            beams.size() * 9 / 10);
 }
 
 TEST_P(RendererSuite, EqualsBruteForceAmongMovedAndScaledInstances) {
@@ -90,7 +92,7 @@ TEST_P(RendererSuite, EqualsBruteForceAmongMovedAndScaledInstances) {
   const Hits hits = cast(scene, beams, Pose::Identity());
   const double band_px = border_px(GetParam());
   const std::size_t least = beams.size() * (band_px == 0.0 ? 18 : 17) / 20;
-  EXPECT_GT(expect_judged(scene, beams, Pose::Identity(), hits, band_px), least);
+  EXPECT_GT(expect_hits_of_rule(scene, beams, Pose::Identity(), hits, band_px), least);
 }
 
 TEST_P(AnyBeamsSuite, FollowsBeamOriginsAndDirectionsInAllDirections) {
@@ -105,7 +107,7 @@ TEST_P(AnyBeamsSuite, FollowsBeamOriginsAndDirectionsInAllDirections) {
   const Beams beams = loose_beams(directions, origins);
   const Pose pose = turned(0.3, {0.0, 1.0, 1.0}, {0.05, 0.02, -0.03});
   const Hits hits = cast(scene, beams, pose);
-  EXPECT_GT(expect_judged(scene, beams, pose, hits), beams.size() * 9 / 10);
+  EXPECT_GT(expect_hits_of_rule(scene, beams, pose, hits), beams.size() * 9 / 10);
   for (const std::uint32_t instance : hits.instance) EXPECT_EQ(instance, 0U);  // it is closed
 }
 

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/random.hpp>
+#include <glidar/sensor/displacement_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

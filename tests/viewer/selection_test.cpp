@@ -69,7 +69,7 @@ TEST_F(SelectionTest, KeysAndDragsActOnTheSelectedObjectOnly) {
   const Frame before = snapshot_of(viewer).frame;
   viewer.select(1);
   EXPECT_EQ(viewer.selected_name(), "right");
-  viewer.turn_objects({0.25, 0.0});
+  viewer.rotate_objects({0.25, 0.0});
   const Frame& turned = snapshot_of(viewer).frame;
   EXPECT_TRUE(turned.world_from_instance[0].isApprox(before.world_from_instance[0], 0.0));
   EXPECT_FALSE(turned.world_from_instance[1].isApprox(before.world_from_instance[1], 0.1));
@@ -107,7 +107,7 @@ TEST_F(SelectionTest, AllObjectsRotateTogetherAboutTheirCentre) {
   viewer.select({});
   EXPECT_EQ(viewer.selected_name(), "all objects");
   const Eigen::Vector3d before = middle_m(viewer, 0) - middle_m(viewer, 1);
-  viewer.turn_objects({0.25, 0.0});
+  viewer.rotate_objects({0.25, 0.0});
   const Eigen::Vector3d after = middle_m(viewer, 0) - middle_m(viewer, 1);
   EXPECT_NEAR(before.norm(), after.norm(), kRounding);
   EXPECT_GT((before - after).norm(), 1.0);

@@ -48,7 +48,7 @@ TEST_F(ViewerTest, ADragRotatesTheObjectAboutItsCentreAndResetUndoesIt) {
   Viewer viewer(flags_, measurements_);
   const Pose before = snapshot_of(viewer).frame.world_from_instance[0];
   const Eigen::Vector3d middle = bounds(viewer.snapshot()->prepared->scene).center();
-  viewer.turn_objects({0.25, 0.0});
+  viewer.rotate_objects({0.25, 0.0});
   const Pose turned = snapshot_of(viewer).frame.world_from_instance[0];
   EXPECT_TRUE((turned * (before.inverse() * middle)).isApprox(middle, 1e-9));
   const Eigen::AngleAxisd by((turned * before.inverse()).linear());
@@ -62,7 +62,7 @@ TEST_F(ViewerTest, ADragRotatesTheObjectAboutItsCentreAndResetUndoesIt) {
 TEST_F(ViewerTest, KeepsARotationThroughTenThousandSmallDrags) {
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
-  for (int i = 0; i < 10'000; ++i) viewer.turn_objects({0.001, 0.0007});
+  for (int i = 0; i < 10'000; ++i) viewer.rotate_objects({0.001, 0.0007});
   EXPECT_TRUE(is_rigid(snapshot_of(viewer).frame.world_from_instance[0]));
 }
 

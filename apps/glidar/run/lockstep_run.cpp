@@ -78,7 +78,7 @@ int LockstepRun::run() {
 void LockstepRun::serve(const StopRequest& stop) {
   if (std::optional<lockstep::Received> received = server_.receive()) start(std::move(*received));
   if (jobs_.empty()) {
-    return link::wait_for({&server_.socket()}, stop.descriptor(), server_.patience());
+    return link::wait_for({&server_.socket()}, stop.descriptor(), server_.poll_timeout());
   }
   Job job = std::move(jobs_.front());
   jobs_.pop_front();
@@ -128,7 +128,7 @@ LockstepRun::Step LockstepRun::advance(Job& job) {
   const auto begin = std::chrono::steady_clock::now();
   measure_some(job, all.subspan(first, count));
   frame_s_[job.measure.sensor] = seconds_since(begin) / static_cast<double>(count);
-  if (first + count < all.size()) return Step::goes_on;
+  if (first + count < all.size()) return Step::in_progress;
   server_.reply(job.to, job.replies);
   return Step::answered;
 }

@@ -41,7 +41,7 @@ class LockstepRun {
     std::vector<lockstep::CloudReply> replies = {};
     std::vector<link::RecordedFrame> frames = {};  ///< to be recorded after the reply
   };
-  enum class Step : std::uint8_t { waits_for_memory, goes_on, answered };
+  enum class Step : std::uint8_t { waits_for_memory, in_progress, answered };
 
   void serve(const StopRequest& stop);
   void start(lockstep::Received received);

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
+#include <glidar/sensor/lidar_placement.hpp>
 #include <glidar/sensor/view_placement.hpp>
 
 #include <string>

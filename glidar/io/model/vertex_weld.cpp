@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
 /// Hashes three words (multipliers of splitmix64, Steele et al. 2014).
-std::uint64_t mixed(const Eigen::Vector3f& p) {
+std::uint64_t position_hash(const Eigen::Vector3f& p) {
   std::uint64_t h = 0;
   for (int axis = 0; axis < 3; ++axis) {
     h = (h ^ std::bit_cast<std::uint32_t>(p[axis])) * 0x9E37'79B9'7F4A'7C15U;
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> first_equal(const std::vector<Eigen::Vector3f>& posit
   std::vector<std::uint32_t> first(positions.size());
   const int shift = 64 - std::countr_zero(slots);
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    std::size_t slot = shift < 64 ? mixed(positions[v]) >> static_cast<unsigned>(shift) : 0;
+    std::size_t slot = shift < 64 ? position_hash(positions[v]) >> static_cast<unsigned>(shift) : 0;
     while (table[slot] != kNoVertex && !same(table[slot], v)) slot = (slot + 1) & (slots - 1);
     if (table[slot] == kNoVertex) table[slot] = v;
     first[v] = table[slot];

@@ -199,7 +199,7 @@ void Server::reply_description(const ReplyTo& to, std::string_view json) {
   reply_text(to, TextKind::description, json);
 }
 
-std::chrono::milliseconds Server::patience() const {
+std::chrono::milliseconds Server::poll_timeout() const {
   constexpr std::chrono::milliseconds kIdle{1000};
   constexpr std::chrono::milliseconds kBusy{50};
   return queue_.has_clients() ? kBusy : kIdle;

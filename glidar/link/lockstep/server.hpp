@@ -69,7 +69,7 @@ class Server {
 
   [[nodiscard]] const link::Socket& socket() const { return router_.socket(); }
   /// Maximum time to wait for the socket before receive() is called again.
-  [[nodiscard]] std::chrono::milliseconds patience() const;
+  [[nodiscard]] std::chrono::milliseconds poll_timeout() const;
 
   struct Counts {
     std::uint64_t received = 0;

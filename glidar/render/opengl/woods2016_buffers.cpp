@@ -80,7 +80,7 @@ ShadedMesh upload_mesh(const Mesh& mesh) {
 }
 
 /// Converts a texture to RGBA; a missing alpha is opaque.
-std::vector<std::uint8_t> spread(const Texture& texture) {
+std::vector<std::uint8_t> to_rgba(const Texture& texture) {
   const std::size_t pixels = std::size_t{texture.width} * texture.height;
   const std::size_t n = texture.channels;
   const bool is_grey = n < 3;
@@ -98,7 +98,7 @@ std::vector<std::uint8_t> spread(const Texture& texture) {
 
 GlTexture upload_texture(const Texture& texture) {
   GlTexture uploaded;
-  const std::vector<std::uint8_t> rgba = spread(texture);
+  const std::vector<std::uint8_t> rgba = to_rgba(texture);
   glBindTexture(GL_TEXTURE_2D, uploaded.name());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, static_cast<GLsizei>(texture.width),
                static_cast<GLsizei>(texture.height), 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());

@@ -8,7 +8,7 @@
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/visible_depths.hpp>
-#include <glidar/render/woods2016_framebuffer.hpp>
+#include <glidar/render/woods2016_camera.hpp>
 
 #include <memory>
 #include <utility>

@@ -6,7 +6,7 @@
 #include <glidar/render/opengl/projection.hpp>
 #include <glidar/render/opengl/woods2016_buffers.hpp>
 #include <glidar/render/resolver.hpp>
-#include <glidar/render/woods2016_framebuffer.hpp>
+#include <glidar/render/woods2016_camera.hpp>
 
 #include <string>
 

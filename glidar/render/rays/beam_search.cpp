@@ -223,7 +223,7 @@ void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   };
   if (instances.size() == 1) {
     InstanceTrace trace(cast_, kernel_, block);
-    trace.start(instances[0], cast_.trees.largest_reach_m(), beams, lanes);
+    trace.start(instances[0], cast_.trees.max_reach_m(), beams, lanes);
     trace.trace();
     tied = trace.packet.tied;
     for_lanes(lanes, [&](unsigned i) {

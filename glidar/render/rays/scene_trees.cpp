@@ -69,12 +69,12 @@ void SceneTrees::find_reaches(const Resolver& resolver) {
 }
 
 void SceneTrees::find_group_reaches() {
-  largest_reach_m_ = 0.0;
+  max_reach_m_ = 0.0;
   for (InstanceGroup& group : groups_) {
     for (const std::uint32_t i : group.instances) {
-      largest_reach_m_ = std::max(largest_reach_m_, reach_m_[i]);
+      max_reach_m_ = std::max(max_reach_m_, reach_m_[i]);
     }
-    group.reach_m = largest_reach_m_;
+    group.reach_m = max_reach_m_;
   }
 }
 

@@ -57,7 +57,7 @@ class SceneTrees {
   /// are rounded by 2^-53 of it.
   [[nodiscard]] double reach_m(std::uint32_t instance) const { return reach_m_[instance]; }
   /// The maximum over instances().
-  [[nodiscard]] double largest_reach_m() const { return largest_reach_m_; }
+  [[nodiscard]] double max_reach_m() const { return max_reach_m_; }
 
  private:
   void find_reaches(const Resolver& resolver);
@@ -76,7 +76,7 @@ class SceneTrees {
   std::vector<double> mesh_reach_;    ///< per mesh: to its farthest vertex, object units
   std::vector<std::uint32_t> instances_;
   std::vector<double> reach_m_;  ///< per instance
-  double largest_reach_m_ = 0.0;
+  double max_reach_m_ = 0.0;
 
   std::vector<Pose> poses_;                             ///< per instance, as the trees have them
   std::vector<std::uint8_t> enabled_;                   ///< per instance

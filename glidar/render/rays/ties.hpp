@@ -39,7 +39,7 @@ HitOrder order_of_hits(const CastView& cast, std::size_t beam, const PrimitiveRe
 /// The same with the largest reach of the scene.
 inline HitOrder order_of_hits(const CastView& cast, std::size_t beam, const PrimitiveRef& found,
                               const PrimitiveRef& before) {
-  return order_of_hits(cast, beam, found, before, cast.trees.largest_reach_m());
+  return order_of_hits(cast, beam, found, before, cast.trees.max_reach_m());
 }
 
 /// The lowest instance and triangle of those that tie with the nearest one, see tie_window_m().

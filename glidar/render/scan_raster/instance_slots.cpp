@@ -114,7 +114,7 @@ Placement make_placement(const rays::SceneTrees& trees, const InstanceView& view
   p.metres = view.scale;
   // As in packet_start.hpp.
   p.rounding = origin.lpNorm<1>() + 2.0 * sector.distance_m() / view.scale +
-               0x1p4 * trees.largest_reach_m() / view.scale;
+               0x1p4 * trees.max_reach_m() / view.scale;
   p.margin = next_above(kBoxMargin * size_of(tree.sphere, origin));
   return p;
 }

@@ -19,7 +19,7 @@ void SectorExactTest::set_instance(std::uint32_t instance, Placement& placement)
   placement.retest_exactly = [](void* self, std::uint32_t cell, std::uint32_t slot) {
     static_cast<SectorExactTest*>(self)->retest_exactly(cell, slot);
   };
-  packet_.tie_reach = cast_.trees.largest_reach_m() / placement.metres;
+  packet_.tie_reach = cast_.trees.max_reach_m() / placement.metres;
   packet_.context = this;
   packet_.accepts_hit = nullptr;
   if (!placement.always_retests) return;

@@ -248,13 +248,13 @@ def _roll(found):
 
 
 def _look_at(field, at_target):
-    keys = ["target", "off_deg"] if at_target else ["axis", "half_angle_deg"]
+    keys = ["target", "max_offset_deg"] if at_target else ["axis", "half_angle_deg"]
     found = yf.require_keys(field, keys + ["up", "roll_deg"])
     up = tuple(yf.optional(found, "up", yf.direction, UP))
     if at_target:
         target = tuple(yf.optional(found, "target", lambda f: yf.numbers(f, 3), [0.0, 0.0, 0.0]))
-        off_deg = yf.optional(found, "off_deg", lambda f: yf.number(f, yf.CONE_DEG), 0.0)
-        return LookAt(target, None, up, np.radians(off_deg), _roll(found))
+        max_offset_deg = yf.optional(found, "max_offset_deg", lambda f: yf.number(f, yf.CONE_DEG), 0.0)
+        return LookAt(target, None, up, np.radians(max_offset_deg), _roll(found))
     axis = tuple(yf.direction(yf.need(field, found, "axis")))
     half_angle_deg = yf.number(yf.need(field, found, "half_angle_deg"), yf.CONE_DEG)
     return LookAt(None, axis, up, np.radians(half_angle_deg), _roll(found))

@@ -35,7 +35,7 @@ trials: 6
 shard_trials: 3
 pose:
   position: {cone: {axis: [1, 0, 0], half_angle_deg: 25, radius_m: [3, 4]}}
-  orientation: {look_at: {off_deg: 8, roll_deg: {uniform: [-180, 180]}}}
+  orientation: {look_at: {max_offset_deg: 8, roll_deg: {uniform: [-180, 180]}}}
 outputs: {bop: {depth_scale_mm: 0.25, split: val}}
 """
 STEP_MM = 0.25

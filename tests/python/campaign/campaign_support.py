@@ -25,7 +25,7 @@ trials: 40
 shard_trials: 4
 pose:
   position: {shell: {radius_m: [3, 5]}}
-  orientation: {look_at: {off_deg: 5, roll_deg: {uniform: [-180, 180]}}}
+  orientation: {look_at: {max_offset_deg: 5, roll_deg: {uniform: [-180, 180]}}}
 """
 
 

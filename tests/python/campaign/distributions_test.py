@@ -132,7 +132,7 @@ def test_look_at_points_the_boresight_at_the_target_with_up_upwards(boresight, f
     assert np.isfinite(m[2]).all()  # vertical line of sight: any roll is valid
 
 
-def test_roll_rotates_about_the_boresight_and_off_deg_perturbs_it():
+def test_roll_rotates_about_the_boresight_and_max_offset_deg_perturbs_it():
     rolled = poses.LookAt((0, 0, 0), None, (0, 0, 1), 0.0, d.Constant(90.0))
     m = rolled.sample(np.array([[-5.0, 0, 0]]), np.empty((1, 0)), np.zeros(1), np.array(["z"]))[0]
     # Unrolled, x is right (world -y) and y down (world -z); a right-handed quarter turn about z

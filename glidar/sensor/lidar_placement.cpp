@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/lidar_placement.hpp>
+
 #include <glidar/core/error.hpp>
-#include <glidar/sensor/view_placement.hpp>
 
 #include <algorithm>
 #include <cmath>
