@@ -3,6 +3,7 @@
 #include <glidar/render/grazing.hpp>
 
 #include <glidar/math/simd.hpp>
+#include <glidar/render/block_kernel.hpp>
 #include <glidar/render/common/triangle_blocks.hpp>
 
 #include <cmath>
@@ -27,8 +28,6 @@ void set_facing_plane(unsigned lane, const HitTriangle& triangle, ExactHits& exa
   exact.offset[lane] = normal.dot(a);
   exact.cosine[lane] = normal.dot(d);
 }
-
-constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
 
 /// 0 where the plane is accurate enough for a lane, else 1. An integer, so that loops vectorise.
 [[gnu::always_inline]] inline unsigned is_uncertain(const ExactHits& exact, unsigned lane) {

@@ -21,12 +21,14 @@ struct HitBlock {
   bool is_run = false;           ///< surely all lanes hit, and their beams follow each other
 };
 
+/// The mask of all lanes.
+inline constexpr std::uint32_t kAllLanes = (1U << kLanes) - 1U;
+
 /// Writes value_of(lane) to the beams of these lanes; `column` has one entry per beam.
 template <class T, class ValueOf>
 void write_lanes(const HitBlock& block, std::uint32_t lanes, const ValueOf& value_of,
                  std::vector<T>& column) {
-  constexpr std::uint32_t kAll = (1U << kLanes) - 1U;
-  if (block.is_run && lanes == kAll) {  // a loop that vectorises
+  if (block.is_run && lanes == kAllLanes) {  // a loop that vectorises
     T* const first = column.data() + block.beam[0];
     for (unsigned i = 0; i < kLanes; ++i) first[i] = value_of(i);
     return;

@@ -14,7 +14,8 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kColumnsPerStep = 128;  // columns that are scanned at once
+constexpr std::uint32_t kBlocksPerStep = 8;  // blocks of kLanes columns that are scanned at once
+constexpr std::uint32_t kColumnsPerStep = kBlocksPerStep * kLanes;
 
 /// Up to kLanes hits in progress.
 struct PixelBatch {
@@ -128,23 +129,40 @@ void finish(const HitWriter& w, PixelBatch& batch) {
 struct IdSummary {
   std::uint32_t certain;    ///< bit i: lane i has kCertainFlag
   std::uint32_t contested;  ///< bit i: lane i has kContestedFlag
-  bool is_one_triangle;
+  std::uint32_t lowest;     ///< without flags
+  std::uint32_t highest;
 };
 
 GLIDAR_SIMD IdSummary summarize(const Lanes<std::uint32_t>& ids) {
-  const std::uint32_t first = ids[0];
-  Lanes<std::uint32_t> certain;
-  Lanes<std::uint32_t> contested;
-  std::uint32_t differing = 0;
+  std::uint32_t lowest = kNoTriangleId;
+  std::uint32_t highest = 0;
+  std::uint32_t certain = 0;
+  std::uint32_t contested = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
-    certain[i] = static_cast<std::uint32_t>((ids[i] & kCertainFlag) != 0) << i;
-    contested[i] = static_cast<std::uint32_t>((ids[i] & kContestedFlag) != 0) << i;
-    differing |= (ids[i] ^ first) & kTriangleIdMask;
+    const std::uint32_t id = ids[i] & kTriangleIdMask;
+    lowest = id < lowest ? id : lowest;
+    highest = id > highest ? id : highest;
+    certain |= ids[i] >> 31U << i;
+    contested |= (ids[i] >> 30U & 1U) << i;
   }
-  IdSummary summary{.certain = 0, .contested = 0, .is_one_triangle = differing == 0};
-  for (unsigned i = 0; i < kLanes; ++i) summary.certain |= certain[i];
-  for (unsigned i = 0; i < kLanes; ++i) summary.contested |= contested[i];
-  return summary;
+  static_assert(kCertainFlag == 1U << 31U && kContestedFlag == 1U << 30U);
+  return {.certain = certain, .contested = contested, .lowest = lowest, .highest = highest};
+}
+
+/// Sets the triangles of lanes whose ids are all of this instance.
+void decode_instance(const HitWriter& w, std::uint32_t instance, PixelBatch& batch) {
+  HitBlock& block = batch.block;
+  const std::uint32_t first = w.triangles.first(instance);
+  for (unsigned i = 0; i < kLanes; ++i) {
+    block.instance[i] = instance;
+    block.primitive[i] = (batch.triangle_id[i] & kTriangleIdMask) - first;
+  }
+  const auto replace = [&block](const std::uint32_t* by) {
+    if (by == nullptr) return;
+    for (std::uint32_t& primitive : block.primitive) primitive = by[primitive];
+  };
+  replace(w.triangles.order(instance));
+  if (!w.request.cull_back_faces) replace(w.resolver.first_coincident(instance));
 }
 
 /// Sets instance and primitive of a lane from its triangle id.
@@ -159,24 +177,23 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
   HitBlock& block = batch.block;
   block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << batch.used) - 1);
   if (block.mask == 0) return;
-  block.is_run = batch.used == kLanes && block.beam[kLanes - 1] - block.beam[0] == kLanes - 1;
   for (unsigned lane = batch.used; lane < kLanes; ++lane) {
     batch.triangle_id[lane] = batch.triangle_id[0];
   }
   const IdSummary ids = summarize(batch.triangle_id);
   batch.certain = ids.certain;
   batch.contested = ids.contested;
-  block.is_one_triangle = ids.is_one_triangle;
+  block.is_one_triangle = ids.lowest == ids.highest;
   const bool with_corners = needs_corners(w.request.hit_columns);
-  decode_lane(w, 0, batch);
-  w.resolver.prefetch(block, 0, with_corners);
-  if (block.is_one_triangle) {
-    block.instance.fill(block.instance[0]);
-    block.primitive.fill(block.primitive[0]);
-  }
-  for (unsigned lane = 1; lane < batch.used && !block.is_one_triangle; ++lane) {
-    decode_lane(w, lane, batch);
-    w.resolver.prefetch(block, lane, with_corners);
+  const std::uint32_t instance = w.triangles.instance_of(ids.lowest);
+  if (ids.highest < w.triangles.end(instance)) {
+    decode_instance(w, instance, batch);
+    w.resolver.prefetch_one_instance(block, with_corners);
+  } else {
+    for (unsigned lane = 0; lane < kLanes; ++lane) {
+      decode_lane(w, lane, batch);
+      w.resolver.prefetch(block, lane, with_corners);
+    }
   }
   if (w.close_triangles != nullptr) batch.contested |= close_lanes(w, block);
 }
@@ -195,37 +212,52 @@ void advance(const HitWriter& w, PixelBatchQueue& queue) {
   finish(w, queue.filling());
 }
 
-/// Lists the non-empty columns in a section of a row; returns their number.
-std::uint32_t list_filled(const std::uint32_t* triangle_ids, std::uint32_t begin, std::uint32_t end,
-                          std::array<std::uint32_t, kColumnsPerStep>& cols) {
-  std::uint32_t count = 0;
-  for (std::uint32_t col = begin; col < end;
-       ++col) {  // without a branch, which would often be mispredicted
-    cols[count] = col;
-    count += triangle_ids[col] != kNoTriangleId ? 1U : 0U;
+/// Finds the non-empty pixels of a section of a row: a bit for each, kLanes per mask.
+GLIDAR_SIMD void find_filled(const std::uint32_t* triangle_ids, std::uint32_t count,
+                             std::array<std::uint32_t, kBlocksPerStep>& masks) {
+  const std::uint32_t whole = count / kLanes;
+  for (std::uint32_t block = 0; block < whole; ++block) {
+    const std::uint32_t* const ids = triangle_ids + std::size_t{block} * kLanes;
+    std::uint32_t mask = 0;
+    for (unsigned i = 0; i < kLanes; ++i) {
+      mask |= static_cast<std::uint32_t>(ids[i] != kNoTriangleId) << i;
+    }
+    masks[block] = mask;
   }
-  return count;
+  std::uint32_t mask = 0;
+  for (std::uint32_t i = whole * kLanes; i < count; ++i) {
+    mask |= static_cast<std::uint32_t>(triangle_ids[i] != kNoTriangleId) << (i % kLanes);
+  }
+  if (whole < kBlocksPerStep) masks[whole] = mask;
 }
 
 /// A row of `written`.
 struct RowPixels {
   const std::uint32_t* triangle_ids;  ///< per column of `written`
   std::size_t first_beam;
-  std::uint32_t first_col;  ///< of the image
-  double y;                 ///< where its beams cross the plane at depth 1
+  double y;  ///< where its beams cross the plane at depth 1
 };
 
-/// Adds the pixels in these columns of a row to a batch.
-void collect(const HitWriter& w, const RowPixels& row, std::span<const std::uint32_t> cols,
-             PixelBatch& batch) {
-  const unsigned first = batch.used;
-  const auto count = static_cast<unsigned>(cols.size());
-  const double* const x = w.points.x.data() + row.first_col;
-  for (unsigned i = 0; i < count; ++i) batch.triangle_id[first + i] = row.triangle_ids[cols[i]];
-  for (unsigned i = 0; i < count; ++i) batch.x[first + i] = x[cols[i]];
-  for (unsigned i = 0; i < count; ++i) batch.y[first + i] = row.y;
-  for (unsigned i = 0; i < count; ++i) batch.block.beam[first + i] = row.first_beam + cols[i];
-  batch.used += count;
+/// Sets a batch to kLanes pixels in a row from a column on.
+GLIDAR_SIMD void set_run(const RowPixels& row, const double* x, std::uint32_t col,
+                         PixelBatch& __restrict batch) {
+  const std::uint32_t* const ids = row.triangle_ids + col;
+  for (unsigned i = 0; i < kLanes; ++i) batch.triangle_id[i] = ids[i];
+  for (unsigned i = 0; i < kLanes; ++i) batch.x[i] = x[col + i];
+  for (unsigned i = 0; i < kLanes; ++i) batch.y[i] = row.y;
+  for (unsigned i = 0; i < kLanes; ++i) batch.block.beam[i] = row.first_beam + col + i;
+  batch.used = kLanes;
+  batch.block.is_run = true;
+}
+
+/// Adds a pixel of a row to a batch.
+void add_pixel(const RowPixels& row, const double* x, std::uint32_t col, PixelBatch& batch) {
+  const unsigned lane = batch.used++;
+  batch.block.is_run = false;
+  batch.triangle_id[lane] = row.triangle_ids[col];
+  batch.x[lane] = x[col];
+  batch.y[lane] = row.y;
+  batch.block.beam[lane] = row.first_beam + col;
 }
 
 /// The beams of a row of `written`.
@@ -235,30 +267,48 @@ BeamRange beams_of(const HitWriter& w, std::uint32_t row) {
   return {first, first + w.written.cols};
 }
 
-void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchQueue& queue) {
+/// Batches in progress: of adjacent pixels, and of those between empty ones.
+struct PixelQueues {
+  PixelBatchQueue runs;
+  PixelBatchQueue others;
+};
+
+void collect_row(const HitWriter& w, std::uint32_t row, PixelQueues& queues) {
   const std::uint32_t drawn_row = w.written.first_row - w.drawn.first_row + row;
   const std::uint32_t drawn_col = w.written.first_col - w.drawn.first_col;
   const RowPixels pixels = {
       .triangle_ids = w.triangle_ids.data() + std::size_t{drawn_row} * w.drawn.cols + drawn_col,
       .first_beam = beams_of(w, row).begin,
-      .first_col = w.written.first_col,
       .y = w.points.y[w.written.first_row + row]};
-  std::array<std::uint32_t, kColumnsPerStep> cols;
-  for (std::uint32_t begin = 0; begin < w.written.cols; begin += kColumnsPerStep) {
-    const std::uint32_t end = std::min(begin + kColumnsPerStep, w.written.cols);
-    const std::uint32_t count = list_filled(pixels.triangle_ids, begin, end, cols);
-    // Misses are written in long runs, and hits over them.
-    if (count < end - begin) {
-      write_misses(w.request.hit_columns, pixels.first_beam + begin, end - begin, w.hits);
+  const double* const x = w.points.x.data() + w.written.first_col;
+  std::array<std::uint32_t, kBlocksPerStep> masks{};
+  std::uint32_t first_miss = 0;  // misses are written in long runs, and hits over them
+  const auto write_misses_until = [&](std::uint32_t end) {
+    if (first_miss >= end) return;
+    write_misses(w.request.hit_columns, pixels.first_beam + first_miss, end - first_miss, w.hits);
+  };
+  for (std::uint32_t col = 0; col < w.written.cols; col += kLanes) {
+    if (col % kColumnsPerStep == 0) {
+      find_filled(pixels.triangle_ids + col, std::min(kColumnsPerStep, w.written.cols - col),
+                  masks);
     }
-    for (std::uint32_t done = 0; done < count;) {
-      PixelBatch& batch = queue.filling();
-      const std::uint32_t added = std::min(kLanes - batch.used, count - done);
-      collect(w, pixels, std::span(cols).subspan(done, added), batch);
-      if (batch.used == kLanes) advance(w, queue);
-      done += added;
+    const std::uint32_t filled = masks[col % kColumnsPerStep / kLanes];
+    if (filled == 0) continue;
+    const std::uint32_t next = std::min(col + kLanes, w.written.cols);
+    write_misses_until(filled == (1U << (next - col)) - 1U ? col : next);
+    first_miss = next;
+    if (filled == kAllLanes) {
+      set_run(pixels, x, col, queues.runs.filling());
+      advance(w, queues.runs);
+      continue;
     }
+    for_lanes(filled, [&](unsigned i) {
+      PixelBatch& batch = queues.others.filling();
+      add_pixel(pixels, x, col + i, batch);
+      if (batch.used == kLanes) advance(w, queues.others);
+    });
   }
+  write_misses_until(w.written.cols);
 }
 
 /// Overwrites pixels by the hits of cast beams. Beams of the range in columns outside of `written`
@@ -305,9 +355,11 @@ DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
 }
 
 void write_rows(const HitWriter& w, std::uint32_t begin, std::uint32_t end) {
-  PixelBatchQueue queue;
-  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, queue);
-  for (std::size_t i = 0; i < queue.batches.size(); ++i) advance(w, queue);
+  PixelQueues queues;
+  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, queues);
+  for (PixelBatchQueue* queue : {&queues.runs, &queues.others}) {
+    for (std::size_t i = 0; i < queue->batches.size(); ++i) advance(w, *queue);
+  }
   if (!w.cast_hits.empty())
     write_cast_hits(w, {beams_of(w, begin).begin, beams_of(w, end - 1).end});
   if (!w.request.on_tile_done) return;

@@ -4,6 +4,7 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/math/simd.hpp>
+#include <glidar/render/block_kernels.hpp>
 #include <glidar/render/coincident_triangles.hpp>
 #include <glidar/render/common/hit_rule.hpp>
 #include <glidar/render/common/triangle_blocks.hpp>
@@ -11,6 +12,7 @@
 #include <glidar/render/shading.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -29,7 +31,9 @@ std::uint32_t lanes_not_on(const HitBlock& block, std::uint32_t instance) {
 }
 
 bool is_one_instance(const HitBlock& block) {
-  return lanes_not_on(block, block.instance[0]) == 0;
+  std::uint32_t differing = 0;
+  for (unsigned i = 1; i < kLanes; ++i) differing |= block.instance[i] ^ block.instance[0];
+  return differing == 0;
 }
 
 /// Copies the rays of the lanes that hit the instance.
@@ -46,25 +50,6 @@ GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const 
   }
 }
 
-// Whole vectors are written, since vectors written in parts are slow to load.
-
-/// Sets the same plane for all lanes.
-GLIDAR_SIMD void repeat_plane(const TrianglePlane& plane, ExactHits& exact) {
-  fill(plane.normal.x(), exact.normal.x);
-  fill(plane.normal.y(), exact.normal.y);
-  fill(plane.normal.z(), exact.normal.z);
-  fill(plane.offset, exact.offset);
-}
-
-/// Sets the corners of lane 0 for all lanes.
-GLIDAR_SIMD void repeat_first(CornerBlock& corners) {
-  for (Lanes3<float>* corner : {&corners.c0, &corners.c1, &corners.c2}) {
-    fill(corner->x[0], corner->x);
-    fill(corner->y[0], corner->y);
-    fill(corner->z[0], corner->z);
-  }
-}
-
 /// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
 GLIDAR_SIMD void intersect_planes(ExactHits& e) {
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -78,17 +63,15 @@ GLIDAR_SIMD void intersect_planes(ExactHits& e) {
   }
 }
 
-/// Rotates front normals of one instance into the sensor's frame and turns them towards the sensor.
-GLIDAR_SIMD void orient_to_sensor(const Eigen::Matrix3d& sensor_from_object,
-                                  const Lanes3<double>& in, const Lanes<double>& cosine,
-                                  Lanes3<float>& out) {
-  Lanes3<double> in_sensor;
-  rotate(sensor_from_object, in, in_sensor);
+/// The vertices of a block's triangles, corner by corner.
+using CornerIndices = std::array<std::array<std::uint32_t, kLanes>, 3>;
+
+void find_corners(const Triangle* triangles, const HitBlock& block, CornerIndices& corners) {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const double sign = cosine[i] > 0.0 ? -1.0 : 1.0;
-    out.x[i] = static_cast<float>(sign * in_sensor.x[i]);
-    out.y[i] = static_cast<float>(sign * in_sensor.y[i]);
-    out.z[i] = static_cast<float>(sign * in_sensor.z[i]);
+    const Triangle& triangle = triangles[block.primitive[i]];
+    corners[0][i] = triangle[0];
+    corners[1][i] = triangle[1];
+    corners[2][i] = triangle[2];
   }
 }
 
@@ -102,6 +85,14 @@ GLIDAR_SIMD void orient_to_sensor(const Eigen::Matrix3d& sensor_from_object,
     are_hits = are_hits && hit_distance(ray, corners_of(mesh, block.primitive[i])) > 0.0;
   });
   return are_hits;
+}
+
+void gather_vectors(const BlockKernel& kernel, const Eigen::Vector3f* of_vertex,
+                    const CornerIndices& corners, CornerBlock& vectors) {
+  const float* const numbers = of_vertex->data();
+  kernel.gather(numbers, corners[0].data(), vectors.c0);
+  kernel.gather(numbers, corners[1].data(), vectors.c1);
+  kernel.gather(numbers, corners[2].data(), vectors.c2);
 }
 
 bool needs_normals(const HitColumnMask& hit_columns) {
@@ -170,7 +161,8 @@ GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes
   for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i];
 }
 
-Resolver::Resolver(const Scene& scene) : scene_(scene), colours_(scene) {
+Resolver::Resolver(const Scene& scene)
+    : scene_(scene), kernel_(select_block_kernel()), colours_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     planes_.push_back(triangle_planes(mesh));
@@ -227,19 +219,30 @@ void Resolver::prefetch_corners(const HitBlock& block, const HitColumnMask& hit_
 
 void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exact) const {
   const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
-  for (unsigned i = 0; i < kLanes; ++i) {
-    if ((block.mask >> i & 1U) != 0) continue;
+  for_lanes(~block.mask & kAllLanes, [&](unsigned i) {
     block.instance[i] = block.instance[first];
     block.primitive[i] = block.primitive[first];
+  });
+  if (!beams.has_origins && is_one_instance(block)) {
+    const InstanceView& view = views_[block.instance[0]];
+    const bool is_certain = kernel_.intersect({.object_from_sensor = view.object_from_sensor.data(),
+                                               .sensor_in_object = view.sensor_in_object.data(),
+                                               .direction = &beams.direction,
+                                               .planes = instances_[block.instance[0]].planes,
+                                               .primitive = block.primitive.data()},
+                                              {.normal = &exact.normal,
+                                               .origin = &exact.origin,
+                                               .direction = &exact.direction,
+                                               .offset = &exact.offset,
+                                               .cosine = &exact.cosine,
+                                               .distance = &exact.distance});
+    if (!is_certain) intersect_grazing(*this, block, exact);
+    return;
   }
-  if (block.is_one_triangle) {
-    repeat_plane(plane(block.instance[0], block.primitive[0]), exact);
-  } else {
-    for (unsigned i = 0; i < kLanes; ++i) {
-      const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
-      exact.normal.set(i, triangle.normal);
-      exact.offset[i] = triangle.offset;
-    }
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
+    exact.normal.set(i, triangle.normal);
+    exact.offset[i] = triangle.offset;
   }
   rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
   ExactHits source;
@@ -254,12 +257,18 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
 }
 
 void Resolver::write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const {
-  const auto range_m = [&](unsigned i) {
-    return exact.distance[i] * views_[block.instance[i]].scale;
-  };
+  if (is_one_instance(block)) {
+    const double scale = views_[block.instance[0]].scale;
+    write_lanes(
+        block, block.mask, [&](unsigned i) { return exact.distance[i] * scale; }, hits.range_m);
+  } else {
+    const auto range_m = [&](unsigned i) {
+      return exact.distance[i] * views_[block.instance[i]].scale;
+    };
+    write_lanes(block, block.mask, range_m, hits.range_m);
+  }
   const auto instance = [&](unsigned i) { return block.instance[i]; };
   const auto primitive = [&](unsigned i) { return block.primitive[i]; };
-  write_lanes(block, block.mask, range_m, hits.range_m);
   write_lanes(block, block.mask, instance, hits.instance);
   write_lanes(block, block.mask, primitive, hits.primitive);
 }
@@ -297,16 +306,21 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
                                 const Lanes<double>& cosine,
                                 std::vector<Eigen::Vector3f>& column) const {
   if (is_one_instance(block)) {
-    Lanes3<float> in_sensor;
-    orient_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine,
-                     in_sensor);
-    const auto normal = [&](unsigned i) { return in_sensor.get(i); };
-    write_lanes(block, block.mask, normal, column);
+    const Eigen::Matrix3d sensor_from_object =
+        views_[block.instance[0]].object_from_sensor.transpose();
+    if (block.is_run && block.mask == kAllLanes) {
+      kernel_.orient(sensor_from_object.data(), front, cosine, column[block.beam[0]].data());
+      return;
+    }
+    std::array<Eigen::Vector3f, kLanes> in_sensor;
+    kernel_.orient(sensor_from_object.data(), front, cosine, in_sensor[0].data());
+    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = in_sensor[i]; });
     return;
   }
   for_lanes(block.mask, [&](unsigned i) {
-    const Eigen::Vector3d in_sensor =
-        views_[block.instance[i]].object_from_sensor.transpose() * front.get(i);
+    const Eigen::Matrix3d sensor_from_object =
+        views_[block.instance[i]].object_from_sensor.transpose();
+    const Eigen::Vector3d in_sensor = rotate(sensor_from_object, front.get(i));
     column[block.beam[i]] = (cosine[i] > 0.0 ? -in_sensor : in_sensor).cast<float>();
   });
 }
@@ -314,6 +328,16 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
 void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners) const {
   // Zero normals have no length, so the flat normal is used.
   static const Eigen::Vector3f kNone = Eigen::Vector3f::Zero();
+  if (is_one_instance(block)) {
+    const InstanceData& of = instances_[block.instance[0]];
+    CornerIndices indices;
+    find_corners(of.triangles, block, indices);
+    gather_vectors(kernel_, of.positions_m, indices, corners.position_m);
+    if (!with_normals) return;
+    if (of.normals == nullptr) indices = {};
+    gather_vectors(kernel_, of.normals == nullptr ? &kNone : of.normals, indices, corners.normal);
+    return;
+  }
   const auto set = [&](unsigned lane) {
     const InstanceData& of = instances_[block.instance[lane]];
     const Triangle& triangle = of.triangles[block.primitive[lane]];
@@ -322,12 +346,6 @@ void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners
     corners.normal.set(lane, of.normals == nullptr ? &kNone : of.normals,
                        of.normals == nullptr ? Triangle{} : triangle);
   };
-  if (block.is_one_triangle) {
-    set(0);
-    repeat_first(corners.position_m);
-    if (with_normals) repeat_first(corners.normal);
-    return;
-  }
   for (unsigned i = 0; i < kLanes; ++i) set(i);
 }
 

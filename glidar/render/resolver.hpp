@@ -16,6 +16,8 @@
 
 namespace glidar {
 
+struct BlockKernel;
+
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
 
@@ -116,6 +118,11 @@ class Resolver {
     return first_coincident == nullptr ? primitive : first_coincident[primitive];
   }
 
+  /// canonical_primitive() per triangle of an instance; nullptr: each is its own.
+  [[nodiscard]] const std::uint32_t* first_coincident(std::uint32_t instance) const {
+    return instances_[instance].first_coincident;
+  }
+
   /// The triangles of a mesh that a cast may report; empty: all of them.
   [[nodiscard]] std::span<const std::uint32_t> distinct(std::size_t mesh) const {
     return distinct_[mesh];
@@ -132,6 +139,18 @@ class Resolver {
     __builtin_prefetch(&plane(block.instance[lane], primitive));
     if (!with_corners) return;
     __builtin_prefetch(instances_[block.instance[lane]].triangles + primitive);
+  }
+
+  /// Prefetches the triangles of a block's lanes, which are all of one instance.
+  void prefetch_one_instance(const HitBlock& block, bool with_corners) const {
+    const InstanceData& of = instances_[block.instance[0]];
+    for (const std::uint32_t primitive : block.primitive) {
+      __builtin_prefetch(of.planes + primitive);
+    }
+    if (!with_corners) return;
+    for (const std::uint32_t primitive : block.primitive) {
+      __builtin_prefetch(of.triangles + primitive);
+    }
   }
 
   /// Prefetches the corners of a block's triangles if the columns need them.
@@ -186,6 +205,7 @@ class Resolver {
   };
 
   const Scene& scene_;
+  const BlockKernel& kernel_;
   std::vector<std::vector<TrianglePlane>> planes_;            ///< per mesh
   std::vector<std::vector<std::uint32_t>> first_coincident_;  ///< per mesh
   std::vector<std::vector<std::uint32_t>> distinct_;          ///< per mesh, see distinct()

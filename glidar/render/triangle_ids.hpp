@@ -45,15 +45,28 @@ class TriangleIds {
     drawn_[instance] = drawn.data();
   }
 
+  /// The instance of an id, without flags, of a triangle.
+  [[nodiscard]] std::uint32_t instance_of(std::uint32_t id) const {
+    if (first_.size() == 1) return 0;
+    return static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), id) -
+                                      first_.begin() - 1);
+  }
+
+  /// The first id after those of an instance, as far as another follows.
+  [[nodiscard]] std::uint32_t end(std::uint32_t instance) const {
+    return instance + 1 < first_.size() ? first_[instance + 1] : kNoTriangleId;
+  }
+
+  /// See set_order(); nullptr: in the mesh's order.
+  [[nodiscard]] const std::uint32_t* order(std::uint32_t instance) const {
+    return drawn_[instance];
+  }
+
   /// The triangle of an id; kNoTriangleId: none.
   [[nodiscard]] PrimitiveRef decode(std::uint32_t id) const {
     if (id == kNoTriangleId) return {};
     id &= kTriangleIdMask;
-    const std::uint32_t instance =
-        first_.size() == 1
-            ? 0
-            : static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), id) -
-                                         first_.begin() - 1);
+    const std::uint32_t instance = instance_of(id);
     const std::uint32_t index = id - first_[instance];
     return {instance, drawn_[instance] == nullptr ? index : drawn_[instance][index]};
   }

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled once for every instruction set, under the rules of rays/kernel.cpp.
+#include <glidar/render/block_kernel.hpp>
+
+#include <glidar/render/corner_gather.hpp>
+#include <glidar/render/plane_gather.hpp>
+
+namespace glidar::rays::GLIDAR_KERNEL {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr unsigned kWidth = 8;
+#elif defined(__AVX2__)
+constexpr unsigned kWidth = 4;
+#else
+constexpr unsigned kWidth = 2;
+#endif
+using Vector = double __attribute__((vector_size(kWidth * sizeof(double)), may_alias));
+using VectorMask = long long __attribute__((vector_size(kWidth * sizeof(double))));
+
+GLIDAR_INLINE double* numbers(Lanes<double>& lanes) {
+  return reinterpret_cast<double*>(&lanes);
+}
+GLIDAR_INLINE const double* numbers(const Lanes<double>& lanes) {
+  return reinterpret_cast<const double*>(&lanes);
+}
+
+/// out = matrix * in, as rotate(); the matrix is stored column by column.
+GLIDAR_INLINE void rotate_lanes(const double* m, const Lanes3<double>& in, double* __restrict out_x,
+                                double* __restrict out_y, double* __restrict out_z) {
+  const double* const x = numbers(in.x);
+  const double* const y = numbers(in.y);
+  const double* const z = numbers(in.z);
+  for (unsigned i = 0; i < kLanes; ++i) {
+    out_x[i] = m[0] * x[i] + m[3] * y[i] + m[6] * z[i];
+    out_y[i] = m[1] * x[i] + m[4] * y[i] + m[7] * z[i];
+    out_z[i] = m[2] * x[i] + m[5] * y[i] + m[8] * z[i];
+  }
+}
+
+/// Loads and stores a register's worth of lanes.
+GLIDAR_INLINE Vector& at(Lanes<double>& lanes, unsigned i) {
+  return *reinterpret_cast<Vector*>(numbers(lanes) + i);
+}
+
+bool intersect(const OneInstanceHits& block, const HitsToFind& exact) {
+  gather_planes(reinterpret_cast<const double*>(block.planes), block.primitive,
+                {numbers(exact.normal->x), numbers(exact.normal->y), numbers(exact.normal->z),
+                 numbers(*exact.offset)});
+  rotate_lanes(block.object_from_sensor, *block.direction, numbers(exact.direction->x),
+               numbers(exact.direction->y), numbers(exact.direction->z));
+  const Vector ox = Vector{} + block.sensor_in_object[0];
+  const Vector oy = Vector{} + block.sensor_in_object[1];
+  const Vector oz = Vector{} + block.sensor_in_object[2];
+  VectorMask certain = ~VectorMask{};
+  for (unsigned i = 0; i < kLanes; i += kWidth) {
+    const Vector nx = at(exact.normal->x, i);
+    const Vector ny = at(exact.normal->y, i);
+    const Vector nz = at(exact.normal->z, i);
+    const Vector above = at(*exact.offset, i) - (nx * ox + ny * oy + nz * oz);
+    const Vector cosine = nx * at(exact.direction->x, i) + ny * at(exact.direction->y, i) +
+                          nz * at(exact.direction->z, i);
+    const Vector distance = above / cosine;
+    at(exact.origin->x, i) = ox;
+    at(exact.origin->y, i) = oy;
+    at(exact.origin->z, i) = oz;
+    at(*exact.cosine, i) = cosine;
+    at(*exact.distance, i) = distance;
+    // As is_uncertain() of intersect_grazing().
+    certain &= ((cosine > kGrazing) | (cosine < -kGrazing)) & (distance > 0.0);
+  }
+  long long all = -1;
+  for (unsigned i = 0; i < kWidth; ++i) all &= certain[i];
+  return all != 0;
+}
+
+void orient(const double* sensor_from_object, const Lanes3<double>& front,
+            const Lanes<double>& cosine, float* normals) {
+  alignas(64) double x[kLanes];
+  alignas(64) double y[kLanes];
+  alignas(64) double z[kLanes];
+  rotate_lanes(sensor_from_object, front, x, y, z);
+  const double* const cosines = numbers(cosine);
+  alignas(64) float out_x[kLanes];
+  alignas(64) float out_y[kLanes];
+  alignas(64) float out_z[kLanes];
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double sign = cosines[i] > 0.0 ? -1.0 : 1.0;
+    out_x[i] = static_cast<float>(sign * x[i]);
+    out_y[i] = static_cast<float>(sign * y[i]);
+    out_z[i] = static_cast<float>(sign * z[i]);
+  }
+  for (unsigned i = 0; i < kLanes; ++i) {
+    normals[3 * i] = out_x[i];
+    normals[3 * i + 1] = out_y[i];
+    normals[3 * i + 2] = out_z[i];
+  }
+}
+
+}  // namespace
+
+extern const BlockKernel kBlockKernel;
+const BlockKernel kBlockKernel = {GLIDAR_KERNEL_NAME, intersect, orient, gather_corners};
+
+}  // namespace glidar::rays::GLIDAR_KERNEL
