@@ -12,7 +12,8 @@ namespace {
 // Enough tiles for balanced threads; with smaller ones, many clusters would be in several tiles.
 constexpr double kTargetTiles = 24.0;
 constexpr double kMinSide = 24.0;
-constexpr double kMaxSide = TileBuffer::kSide - 2.0;
+constexpr double kMaxSide =
+    112.0;  // a multiple of kLanes, with the margin within TileBuffer::kSide
 
 std::uint32_t pieces(std::uint32_t length, double side) {
   return static_cast<std::uint32_t>(std::ceil(length / side));
@@ -39,7 +40,8 @@ void TileGrid::build(const GridWindow& window, std::uint32_t rows, std::uint32_t
   down_ = pieces(height, side);
   across_ = pieces(width, side);
   height_ = (height + down_ - 1) / down_;
-  width_ = (width + across_ - 1) / across_;
+  // Hits are written in blocks of kLanes pixels.
+  width_ = ((width + across_ - 1) / across_ + kLanes - 1) / kLanes * kLanes;
   down_ = (height + height_ - 1) / height_;
   across_ = (width + width_ - 1) / width_;
 }
