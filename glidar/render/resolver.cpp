@@ -191,6 +191,7 @@ Resolver::Resolver(const Scene& scene)
                                          return has_normal_map(scene.materials[material], mesh);
                                        }),
          .is_masked = has_mask(scene, instance)});
+    has_normal_maps_ = has_normal_maps_ || instances_.back().has_normal_map;
   }
 }
 
@@ -387,6 +388,7 @@ SurfacePoint Resolver::surface_point_at(const HitBlock& block, unsigned lane,
 
 void Resolver::apply_normal_maps(const HitBlock& block, const Lanes<float>& w1,
                                  const Lanes<float>& w2, Lanes3<double>& normals) const {
+  if (!has_normal_maps_) return;
   for_lanes(block.mask, [&](unsigned i) {
     if (!instances_[block.instance[i]].has_normal_map) return;
     const SurfacePoint surface_point = surface_point_at(block, i, w1, w2);

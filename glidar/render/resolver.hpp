@@ -210,6 +210,7 @@ class Resolver {
   std::vector<std::vector<std::uint32_t>> first_coincident_;  ///< per mesh
   std::vector<std::vector<std::uint32_t>> distinct_;          ///< per mesh, see distinct()
   std::vector<InstanceData> instances_;                       ///< per instance
+  bool has_normal_maps_ = false;                              ///< of some instance
   SurfaceColours colours_;
   std::vector<InstanceView> views_;  ///< per instance
 };

@@ -114,6 +114,12 @@ SurfaceColours::SurfaceColours(const Scene& scene) : scene_(scene) {
   }
 }
 
+bool SurfaceColours::has_one_slot(const HitBlock& block) const {
+  std::uint32_t differing = 0;
+  for (unsigned i = 1; i < kLanes; ++i) differing |= block.instance[i] ^ block.instance[0];
+  return differing == 0 && slots_[block.instance[0]].of_triangle == nullptr;
+}
+
 const SurfaceColours::Slot& SurfaceColours::slot_of(std::uint32_t instance,
                                                     std::uint32_t primitive) const {
   const Slots& slots = slots_[instance];
@@ -122,7 +128,7 @@ const SurfaceColours::Slot& SurfaceColours::slot_of(std::uint32_t instance,
 
 void SurfaceColours::write(const HitColumnMask& hit_columns, const HitBlock& block,
                            const Lanes<float>& w1, const Lanes<float>& w2, Hits& hits) const {
-  if (block.is_one_triangle) {
+  if (block.is_one_triangle || has_one_slot(block)) {
     const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
     const Slot& slot = slot_of(block.instance[first], block.primitive[first]);
     return write(hit_columns, {slot, block.mask, block, w1, w2}, hits);

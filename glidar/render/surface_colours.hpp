@@ -53,6 +53,8 @@ class SurfaceColours {
     const Lanes<float>& w2;
   };
 
+  /// True when all lanes, also those of misses, have the same slot.
+  [[nodiscard]] bool has_one_slot(const HitBlock& block) const;
   [[nodiscard]] const Slot& slot_of(std::uint32_t instance, std::uint32_t primitive) const;
   void write(const HitColumnMask& hit_columns, const Group& group, Hits& hits) const;
   void write_tinted(const HitColumnMask& hit_columns, const Group& group, Hits& hits) const;
