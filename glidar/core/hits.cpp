@@ -3,6 +3,7 @@
 #include <glidar/core/hits.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/math/simd.hpp>
 
 #include <algorithm>
 #include <type_traits>
@@ -60,18 +61,28 @@ void copy_hit(const Hits& from, std::size_t source, const HitColumnMask& hit_col
   if (hit_columns.noise_scale) to.noise_scale[target] = from.noise_scale[source];
 }
 
+namespace {
+
+GLIDAR_SIMD void fill_numbers(double* first, std::size_t count, double value) {
+  for (std::size_t i = 0; i < count; ++i) first[i] = value;
+}
+GLIDAR_SIMD void fill_numbers(float* first, std::size_t count, float value) {
+  for (std::size_t i = 0; i < count; ++i) first[i] = value;
+}
+
+}  // namespace
+
 void write_misses(const HitColumnMask& hit_columns, std::size_t first, std::size_t count,
                   Hits& hits) {
   const auto fill = [first, count](bool requested, auto& column, const auto& value) {
     if (requested) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
   };
-  // Number by number, which compilers vectorise.
   const auto fill_vectors = [first, count](bool requested, auto& column, auto value) {
     constexpr auto kSize =
         static_cast<std::size_t>(std::decay_t<decltype(column)>::value_type::SizeAtCompileTime);
-    if (requested && count > 0) std::fill_n(column[first].data(), kSize * count, value);
+    if (requested && count > 0) fill_numbers(column[first].data(), kSize * count, value);
   };
-  fill(true, hits.range_m, kNaN);
+  fill_numbers(hits.range_m.data() + first, count, kNaN);
   fill(true, hits.instance, kInvalidId);
   fill(true, hits.primitive, kInvalidId);
   fill(hit_columns.depth, hits.depth_m, kNaN);

@@ -118,6 +118,12 @@ GLIDAR_SIMD void draw_blocks(const TriangleSetup& s, float scale, std::size_t bl
   }
 }
 
+/// Clears the pixels of adjacent blocks.
+GLIDAR_SIMD void fill_blocks(float* nearness, std::uint32_t* triangle_ids, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) nearness[i] = kEmptyNearness;
+  for (std::size_t i = 0; i < count; ++i) triangle_ids[i] = kNoTriangleId;
+}
+
 /// The minimum of a block's 16 values.
 [[gnu::always_inline]] inline float min_of(const float* values) {
   float minimum = values[0];
@@ -131,15 +137,16 @@ void TileBuffer::clear(int cols, int rows, float scale) {
   cols_ = cols;
   rows_ = rows;
   scale_ = scale;
-  const std::size_t used = static_cast<std::size_t>((rows + kCell - 1) / kCell) * kCell * kSide;
+  const int used_cols = (cols + kCell - 1) / kCell * kCell;
+  const int used_rows = (rows + kCell - 1) / kCell * kCell;
+  const std::size_t count = static_cast<std::size_t>(used_cols) * kBlock;
+  for (int row = 0; row < used_rows; row += kBlockWidth) {
+    fill_blocks(&nearness_[index_of(0, row)], &triangle_ids_[index_of(0, row)], count);
+  }
   // Pixels of cells outside of the tile occlude nothing and are not drawn.
-  const bool is_whole = cols == kSide && rows % kCell == 0;
-  std::fill_n(nearness_.begin(), used, is_whole ? kEmptyNearness : kOutside);
-  std::fill_n(triangle_ids_.begin(), used, kNoTriangleId);
-  for (int row = 0; !is_whole && row < rows; ++row) {
-    for (int col = 0; col < cols; col += kBlockWidth) {
-      std::fill_n(&nearness_[index_of(col, row)], std::min(kBlockWidth, cols - col),
-                  kEmptyNearness);
+  for (int row = 0; row < used_rows; ++row) {
+    for (int col = row < rows ? cols : 0; col < used_cols; ++col) {
+      nearness_[index_of(col, row)] = kOutside;
     }
   }
   min_nearness_.fill(kEmptyNearness);
