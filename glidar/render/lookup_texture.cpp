@@ -30,23 +30,34 @@ std::uint32_t rgb_of(const Texture& texture, std::size_t texel) {
 struct Axis {
   double size;
   double period;  ///< of repeat and mirror
+  double per_period;
   bool clamps;
 
   Axis(std::uint32_t texels, Wrap wrap)
       : size(texels),
         period(wrap == Wrap::mirror ? 2.0 * size : size),
+        per_period(1.0 / period),
         clamps(wrap == Wrap::clamp) {}
 
-  /// The texel of an integer coordinate. All numbers are below 2^53, so all operations except the
-  /// division are exact; the quotient is wrong by at most one.
-  [[nodiscard]] inline std::int32_t wrapped(double index) const {
-    double rest = index - std::floor(index / period) * period;
+  /// An integer coordinate modulo the period. The quotient is below 2^50, so that its two roundings
+  /// change it by at most 1/4 and its floor by at most one; all other operations are exact.
+  [[nodiscard]] inline double rest_of(double index) const {
+    double rest = index - std::floor(index * per_period) * period;
     rest = rest < 0.0 ? rest + period : rest;
-    rest = rest >= period ? rest - period : rest;
-    rest = rest >= size ? period - 1.0 - rest : rest;
+    return rest >= period ? rest - period : rest;
+  }
+
+  /// The rest of the next coordinate.
+  [[nodiscard]] inline double next_rest(double rest) const {
+    return rest + 1.0 >= period ? rest + 1.0 - period : rest + 1.0;
+  }
+
+  /// The texel of an integer coordinate.
+  [[nodiscard]] inline std::int32_t texel(double index, double rest) const {
+    const double mirrored = rest >= size ? period - 1.0 - rest : rest;
     const double not_below = index > 0.0 ? index : 0.0;
     const double clamped = not_below < size - 1.0 ? not_below : size - 1.0;
-    return static_cast<std::int32_t>(clamps ? clamped : rest);
+    return static_cast<std::int32_t>(clamps ? clamped : mirrored);
   }
 };
 
@@ -83,10 +94,35 @@ GLIDAR_SIMD void find_texels(const Lanes<double>& at, double size, bool is_neare
   }
 }
 
-GLIDAR_SIMD void wrap(const Axis& axis, const Lanes<double>& first, double next,
-                      Lanes<std::int32_t>& index) {
-  for (unsigned i = 0; i < kLanes; ++i) index[i] = axis.wrapped(first[i] + next);
+/// Two adjacent texels along an axis.
+struct TexelPair {
+  Lanes<std::int32_t> first;
+  Lanes<std::int32_t> next;
+};
+
+GLIDAR_SIMD void wrap(const Axis& axis, const Lanes<double>& first, TexelPair& texels) {
+  const Axis a = axis;  // a copy, so that the loop vectorises
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double rest = a.rest_of(first[i]);
+    texels.first[i] = a.texel(first[i], rest);
+    texels.next[i] = a.texel(first[i] + 1.0, a.next_rest(rest));
+  }
 }
+
+/// byte / 255, correctly rounded without a division: the first product is exact, and the second one
+/// too small for its rounding to matter.
+constexpr float part_of(std::uint32_t byte) {
+  const auto whole = static_cast<float>(static_cast<std::int32_t>(byte));
+  return whole * 0x1.01p-8F + whole * 0x1.0101p-24F;
+}
+
+constexpr bool are_parts_exact() {
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    if (part_of(byte) != static_cast<float>(byte) / 255.0F) return false;
+  }
+  return true;
+}
+static_assert(are_parts_exact());
 
 /// Texture coordinates after TextureUse's transform, v downwards. Non-finite ones become 0 and are
 /// marked.
@@ -113,12 +149,9 @@ GLIDAR_SIMD void load(const std::uint32_t* texels, std::uint32_t tile_columns,
     texel[i] = texels[tiled_index(static_cast<std::uint32_t>(row[i]),
                                   static_cast<std::uint32_t>(column[i]), tile_columns)];
   }
-  const auto part = [](std::uint32_t byte) {
-    return static_cast<float>(static_cast<std::int32_t>(byte)) / 255.0F;
-  };
-  for (unsigned i = 0; i < kLanes; ++i) rgb.x[i] = part(texel[i] & 0xFFU);
-  for (unsigned i = 0; i < kLanes; ++i) rgb.y[i] = part(texel[i] >> 8U & 0xFFU);
-  for (unsigned i = 0; i < kLanes; ++i) rgb.z[i] = part(texel[i] >> 16U & 0xFFU);
+  for (unsigned i = 0; i < kLanes; ++i) rgb.x[i] = part_of(texel[i] & 0xFFU);
+  for (unsigned i = 0; i < kLanes; ++i) rgb.y[i] = part_of(texel[i] >> 8U & 0xFFU);
+  for (unsigned i = 0; i < kLanes; ++i) rgb.z[i] = part_of(texel[i] >> 16U & 0xFFU);
 }
 
 /// a = (1 - t) a + t b
@@ -167,21 +200,18 @@ void LookupTexture::sample(const TextureUse& use, const Lanes<float>& u, const L
   TexelPosition down;
   find_texels(x, columns.size, is_nearest, across);
   find_texels(y, rows.size, is_nearest, down);
-  Lanes<std::int32_t> left;
-  Lanes<std::int32_t> right;
-  Lanes<std::int32_t> row;
-  wrap(columns, across.first, 0.0, left);
-  wrap(rows, down.first, 0.0, row);
-  fetch(row, left, rgb);
+  TexelPair column;
+  TexelPair row;
+  wrap(columns, across.first, column);
+  wrap(rows, down.first, row);
+  fetch(row.first, column.first, rgb);
   if (!is_nearest) {
     Lanes3<float> other;
     Lanes3<float> lower;
-    wrap(columns, across.first, 1.0, right);
-    fetch(row, right, other);
+    fetch(row.first, column.next, other);
     blend(across.rest, other, rgb);
-    wrap(rows, down.first, 1.0, row);
-    fetch(row, left, lower);
-    fetch(row, right, other);
+    fetch(row.next, column.first, lower);
+    fetch(row.next, column.next, other);
     blend(across.rest, other, lower);
     blend(down.rest, lower, rgb);
   }
