@@ -87,11 +87,10 @@ PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelect
   PointTrace trace = begin_trace(s, pick(frame));
   apply_first(s, 0, measured);
   trace.measured = measurement_of(frame, trace.entry);
+  auto samples = trace_samples(noise, *beams, s.renderer.thread_pool(), frame, trace.entry);
   for (std::size_t k = 0; k < noise.steps.size(); ++k) {
-    std::vector<RandomSample> samples =
-        trace_samples(noise.steps, k, *beams, frame, noise.frame_s, trace.entry);
     apply_first(s, k + 1, measured);
-    trace.noise.push_back({std::move(samples), measurement_of(frame, trace.entry)});
+    trace.noise.push_back({std::move(samples[k]), measurement_of(frame, trace.entry)});
   }
   return trace;
 }

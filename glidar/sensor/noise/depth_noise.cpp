@@ -82,6 +82,11 @@ GLIDAR_SIMD void scale_lateral(const NguyenLateral& model, const NoiseBatch& b, 
   }
 }
 
+void sample_lateral_normals(const Sampler& sampler, PairBatch& normals) {
+  sample_normals(sampler, "offset to the right in the image", "offset downwards in the image",
+                 normals);
+}
+
 /// A normal error of depth: sigma = a + b (z - c)^2.
 GLIDAR_SIMD void add_parabola(const NguyenAxial& model, const Batch<double>& normal,
                               NoiseBatch& b) {
@@ -112,14 +117,14 @@ void apply(const DisparityQuantization& step, const NoiseView& /*view*/, NoiseBa
 
 void apply(const Khoshelham& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the depth", normal);
   add_parabola({.a_m = 0.0, .b_per_m = step.sigma_per_m, .c_m = 0.0, .grazing_coefficient = 0.0},
                normal, batch);
 }
 
 void apply(const NguyenAxial& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the depth", normal);
   add_axial(step, normal, batch);
 }
 
@@ -129,7 +134,7 @@ void prepare(const NguyenLateral& /*step*/, const NoiseView& view, NoiseBatch& b
 
 void apply(const NguyenLateral& step, const NoiseView& view, NoiseBatch& batch) {
   PairBatch shift;
-  sample_normals(batch.key, shift);
+  sample_lateral_normals(batch.sampler, shift);
   scale_lateral(step, batch, shift);
   shift_laterally(shift, view, batch);
 }
@@ -140,21 +145,21 @@ void prepare(const IclKinect& /*step*/, const NoiseView& view, NoiseBatch& batch
 
 void apply(const IclKinect& step, const NoiseView& view, NoiseBatch& batch) {
   PairBatch shift;
-  sample_normals(batch.key, shift);
+  sample_lateral_normals(batch.sampler, shift);
   for (std::size_t i = 0; i < kSampleBatch; ++i) {
     shift.first[i] *= step.lateral_px * batch.scale[i];
     shift.second[i] *= step.lateral_px * batch.scale[i];
   }
   shift_laterally(shift, view, batch);
   Batch<double> normal;
-  sample_shared_normals(block(batch.key, 1), normal);
+  sample_shared_normals(block(batch.sampler, 1), "error of the disparity", normal);
   measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps}, normal, batch);
   invalidate_infinite_ranges(batch);
 }
 
 void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "of this pixel", normal);
   std::copy_n(normal.begin(), batch.count,
               view.workspace.before.begin() + static_cast<std::ptrdiff_t>(batch.first));
 }
@@ -162,6 +167,12 @@ void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch)
 void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {
   Batch<double> normal{};
   mean_over_window(step.window, view, batch, normal);
+  record(batch.sampler, [&](std::size_t i) {
+    const std::string side = std::to_string(step.window);
+    return RandomSample{.value = normal[i],
+                        .use = "error of the disparity: the mean of " + side + " x " + side +
+                               " pixels' numbers, scaled to standard deviation 1"};
+  });
   measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps, .offset_steps = step.offset_steps},
           normal, batch);
   invalidate_infinite_ranges(batch);
@@ -169,7 +180,7 @@ void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {
 
 void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the disparity", normal);
   const double unit_px = step.step_px > 0.0 ? step.step_px : 1.0;
   measure({.k_m = step.focal_px * step.baseline_m / unit_px,
            .sigma_steps = step.sigma_px / unit_px,

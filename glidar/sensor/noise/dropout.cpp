@@ -22,8 +22,8 @@ GLIDAR_SIMD void find_angles(const Batch<double>& cosine, Batch<double>& angle_r
   for (std::size_t i = 0; i < kSampleBatch; ++i) angle_rad[i] = angle_of(cosine[i]);
 }
 
-/// The probability at an incidence angle, which is not used without a table of angles.
-double probability_at(const Dropout& step, double range_m, double incidence_rad) {
+/// The incidence angle is not used without a table of angles.
+double drop_probability(const Dropout& step, double range_m, double incidence_rad) {
   double kept = 1.0 - step.probability;
   kept *= 1.0 - interpolate(step.by_range_m, range_m);
   if (!step.by_incidence_rad.empty()) {
@@ -34,19 +34,20 @@ double probability_at(const Dropout& step, double range_m, double incidence_rad)
 
 }  // namespace
 
-double drop_probability(const Dropout& step, double range_m, double cos_incidence) {
-  return probability_at(step, range_m, angle_of(cos_incidence));
-}
-
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> x;
-  sample_shared_uniforms(batch.key, x);
+  sample_shared_uniforms(batch.sampler.key, x);
   Batch<double> incidence_rad{};
   if (!step.by_incidence_rad.empty()) find_angles(batch.cosine, incidence_rad);
+  const auto probability = [&](std::size_t i) {
+    return drop_probability(step, batch.range_m[i], incidence_rad[i]);
+  };
+  record(batch.sampler, [&](std::size_t i) {
+    return RandomSample{RandomSample::Distribution::uniform, x[i], "lost if below",
+                        is_hit(batch, i) ? std::optional(probability(i)) : std::nullopt};
+  });
   for (std::size_t i = 0; i < batch.count; ++i) {
-    if (!is_hit(batch, i)) continue;
-    const double probability = probability_at(step, batch.range_m[i], incidence_rad[i]);
-    if (x[i] < probability) invalidate_return(batch, i, Status::dropped);
+    if (is_hit(batch, i) && x[i] < probability(i)) invalidate_return(batch, i, Status::dropped);
   }
 }
 
@@ -61,7 +62,11 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
   const std::uint32_t cols = view.beams.cols;
   if (rows < 2) return;
   WordBatch words;
-  sample_words(batch.key, words);
+  sample_words(batch.sampler,
+               {{"crosstalk if below", step.probability},
+                {"selects the other channel"},
+                {"position between near and that channel's range"}},
+               words);
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i) || uniform(words.word[0][i]) >= step.probability) continue;
     const std::size_t beam = batch.first + i;
@@ -79,7 +84,7 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
 void apply(const FalseAlarms& step, const NoiseView& view, NoiseBatch& batch) {
   if (!(step.rate_hz > 0.0)) return;
   Batch<double> x;
-  sample_shared_uniforms(batch.key, x);
+  sample_shared_uniforms(batch.sampler, "arrival of the first false alarm", x);
   first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (batch.first + i >= view.beams.firings()) break;  // the first return only

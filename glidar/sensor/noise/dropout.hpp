@@ -51,9 +51,6 @@ struct FalseAlarms {
   double intensity = 0.0;
 };
 
-/// The probability of losing a return.
-double drop_probability(const Dropout& step, double range_m, double cos_incidence);
-
 /// Keys in sensor files.
 void describe(Dropout& step, FieldVisitor& visitor);
 void describe(Crosstalk& step, FieldVisitor& visitor);

@@ -50,7 +50,7 @@ double vendor_reflectance(double intensity, double max_reflectance) {
 
 void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the intensity", normal);
   disturb(step, normal, batch);
 }
 

@@ -29,8 +29,8 @@ constexpr StepTraits traits_of() {
 
 /// Steps with pointing noise: they change the beams before these are cast.
 template <class Step>
-constexpr bool kPerturbsBeams = requires(const Step& step, const RngKey& key, Beams& beams) {
-  perturb(step, key, 0, 0, beams);
+constexpr bool kPerturbsBeams = requires(const Step& step, const Sampler& sampler, Beams& beams) {
+  perturb(step, sampler, 0, 0, beams);
 };
 
 /// Steps that read other beams too: the whole frame is prepared before any of it changes.
@@ -177,8 +177,18 @@ void for_batches(const Load& load_batch, const NoiseView& view, ThreadPool& thre
   });
 }
 
+/// The random numbers of step k, from a beam.
+Sampler sampler_of(const NoisePlan& noise, const Frame& frame, std::size_t k, std::size_t first) {
+  Sampler sampler{.key = rng_key(frame, rng_purpose(k), 0)};
+  if (noise.recorder != nullptr) {
+    sampler.recorded = &noise.recorder->steps[k];
+    sampler.traced = noise.recorder->entry;
+  }
+  return later_batch(sampler, first);
+}
+
 void prepare_step(const NoisePlan& noise, std::size_t k, const NoiseView& view, NoiseBatch& batch) {
-  batch.key = rng_key(view.frame, rng_purpose(k), batch.first);
+  batch.sampler = sampler_of(noise, view.frame, k, batch.first);
   std::visit(
       [&](const auto& step) {
         if constexpr (kReadsNeighbours<std::decay_t<decltype(step)>>) prepare(step, view, batch);
@@ -189,7 +199,7 @@ void prepare_step(const NoisePlan& noise, std::size_t k, const NoiseView& view, 
 void apply_steps(const NoisePlan& noise, const NoisePlan::Run& run, const NoiseView& view,
                  NoiseBatch& batch) {
   for (std::size_t k = run.begin; k < run.end; ++k) {
-    batch.key = rng_key(view.frame, rng_purpose(k), batch.first);
+    batch.sampler = sampler_of(noise, view.frame, k, batch.first);
     std::visit(
         [&](const auto& step) {
           if constexpr (!kPerturbsBeams<std::decay_t<decltype(step)>>) apply(step, view, batch);
@@ -199,16 +209,17 @@ void apply_steps(const NoisePlan& noise, const NoisePlan::Run& run, const NoiseV
 }
 
 template <class Step>
-void perturb_if_pointing(const Step& step, const RngKey& key, BeamRange range, Beams& beams) {
+void perturb_if_pointing(const Step& step, const Sampler& sampler, BeamRange range, Beams& beams) {
   if constexpr (kPerturbsBeams<Step>)
-    perturb(step, key, range.begin, range.end - range.begin, beams);
+    perturb(step, sampler, range.begin, range.end - range.begin, beams);
 }
 
-void perturb_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRange range,
-                   Beams& beams) {
-  for (std::size_t k = 0; k < noise.size(); ++k) {
-    const RngKey key = rng_key(frame, rng_purpose(k), 0);
-    std::visit([&](const auto& step) { perturb_if_pointing(step, key, range, beams); }, noise[k]);
+void perturb_beams(const NoisePlan& noise, const Frame& frame, BeamRange range, Beams& beams) {
+  for (std::size_t k = 0; k < noise.steps.size(); ++k) {
+    Sampler sampler = sampler_of(noise, frame, k, 0);
+    sampler.traced %= beams.firings();  // all returns of a pulse have its direction
+    std::visit([&](const auto& step) { perturb_if_pointing(step, sampler, range, beams); },
+               noise.steps[k]);
   }
 }
 
@@ -283,7 +294,7 @@ const Beams& perturb_directions(const NoisePlan& noise, const Beams& beams, cons
   const std::size_t firings = beams.firings();
   const std::size_t batches = (firings + kSampleBatch - 1) / kSampleBatch;
   thread_pool.parallel_for(batches, kGrain / kSampleBatch, [&](std::size_t begin, std::size_t end) {
-    perturb_beams(noise.steps, frame, {begin * kSampleBatch, std::min(end * kSampleBatch, firings)},
+    perturb_beams(noise, frame, {begin * kSampleBatch, std::min(end * kSampleBatch, firings)},
                   perturbed);
   });
   for (std::size_t i = firings; i < perturbed.size(); ++i) {

@@ -18,6 +18,8 @@
 
 namespace glidar {
 
+struct SampleRecorder;
+
 /// One step of a sensor's noise. A sensor has an ordered list of steps; step k, from 0, uses random
 /// numbers of the purpose first_noise_step + k, so that steps share none.
 using NoiseStep = std::variant<RangeGaussian, RangeSnr, RangeCrlb, RangeShotNoise, RangeUniform,
@@ -54,6 +56,7 @@ struct NoisePlan {
   bool changes_returns = false;      ///< there are steps other than pointing noise
   bool reads_neighbours = false;
   bool adds_returns = false;
+  SampleRecorder* recorder = nullptr;  ///< set by trace_samples()
 };
 
 /// Prepares the steps for a sensor that measures a frame every frame_s seconds.

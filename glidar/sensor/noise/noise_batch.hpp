@@ -5,6 +5,7 @@
 #include <glidar/core/frame.hpp>
 #include <glidar/math/gaussian.hpp>
 #include <glidar/sensor/noise/noise_workspace.hpp>
+#include <glidar/sensor/noise/sampler.hpp>
 
 namespace glidar {
 
@@ -22,7 +23,7 @@ struct alignas(64) NoiseBatch {
   Batch<Status> status;
   std::size_t first = 0;  ///< index of the first beam
   std::size_t count = 0;  ///< number of beams
-  RngKey key;             ///< key of the step's random numbers for the first beam
+  Sampler sampler;        ///< the step's random numbers
   double frame_s = 0.0;   ///< frame period
 };
 
@@ -48,12 +49,6 @@ inline void set_return_source(const NoiseView& view, const NoiseBatch& batch, st
 
 inline bool is_hit(const NoiseBatch& batch, std::size_t i) {
   return batch.status[i] == Status::hit;
-}
-
-/// The same key with another block of words.
-inline RngKey block(RngKey key, std::uint32_t number) {
-  key.block = number;
-  return key;
 }
 
 }  // namespace glidar

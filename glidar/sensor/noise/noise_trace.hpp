@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/sensor/noise/noise.hpp>
-
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glidar {
+
+struct Beams;
+struct Frame;
+struct NoisePlan;
+class ThreadPool;
 
 /// A random number that a noise step uses for an entry of a frame.
 struct RandomSample {
@@ -23,11 +27,10 @@ struct RandomSample {
   std::optional<double> probability = {};  ///< the probability that it is compared with, if any
 };
 
-/// The random numbers that step `place` of a list uses for an entry, with the same keys as the step
-/// itself. `beams` are the nominal beams, the frame is as before the step, frame_s is the frame
-/// period in seconds.
-std::vector<RandomSample> trace_samples(const std::vector<NoiseStep>& noise, std::size_t place,
-                                        const Beams& beams, const Frame& frame, double frame_s,
-                                        std::size_t entry);
+/// The random numbers of an entry, one list for each noise step, recorded while the steps are
+/// applied to a copy of the frame as it was before noise. `beams` are the nominal beams.
+std::vector<std::vector<RandomSample>> trace_samples(NoisePlan noise, const Beams& beams,
+                                                     ThreadPool& thread_pool, Frame frame,
+                                                     std::size_t entry);
 
 }  // namespace glidar

@@ -4,8 +4,8 @@
 
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
+#include <glidar/sensor/noise/sampler.hpp>
 
 #include <Eigen/Geometry>
 
@@ -106,29 +106,32 @@ constexpr NumberRule kSmallAngle = {0.0, 5.0, false, "degrees from 0 to 5"};
 
 }  // namespace
 
-void perturb(const PointingJitter& step, const RngKey& key, std::size_t first, std::size_t count,
-             Beams& beams) {
+void perturb(const PointingJitter& step, const Sampler& sampler, std::size_t first,
+             std::size_t count, Beams& beams) {
   const Eigen::Vector3d up = axes_of(beams).up;
   PairBatch normal;
   for (std::size_t begin = first; begin < first + count; begin += kSampleBatch) {
-    RngKey run = key;
-    run.beam = static_cast<std::uint32_t>(begin);
-    sample_normals(run, normal);
+    sample_normals(later_batch(sampler, begin), "horizontal pointing error",
+                   "vertical pointing error", normal);
     jitter(up, step, normal, std::min(kSampleBatch, first + count - begin),
            beams.directions[begin].data());
   }
 }
 
-void perturb(const EncoderError& step, const RngKey& key, std::size_t first, std::size_t count,
+void perturb(const EncoderError& step, const Sampler& sampler, std::size_t first, std::size_t count,
              Beams& beams) {
-  RngKey whole = key;
-  whole.beam = 0;
-  const double of_turn = step.turn_sigma_rad * normals(random_words(whole))[0];
+  const double normal = normals(random_words(sampler.key))[0];
+  const double of_turn = step.turn_sigma_rad * normal;
   Batch<double> azimuth_rad{};
   Batch<double> error_rad;
   PairBatch back;
   for (std::size_t begin = first; begin < first + count; begin += kSampleBatch) {
     const std::size_t size = std::min(kSampleBatch, first + count - begin);
+    if (step.turn_sigma_rad > 0.0) {
+      record(later_batch(sampler, begin), [&](std::size_t /*i*/) {
+        return RandomSample{.value = normal, .use = "error of the whole frame"};
+      });
+    }
     find_azimuths(size, beams.directions[begin].data(), azimuth_rad);
     error_rad.fill(of_turn);
     if (step.step_rad > 0.0) add_encoder_rounding(step.step_rad, azimuth_rad, error_rad);

@@ -4,11 +4,13 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/field.hpp>
-#include <glidar/math/random.hpp>
+
+#include <cstddef>
 
 namespace glidar {
 
 class FieldVisitor;
+struct Sampler;
 
 // Errors of a beam's direction. They are unknown to the sensor: beams are cast in the erroneous
 // direction, and points are reported in the nominal one.
@@ -41,10 +43,10 @@ struct EncoderError {
 void describe(PointingJitter& step, FieldVisitor& visitor);
 void describe(EncoderError& step, FieldVisitor& visitor);
 
-/// Applies the step to the beams [first, first + count); `key` is that of beam 0.
-void perturb(const PointingJitter& step, const RngKey& key, std::size_t first, std::size_t count,
-             Beams& beams);
-void perturb(const EncoderError& step, const RngKey& key, std::size_t first, std::size_t count,
+/// Applies the step to the beams [first, first + count); `sampler` is that of beam 0.
+void perturb(const PointingJitter& step, const Sampler& sampler, std::size_t first,
+             std::size_t count, Beams& beams);
+void perturb(const EncoderError& step, const Sampler& sampler, std::size_t first, std::size_t count,
              Beams& beams);
 
 }  // namespace glidar

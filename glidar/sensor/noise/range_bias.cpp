@@ -28,6 +28,15 @@ double normal_of(const RngKey& key) {
   return normals(random_words(key))[0];
 }
 
+/// Records the number of the beam's ring.
+template <class Function>
+void record_by_ring(const char* use, const Beams& beams, const Function& normal_of_ring,
+                    const NoiseBatch& batch) {
+  record(batch.sampler, [&](std::size_t i) {
+    return RandomSample{.value = normal_of_ring(ring_of(beams, batch.first + i)), .use = use};
+  });
+}
+
 }  // namespace
 
 double drift_at(std::uint32_t frame, double frames_per_tau, RngKey key) {
@@ -63,28 +72,37 @@ double drift_at(std::uint32_t frame, double frames_per_tau, RngKey key) {
 }
 
 void apply(const RangeBias& step, const NoiseView& view, NoiseBatch& batch) {
-  RngKey key = batch.key;
+  RngKey key = batch.sampler.key;
   key.frame = kAllFrames;
+  const auto normal_of_ring = [&](std::uint32_t ring) {
+    key.beam = ring;
+    return normal_of(key);
+  };
+  if (step.sigma_m > 0.0) {
+    record_by_ring("bias of the ring, constant over all frames", view.beams, normal_of_ring, batch);
+  }
   add_by_ring(
       view.beams,
-      [&](std::uint32_t ring) {
-        key.beam = ring;
-        return step.offset_m + step.sigma_m * normal_of(key);
-      },
+      [&](std::uint32_t ring) { return step.offset_m + step.sigma_m * normal_of_ring(ring); },
       batch);
 }
 
 void apply(const RangeDrift& step, const NoiseView& view, NoiseBatch& batch) {
   const double frames_per_tau = step.tau_s / batch.frame_s;
-  RngKey key = batch.key;
-  const auto error_of = [&](std::uint32_t ring) {
+  RngKey key = batch.sampler.key;
+  const auto drift_of = [&](std::uint32_t ring) {
     key.beam = ring;
-    return step.sigma_m * drift_at(view.frame.number, frames_per_tau, key);
+    return drift_at(view.frame.number, frames_per_tau, key);
   };
+  const auto error_of = [&](std::uint32_t ring) { return step.sigma_m * drift_of(ring); };
   if (step.per_ring) {
+    record_by_ring("drift of the ring", view.beams, drift_of, batch);
     add_by_ring(view.beams, error_of, batch);
     return;
   }
+  record(batch.sampler, [&](std::size_t /*i*/) {
+    return RandomSample{.value = drift_of(0), .use = "drift of the sensor"};
+  });
   const double error = error_of(0);
   for (std::size_t i = 0; i < batch.count; ++i) batch.range_m[i] += error;
 }

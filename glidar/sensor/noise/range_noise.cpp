@@ -91,13 +91,13 @@ double photon_sigma_m(const RangeShotNoise& model, double amplitude) {
 
 void apply(const RangeGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the range", normal);
   add_linear(step.sigma_m, step.sigma_per_m, normal, batch);
 }
 
 void apply(const RangeSnr& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the range", normal);
   add_by_signal({.constant_m2 = step.floor_m * step.floor_m,
                  .per_intensity_m2 = step.k_m * step.k_m / step.snr_at_full_scale},
                 normal, batch);
@@ -105,26 +105,30 @@ void apply(const RangeSnr& step, const NoiseView& /*view*/, NoiseBatch& batch) {
 
 void apply(const RangeCrlb& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the range", normal);
   const double sigma_m = pulse_sigma_m(step, 1.0);
   add_by_signal({.per_intensity_squared_m2 = sigma_m * sigma_m}, normal, batch);
 }
 
 void apply(const RangeShotNoise& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  sample_shared_normals(batch.key, normal);
+  sample_shared_normals(batch.sampler, "error of the range", normal);
   const double sigma_m = photon_sigma_m(step, 1.0);
   add_by_signal({.per_intensity_m2 = sigma_m * sigma_m}, normal, batch);
 }
 
 void apply(const RangeUniform& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  constexpr const char* kAdditive = "additive error";
+  constexpr const char* kMultiplicative = "multiplicative error";
   PairBatch x;
   if (step.distribution == RangeUniform::Distribution::normal) {
-    sample_normals(batch.key, x);
+    sample_normals(batch.sampler, kAdditive, kMultiplicative, x);
     add_uniform_model(step, x, 1.0, batch);
     return;
   }
-  sample_uniforms(batch.key, x);
+  sample_uniforms(batch.sampler.key, x);
+  record_uniform(batch.sampler, kAdditive, x.first);
+  record_uniform(batch.sampler, kMultiplicative, x.second);
   spread_out(x);
   add_uniform_model(step, x, 1.0 / 3.0, batch);  // variance of a uniform number in -1..1
 }

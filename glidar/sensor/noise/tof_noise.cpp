@@ -172,14 +172,17 @@ void measure_phases(const ContinuousWave& step, const Waves& waves, const NoiseV
   }
 }
 
-void add_errors(const RngKey& key, std::size_t count, const Batch<double>& sigma_turns,
+void add_errors(const Sampler& sampler, std::size_t count, const Batch<double>& sigma_turns,
                 WavePhases& phases) {
   WordBatch words;
-  PairBatch normal;
+  PairBatch normals;
   for (std::size_t k = 0; k < count; ++k) {
-    if (k % 4 == 0) sample_words(block(key, static_cast<std::uint32_t>(k / 4)), words);
-    if (k % 2 == 0) box_muller(words, k % 4 / 2, normal);
-    add_error(sigma_turns, k % 2 == 0 ? normal.first : normal.second, phases.turns[k]);
+    if (k % 4 == 0) sample_words(block(sampler, static_cast<std::uint32_t>(k / 4)), {}, words);
+    if (k % 2 == 0) box_muller(words, k % 4 / 2, normals);
+    const Batch<double>& normal = k % 2 == 0 ? normals.first : normals.second;
+    const char* use = k == 0 ? "error of the highest frequency's phase" : "error of a phase";
+    record_normal(sampler, use, normal);
+    add_error(sigma_turns, normal, phases.turns[k]);
   }
 }
 
@@ -238,7 +241,7 @@ void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch)
   BestFit found;
   measure_phases(step, waves, view, batch, phases);
   phase_sigma(step, phases.amplitude, batch.scale, sigma_turns);
-  add_errors(batch.key, waves.count, sigma_turns, phases);
+  add_errors(batch.sampler, waves.count, sigma_turns, phases);
   unwrap(waves, phases, found, batch.range_m);
   finish_range(waves, sigma_turns, batch);
   const double max_residual = step.max_phase_residual * step.max_phase_residual;

@@ -23,16 +23,24 @@ std::vector<NoiseStep> after_two(const NoiseStep& step) {
   return {RangeGaussian{}, RangeQuantization{.step_m = 1e-12}, step};
 }
 
+/// The random numbers that a step uses for an entry of a stage's frame.
+std::vector<RandomSample> samples_of(NoiseStage& stage, const std::vector<NoiseStep>& noise,
+                                     std::size_t step, std::size_t entry) {
+  return trace_samples(plan_noise(noise, kFrame_s), stage.beams, stage.thread_pool, stage.frame,
+                       entry)
+      .at(step);
+}
+
 /// Calls check(entry, samples, measured frame) for entries of a frame with one step of noise.
 template <class Check>
 void for_entries(const NoiseStep& step, const Check& check) {
-  const NoiseStage before(kRows, kCols, kRange_m);
+  NoiseStage before(kRows, kCols, kRange_m);
   NoiseStage stage(kRows, kCols, kRange_m);
   stage.frame.return_source.assign(stage.beams.size(), ReturnSource::surface);
   const std::vector<NoiseStep> noise = after_two(step);
   stage.apply(noise);
   for (const std::size_t entry : {0U, 1U, 255U, 256U, 300U, 511U, 799U}) {
-    check(entry, trace_samples(noise, 2, stage.beams, before.frame, kFrame_s, entry), stage.frame);
+    check(entry, samples_of(before, noise, 2, entry), stage.frame);
   }
 }
 
@@ -47,8 +55,8 @@ void expect_adds(const NoiseStep& step, double sigma_m) {
 }
 
 void expect_none(const NoiseStep& step) {
-  const NoiseStage stage(1, 3, kRange_m);
-  EXPECT_TRUE(trace_samples({step}, 0, stage.beams, stage.frame, kFrame_s, 0).empty());
+  NoiseStage stage(1, 3, kRange_m);
+  EXPECT_TRUE(samples_of(stage, {step}, 0, 0).empty());
 }
 
 // One hold() for every kind of step: its random numbers explain the frame.
@@ -124,8 +132,7 @@ void hold(const Dropout& /*kind*/) {
   });
   NoiseStage lost(1, 1, kRange_m);
   lost.lose_beam(0);
-  EXPECT_FALSE(
-      trace_samples({step}, 0, lost.beams, lost.frame, kFrame_s, 0)[0].probability.has_value());
+  EXPECT_FALSE(samples_of(lost, {step}, 0, 0)[0].probability.has_value());
 }
 
 void hold(const Crosstalk& /*kind*/) {
@@ -170,7 +177,7 @@ double range_off_by_m(double steps) {
 }
 
 /// The sum of a pixel's neighbours' own samples over the root of their number, by the window's law.
-double window_mean(const NoiseStage& stage, const std::vector<NoiseStep>& noise, std::size_t entry,
+double window_mean(NoiseStage& stage, const std::vector<NoiseStep>& noise, std::size_t entry,
                    std::size_t reach) {
   double sum = 0.0;
   double count = 0.0;
@@ -179,7 +186,7 @@ double window_mean(const NoiseStage& stage, const std::vector<NoiseStep>& noise,
   for (std::size_t r = 0; r < kRows; ++r) {
     for (std::size_t c = 0; c < kCols; ++c) {
       if (r + reach < row || r > row + reach || c + reach < col || c > col + reach) continue;
-      sum += trace_samples(noise, 2, stage.beams, stage.frame, kFrame_s, r * kCols + c).at(0).value;
+      sum += samples_of(stage, noise, 2, r * kCols + c).at(0).value;
       count += 1.0;
     }
   }
@@ -188,7 +195,7 @@ double window_mean(const NoiseStage& stage, const std::vector<NoiseStep>& noise,
 
 void hold(const KinectV1& /*kind*/) {
   const KinectV1 kinect{.k_m = kFineK_m, .offset_steps = 0.0, .sigma_steps = 1e5, .window = 5};
-  const NoiseStage before(kRows, kCols, kRange_m);
+  NoiseStage before(kRows, kCols, kRange_m);
   for_entries(kinect,
               [&](std::size_t entry, const std::vector<RandomSample>& samples, const Frame& frame) {
                 ASSERT_EQ(samples.size(), 2U);
@@ -229,10 +236,11 @@ double seen_on_slope_m(std::size_t entry, double sigma_px,
 
 void hold(const NguyenLateral& /*kind*/) {
   const std::vector<NoiseStep> noise = {NguyenLateral{.a_px = 0.8}};
+  Slope before;
   Slope stage;
   stage.apply(noise);
   for (const std::size_t entry : {0U, 99U, 150U, 255U, 256U, 799U}) {
-    const auto samples = trace_samples(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
+    const auto samples = samples_of(before, noise, 0, entry);
     ASSERT_EQ(samples.size(), 2U);
     EXPECT_NEAR(stage.frame.range_m[entry], seen_on_slope_m(entry, 0.8, samples), 1e-10) << entry;
   }
@@ -241,10 +249,11 @@ void hold(const NguyenLateral& /*kind*/) {
 void hold(const IclKinect& /*kind*/) {
   const std::vector<NoiseStep> noise = {
       IclKinect{.k_m = kFineK_m, .lateral_px = 0.5, .sigma_steps = 1e5}};
+  Slope before;
   Slope stage;
   stage.apply(noise);
   for (const std::size_t entry : {0U, 99U, 150U, 255U, 256U, 799U}) {
-    const auto samples = trace_samples(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
+    const auto samples = samples_of(before, noise, 0, entry);
     ASSERT_EQ(samples.size(), 3U);
     const double steps = kFineK_m / seen_on_slope_m(entry, 0.5, samples) + 1e5 * samples[2].value;
     EXPECT_NEAR(stage.frame.range_m[entry], kFineK_m / steps, 1e-7) << entry;
@@ -272,7 +281,7 @@ void hold(const ContinuousWave& /*kind*/) {
   NoiseStage stage(1, 300, kRange_m);
   const std::vector<NoiseStep> six = {
       ContinuousWave{.frequencies_hz = {10e6, 20e6, 30e6, 40e6, 50e6, 60e6}}};
-  EXPECT_EQ(trace_samples(six, 0, stage.beams, stage.frame, kFrame_s, 299).size(), 6U);
+  EXPECT_EQ(samples_of(stage, six, 0, 299).size(), 6U);
 }
 
 /// A stage of a turning sensor, all of whose beams look ahead.
@@ -288,7 +297,7 @@ void hold(const PointingJitter& /*kind*/) {
   const std::vector<NoiseStep> noise = {RangeGaussian{}, PointingJitter{1e-4, 2e-4}};
   const Beams& aimed = stage.perturb(noise);
   for (const std::size_t entry : {0U, 255U, 256U, 777U}) {
-    const auto samples = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
+    const auto samples = samples_of(stage, noise, 1, entry);
     ASSERT_EQ(samples.size(), 2U);
     EXPECT_NEAR(std::abs(aimed.directions[entry].y()), std::abs(1e-4 * samples[0].value), 1e-9);
     EXPECT_NEAR(aimed.directions[entry].z(), 2e-4 * samples[1].value, 1e-9);
@@ -302,7 +311,7 @@ void hold(const EncoderError& /*kind*/) {
     const std::vector<NoiseStep> noise = {RangeGaussian{}, EncoderError{.turn_sigma_rad = 1e-3}};
     const Beams& aimed = stage.perturb(noise);
     for (const std::size_t entry : {0U, 255U, 777U}) {
-      const auto samples = trace_samples(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
+      const auto samples = samples_of(stage, noise, 1, entry);
       ASSERT_EQ(samples.size(), 1U);
       EXPECT_EQ(samples[0].distribution, RandomSample::Distribution::normal);
       // reported minus true azimuth, of beams that report 0
