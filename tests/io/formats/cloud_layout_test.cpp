@@ -153,7 +153,7 @@ TEST(PointFieldLayout, UnknownFieldsAreZeroAndMissesHaveNoReturn) {
 TEST(PointFieldLayout, AnUnknownNameIsReportedWithAllNamesAndTheNearest) {
   EXPECT_THAT(error_text([] { find_layout("velodine"); }),
               AllOf(HasSubstr("'velodine' is not known"),
-                    HasSubstr("minimal velodyne ouster livox autoware"),
+                    HasSubstr("minimal velodyne ouster ouster-2022 livox livox-custom robosense hesai autoware"),
                     HasSubstr("did you mean 'velodyne'?")));
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
