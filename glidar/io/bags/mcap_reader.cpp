@@ -19,7 +19,7 @@
 namespace glidar::bags {
 namespace {
 
-using mcap::Op;
+using McapOp = mcap::Op;
 
 /// Of records that are neither chunks nor messages.
 constexpr std::uint64_t kMaxRecord = std::uint64_t{16} << 20U;
@@ -100,15 +100,15 @@ void McapScan::check_ends() {
 
 void McapScan::take_record(const McapRecord& record, std::uint64_t at) {
   switch (record.op) {
-    case Op::footer:
+    case McapOp::footer:
       ended_ = true;
       return;
-    case Op::chunk:
+    case McapOp::chunk:
       return add_chunk(at, record.size);
-    case Op::message:
+    case McapOp::message:
       return add_message(at, record.size);
-    case Op::schema:
-    case Op::channel: {
+    case McapOp::schema:
+    case McapOp::channel: {
       if (record.size > kMaxRecord)
         reject_bag(file_.place(at), "a schema or channel of more than 16 MiB");
       ByteReader content(file_.peek(at, record.size), file_.place(at));
@@ -200,7 +200,7 @@ class McapReader : public BagReader {
       const McapRecord record = read_mcap_head(reader);
       const std::size_t begin = reader.position();
       ByteReader content(reader.take(record.size), reader.place());
-      if (record.op != Op::message) continue;
+      if (record.op != McapOp::message) continue;
       const auto channel = content.number<std::uint16_t>();
       content.number<std::uint32_t>();  // the number in the sequence
       const std::int64_t time_ns = time_of(content.number<std::uint64_t>(), content);

@@ -12,10 +12,10 @@
 namespace glidar::bags {
 namespace {
 
-using mcap::Op;
+using McapOp = mcap::Op;
 
 /// Begins a record; its length is set by end_record().
-std::size_t begin_record(Bytes& to, Op op) {
+std::size_t begin_record(Bytes& to, McapOp op) {
   append(to, static_cast<std::uint8_t>(op));
   append(to, std::uint64_t{0});
   return to.size();
@@ -36,7 +36,7 @@ void append_pair(Bytes& to, std::string_view key, std::string_view value) {
 }
 
 void append_schema(Bytes& to, std::uint16_t number, const ros::MessageType& type) {
-  const std::size_t begin = begin_record(to, Op::schema);
+  const std::size_t begin = begin_record(to, McapOp::schema);
   append(to, number);
   append_sized(to, type.name);
   append_sized(to, "ros2msg");
@@ -48,7 +48,7 @@ void append_channel(Bytes& to, std::uint16_t number, std::uint16_t schema, const
   Bytes metadata;
   append_pair(metadata, "offered_qos_profiles", ros::qos_yaml(topic.qos));
   append_pair(metadata, "topic_type_hash", topic.type->type_hash);
-  const std::size_t begin = begin_record(to, Op::channel);
+  const std::size_t begin = begin_record(to, McapOp::channel);
   append(to, number);
   append(to, schema);
   append_sized(to, topic.name);
@@ -73,7 +73,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const BagOptions& opti
     : options_(options), file_(path), topics_(path.string()) {
   Bytes start;
   append(start, mcap::kMagic);
-  const std::size_t begin = begin_record(start, Op::header);
+  const std::size_t begin = begin_record(start, McapOp::header);
   append_sized(start, "ros2");
   append_sized(start, options_.library);
   end_record(start, begin);
@@ -104,7 +104,7 @@ void McapWriter::write(std::size_t topic, std::int64_t time_ns,
   chunk_first_ns_ = indexes_.empty() ? time : std::min(chunk_first_ns_, time);
   chunk_last_ns_ = indexes_.empty() ? time : std::max(chunk_last_ns_, time);
   indexes_[channel].emplace_back(time, chunk_.size());
-  append(chunk_, static_cast<std::uint8_t>(Op::message));
+  append(chunk_, static_cast<std::uint8_t>(McapOp::message));
   append(chunk_, std::uint64_t{mcap::kMessageHead + message.size()});
   append(chunk_, channel);
   append(chunk_, static_cast<std::uint32_t>(written.messages - 1));
@@ -130,7 +130,7 @@ void McapWriter::write_chunk() {
   const std::string_view compression = mcap_name(options_.compression);
   const std::uint64_t chunk_offset = file_.position();
   Bytes head;
-  const std::size_t begin = begin_record(head, Op::chunk);
+  const std::size_t begin = begin_record(head, McapOp::chunk);
   append(head, chunk_first_ns_);
   append(head, chunk_last_ns_);
   append(head, std::uint64_t{chunk_.size()});
@@ -149,7 +149,7 @@ void McapWriter::write_chunk() {
     append(offsets, channel);
     append(offsets, offset);
   }
-  const std::size_t index = begin_record(chunk_indexes_, Op::chunk_index);
+  const std::size_t index = begin_record(chunk_indexes_, McapOp::chunk_index);
   append(chunk_indexes_, chunk_first_ns_);
   append(chunk_indexes_, chunk_last_ns_);
   append(chunk_indexes_, chunk_offset);
@@ -172,7 +172,7 @@ std::map<std::uint16_t, std::uint64_t> McapWriter::write_message_indexes() {
   for (const auto& [channel, index] : indexes_) {
     offsets[channel] = file_.position();
     record.clear();
-    const std::size_t begin = begin_record(record, Op::message_index);
+    const std::size_t begin = begin_record(record, McapOp::message_index);
     append(record, channel);
     append(record, static_cast<std::uint32_t>(2 * sizeof(std::uint64_t) * index.size()));
     for (const auto& [time, offset] : index) {
@@ -188,7 +188,7 @@ std::map<std::uint16_t, std::uint64_t> McapWriter::write_message_indexes() {
 void McapWriter::finish() {
   write_chunk();
   Bytes end;
-  const std::size_t begin = begin_record(end, Op::data_end);
+  const std::size_t begin = begin_record(end, McapOp::data_end);
   append(end, crc_);
   end_record(end, begin);
   put(end);
@@ -198,7 +198,7 @@ void McapWriter::finish() {
 
 void McapWriter::write_summary() {
   Bytes statistics;
-  std::size_t begin = begin_record(statistics, Op::statistics);
+  std::size_t begin = begin_record(statistics, McapOp::statistics);
   append(statistics, topics_.messages());
   append(statistics, static_cast<std::uint16_t>(schemas_.size()));
   append(statistics, static_cast<std::uint32_t>(topics_.all().size()));
@@ -217,14 +217,14 @@ void McapWriter::write_summary() {
 
   crc_ = 0;
   const std::uint64_t summary = file_.position();
-  const std::pair<Op, const Bytes*> groups[] = {{Op::schema, &schema_records_},
-                                                {Op::channel, &channel_records_},
-                                                {Op::statistics, &statistics},
-                                                {Op::chunk_index, &chunk_indexes_}};
+  const std::pair<McapOp, const Bytes*> groups[] = {{McapOp::schema, &schema_records_},
+                                                    {McapOp::channel, &channel_records_},
+                                                    {McapOp::statistics, &statistics},
+                                                    {McapOp::chunk_index, &chunk_indexes_}};
   Bytes offsets;
   for (const auto& [op, records] : groups) {
     if (records->empty()) continue;
-    begin = begin_record(offsets, Op::summary_offset);
+    begin = begin_record(offsets, McapOp::summary_offset);
     append(offsets, static_cast<std::uint8_t>(op));
     append(offsets, file_.position());
     append(offsets, std::uint64_t{records->size()});
@@ -233,7 +233,7 @@ void McapWriter::write_summary() {
   }
   const std::uint64_t offsets_at = file_.position();
   Bytes footer;
-  append(footer, static_cast<std::uint8_t>(Op::footer));
+  append(footer, static_cast<std::uint8_t>(McapOp::footer));
   append(footer, std::uint64_t{mcap::kFooterBytes});
   append(footer, summary);
   append(footer, offsets_at);

@@ -20,7 +20,7 @@
 namespace glidar::bags {
 namespace {
 
-using rosbag1::Op;
+using Rosbag1Op = rosbag1::Op;
 
 /// Of headers, and of the data of records other than chunks.
 constexpr std::uint32_t kMaxHeader = std::uint32_t{16} << 20U;
@@ -61,7 +61,7 @@ class BagFields {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
 
-  [[nodiscard]] Op op() const { return static_cast<Op>(number<std::uint8_t>("op")); }
+  [[nodiscard]] Rosbag1Op op() const { return static_cast<Rosbag1Op>(number<std::uint8_t>("op")); }
 
  private:
   [[nodiscard]] std::span<const std::byte> value(const std::string& name) const {
@@ -141,19 +141,19 @@ class Rosbag1Reader : public BagReader {
     if (data_size > file_.size() - data_at)
       reject_bag(file_.place(at), "a record longer than the file");
     switch (fields.op()) {
-      case Op::bag_header:
+      case Rosbag1Op::bag_header:
         check_index(fields, at);
         break;
-      case Op::chunk:
+      case Rosbag1Op::chunk:
         by_position_[at] = chunks_.size();
         chunks_.push_back({at, data_at, data_size, fields.number<std::uint32_t>("size"),
                            rosbag1_compression(fields.text("compression"), file_.place(at)),
                            std::nullopt});
         break;
-      case Op::connection:
+      case Rosbag1Op::connection:
         add_connection(fields, data_at, data_size);
         break;
-      case Op::chunk_info:
+      case Rosbag1Op::chunk_info:
         add_chunk_info(fields, at);
         break;
       default:
@@ -197,7 +197,7 @@ class Rosbag1Reader : public BagReader {
       const std::size_t size = reader.number<std::uint32_t>();
       const std::size_t begin = reader.position();
       reader.take(size);
-      if (fields.op() != Op::message) continue;
+      if (fields.op() != Rosbag1Op::message) continue;
       const auto connection = connections_.find(fields.number<std::uint32_t>("conn"));
       if (connection == connections_.end()) reader.reject("a message of an unknown connection");
       loaded.entries.push_back({fields.time_ns("time"), connection->second, begin, size});

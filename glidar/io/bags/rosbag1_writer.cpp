@@ -14,7 +14,7 @@
 namespace glidar::bags {
 namespace {
 
-using rosbag1::Op;
+using Rosbag1Op = rosbag1::Op;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -36,7 +36,7 @@ void append_field(Bytes& to, std::string_view name, Number value) {
   append_field(to, name, std::as_bytes(std::span(&value, 1)));
 }
 
-void append_op(Bytes& to, Op op) {
+void append_op(Bytes& to, Rosbag1Op op) {
   append_field(to, "op", static_cast<std::uint8_t>(op));
 }
 
@@ -49,7 +49,7 @@ std::uint64_t packed_time(std::int64_t time_ns) {
 
 void append_connection(Bytes& to, std::uint32_t number, const WrittenTopic& topic) {
   Bytes header;
-  append_op(header, Op::connection);
+  append_op(header, Rosbag1Op::connection);
   append_field(header, "conn", number);
   append_field(header, "topic", topic.name);
   Bytes data;
@@ -91,7 +91,7 @@ void Rosbag1Writer::write(std::size_t topic, std::int64_t time_ns,
   if (written.messages == 1) append_connection(chunk_, connection, written);
   indexes_[connection].emplace_back(time_ns, static_cast<std::uint32_t>(chunk_.size()));
   Bytes header;
-  append_op(header, Op::message);
+  append_op(header, Rosbag1Op::message);
   append_field(header, "conn", connection);
   append_field(header, "time", packed_time(time_ns));
   append_sized(chunk_, header);
@@ -111,7 +111,7 @@ void Rosbag1Writer::write_chunk() {
   }
   const std::uint64_t position = file_.position();
   Bytes header;
-  append_op(header, Op::chunk);
+  append_op(header, Rosbag1Op::chunk);
   append_field(header, "compression", is_packed ? "lz4" : "none");
   append_field(header, "size", static_cast<std::uint32_t>(chunk_.size()));
   Bytes record;
@@ -133,7 +133,7 @@ void Rosbag1Writer::write_indexes(std::uint64_t position) {
   Bytes counts;
   for (const auto& [connection, index] : indexes_) {
     Bytes header;
-    append_op(header, Op::index);
+    append_op(header, Rosbag1Op::index);
     append_field(header, "ver", std::uint32_t{1});
     append_field(header, "conn", connection);
     append_field(header, "count", static_cast<std::uint32_t>(index.size()));
@@ -152,7 +152,7 @@ void Rosbag1Writer::write_indexes(std::uint64_t position) {
     append(counts, static_cast<std::uint32_t>(index.size()));
   }
   Bytes header;
-  append_op(header, Op::chunk_info);
+  append_op(header, Rosbag1Op::chunk_info);
   append_field(header, "ver", std::uint32_t{1});
   append_field(header, "chunk_pos", position);
   append_field(header, "start_time", packed_time(first_ns));
@@ -164,7 +164,7 @@ void Rosbag1Writer::write_indexes(std::uint64_t position) {
 
 void Rosbag1Writer::write_bag_header(std::uint64_t index_position) {
   Bytes header;
-  append_op(header, Op::bag_header);
+  append_op(header, Rosbag1Op::bag_header);
   append_field(header, "index_pos", index_position);
   append_field(header, "conn_count", static_cast<std::uint32_t>(topics_.all().size()));
   append_field(header, "chunk_count", chunks_);
