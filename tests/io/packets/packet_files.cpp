@@ -47,12 +47,13 @@ void write_stream(const std::filesystem::path& base, const Sensor& sensor,
   write_returns(base.string() + ".returns", flat);
 }
 
-/// The sensor as velodyne-decoder 3.1.0 places its beams: without the HDL-64E's radial offset,
-/// -vert_offset sin(elevation), that other drivers apply.
+/// The sensor as velodyne-decoder 3.1.0 places its beams: the HDL-64E's vert_offset is a height,
+/// while ros-drivers turn it with the beam: -vert_offset sin(elevation) outwards, times cos up.
 Sensor consumer_sensor(const std::string& model, bool is_dual) {
   Sensor sensor = packet_sensor(model, is_dual);
   for (SpinningChannel& channel : std::get<Spinning>(sensor.optics).channels)
-    channel.origin_m.x() = 0.0;
+    channel.origin_m = {0.0, channel.origin_m.y(),
+                        channel.origin_m.z() / std::cos(channel.elevation_rad)};
   return sensor;
 }
 
