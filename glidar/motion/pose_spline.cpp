@@ -16,7 +16,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// What lies between two entries.
+/// The change from one entry to the next.
 struct Step {
   double duration_s;
   Vector3d change;  ///< of the position, or the rotation vector

@@ -223,6 +223,18 @@ void shift(std::int64_t start_ns, const std::string& file, std::vector<TimedPose
   }
 }
 
+/// The poses were checked; only their spline may not exist.
+TimedPoses interpolated(std::vector<TimedPose> poses, Interpolation interpolation,
+                        const std::string& file) {
+  try {
+    return TimedPoses(std::move(poses), interpolation);
+  } catch (const Error& error) {
+    ErrorParts parts = error.parts();
+    parts.where = file + ", " + parts.where;
+    throw Error(parts);
+  }
+}
+
 }  // namespace
 
 TimedPoses load_trajectory_file(const std::filesystem::path& path,
@@ -236,7 +248,7 @@ TimedPoses load_trajectory_file(const std::filesystem::path& path,
       bags::is_bag_path(path) ? read_bag(path, options) : read_text(path, options);
   if (poses.empty()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
   if (options.start_ns) shift(*options.start_ns, file, poses);
-  return TimedPoses(std::move(poses));
+  return interpolated(std::move(poses), options.interpolation, file);
 }
 
 }  // namespace glidar

@@ -21,6 +21,7 @@ struct TrajectoryFileOptions {
   std::string topic = {};
   std::string parent_frame = {};
   std::string child_frame = {};
+  Interpolation interpolation = Interpolation::linear;
 };
 
 /// Reads timed poses. The first row determines the format (docs/files/motion.md): 8 numbers are TUM

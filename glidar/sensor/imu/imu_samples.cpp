@@ -15,11 +15,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Vectors = ImuSamples::Vectors;
 
-constexpr auto kImuConstants = static_cast<Purpose>(8);
-constexpr auto kImuNoise = static_cast<Purpose>(9);
-constexpr auto kImuCorrelatedBias = static_cast<Purpose>(10);
-constexpr auto kImuRandomWalk = static_cast<Purpose>(11);
-
 /// Blocks of random words of a triad and purpose.
 constexpr std::uint32_t kGyroscope = 0;
 constexpr std::uint32_t kAccelerometer = 1;
@@ -31,7 +26,7 @@ RngKey key_of(const ImuRun& run, Purpose purpose, std::uint32_t block) {
 /// Three normal numbers that an IMU has throughout a run.
 Vector3d constant_normals(const ImuRun& run, std::uint32_t triad, std::uint32_t which) {
   constexpr std::uint32_t kPerTriad = 4;
-  return normal_vector(key_of(run, kImuConstants, kPerTriad * triad + which));
+  return normal_vector(key_of(run, Purpose::imu_constants, kPerTriad * triad + which));
 }
 
 /// I + S. Each axis is misaligned independently, so S has nine independent entries (Woodman,
@@ -74,9 +69,9 @@ void sample_biases(const TriadErrors& errors, Vectors& biases) {
   std::fill(biases.begin(), biases.end(), errors.turn_on_bias);
   add_process(
       correlated_process(correlated_bias_sigma(triad), triad.correlation_time_s, errors.rate_hz),
-      key_of(errors.run, kImuCorrelatedBias, errors.number), errors.first, biases);
+      key_of(errors.run, Purpose::imu_correlated_bias, errors.number), errors.first, biases);
   add_process(random_walk(triad.random_walk, errors.rate_hz),
-              key_of(errors.run, kImuRandomWalk, errors.number), errors.first, biases);
+              key_of(errors.run, Purpose::imu_random_walk, errors.number), errors.first, biases);
 }
 
 void measure_triad(const TriadErrors& errors, const Vectors& truth, Vectors& biases,
@@ -85,7 +80,7 @@ void measure_triad(const TriadErrors& errors, const Vectors& truth, Vectors& bia
   measured.resize(truth.size());
   sample_biases(errors, biases);
   const double sigma = errors.triad.noise_density * std::sqrt(errors.rate_hz);
-  const RngKey key = key_of(errors.run, kImuNoise, errors.number);
+  const RngKey key = key_of(errors.run, Purpose::imu_noise, errors.number);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     Vector3d value = errors.matrix * truth[i] + biases[i];
     if (sigma > 0.0) value += sigma * normal_vector(key_of_sample(key, errors.first + i));
