@@ -4,6 +4,7 @@
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/fisher_output.hpp>
+#include <apps/glidar/run/imu_outputs.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
@@ -29,6 +30,8 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd
+  glidar render builtin:box --sensor VLP-16 --imu BMI088 --trajectory walk.tum
+      --trajectory-interpolation spline --duration 5 -o scan.pcd -o walk.imu.csv
   glidar render builtin:box -o - --format csv
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --legacy-output view
 With your own files:
@@ -146,18 +149,21 @@ void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active,
 int run_render(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
   check_fisher(flags);
+  check_imu_outputs(flags);
   if (flags.duration_s) numbered(flags.output, 0);  // for its errors only
   const CommandRecord command = {.arguments = reproducible_arguments(arguments),
                                  .folder = std::filesystem::current_path()};
   PreparedScene prepared;
   const ActiveSensor unknown;
-  const std::vector<Output> outputs =  // to report errors before the work begins
-      plan_outputs(flags.output, flags.input,
-                   {.scene = prepared.scene,
-                    .sensor = unknown.sensor,
-                    .beams = unknown.beams,
-                    .renderer = renderer_name(flags)},
-                   console.report());
+  std::vector<Output> outputs;  // to report errors before the work begins
+  if (has_outputs(flags.output) || flags.output.imu_paths.empty()) {
+    outputs = plan_outputs(flags.output, flags.input,
+                           {.scene = prepared.scene,
+                            .sensor = unknown.sensor,
+                            .beams = unknown.beams,
+                            .renderer = renderer_name(flags)},
+                           console.report());
+  }
   prepare_scene(
       flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
   const std::vector<OutputFlags> files = outputs_by_sensor(flags, prepared, console);
@@ -166,6 +172,7 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
     for (std::size_t i = 0; i < prepared.sensors.size(); ++i) {
       if (has_outputs(files[i])) measure_all(job, files[i], prepared.sensors[i], console);
     }
+    write_imu_outputs(flags, prepared, console, job.written);
   } catch (const Error& error) {
     if (job.written.empty()) throw;
     throw after_writing(error, job.written);

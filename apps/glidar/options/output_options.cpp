@@ -6,6 +6,7 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/imu_samples_file.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -94,8 +95,11 @@ const std::vector<std::string>& default_columns() {
 
 void add_output_options(CLI::App& command, OutputFlags& flags) {
   const OptionGroup group(command, kOutputHeading);
-  group.add_repeatable("-o,--output", "FILE", "File to write, repeatable; -: standard output",
-                       [&flags](const std::string& text) { flags.paths.push_back(text); });
+  group.add_repeatable(
+      "-o,--output", "FILE", "File to write, repeatable; -: standard output",
+      [&flags](const std::string& text) {
+        (is_imu_samples_path(text) ? flags.imu_paths : flags.paths).push_back(text);
+      });
   group.add("--format", "NAME", "Format of -o -, standard output: csv, pcd ...", flags.format,
             one_of(stream_formats()));
   add_cloud_options(group, flags);
@@ -119,6 +123,8 @@ std::string output_names_text() {
   for (const FileFormat& format : file_formats()) {
     text += fmt::format("  {:<17} {}\n", format.suffix, format.description);
   }
+  text += fmt::format("  {:<17} {}\n", ".imu.csv", "samples of IMUs, text (render --duration)");
+  text += fmt::format("  {:<17} {}\n", ".imu.npz", "samples of IMUs, NumPy archive");
   text += "\nColumns of clouds (* by default):\n";
   std::string names;
   for (const std::string& name : cloud_column_names()) {
