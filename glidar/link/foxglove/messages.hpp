@@ -13,8 +13,8 @@
 #include <vector>
 
 /// The Foxglove WebSocket protocol, version 1: JSON texts and little-endian binary messages, which
-/// Foxglove and Lichtblick understand. Source: the specification in the repository foxglove/ws-protocol
-/// on GitHub, and the npm package @foxglove/ws-protocol 0.8.0.
+/// Foxglove and Lichtblick understand. Source: the specification in the repository
+/// foxglove/ws-protocol on GitHub, and the npm package @foxglove/ws-protocol 0.8.0.
 namespace glidar::foxglove {
 
 using ChannelId = std::uint32_t;

@@ -18,7 +18,7 @@ const context = await chromium.launchPersistentContext(profile, {
   executablePath: CHROMIUM,
   timeout: 0,
   viewport: { width: 1200, height: 720 },
-  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  args: ["--no-sandbox", "--disable-gpu", "--disable-gpu-compositing", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
 });
 context.setDefaultTimeout(0);
 const page = context.pages()[0] ?? await context.newPage();

@@ -78,6 +78,7 @@ export class ColourChoice {
   #min = document.getElementById("range-min");
   #max = document.getElementById("range-max");
   #known = "";
+  #otherMap = "";  // to return to from the map of errors
 
   constructor(onChange) {
     this.#map.replaceChildren(...[...MAPS.keys()].map((name) => new Option(name, name)));
@@ -85,7 +86,7 @@ export class ColourChoice {
     this.#by.addEventListener("change", () => {
       this.#min.value = "";
       this.#max.value = "";
-      if (this.key === "error") this.#map.value = "blue to red";
+      this.#chooseMap();
       onChange();
     });
     for (const input of [this.#map, this.#min, this.#max]) input.addEventListener("input", onChange);
@@ -95,6 +96,14 @@ export class ColourChoice {
   get map() { return this.#map.value; }
   get name() { return this.#by.selectedOptions[0]?.textContent ?? ""; }
   get interval() { return [this.#min, this.#max].map((input) => (input.value === "" ? undefined : Number(input.value))); }
+
+  /** Errors have two signs, so their map has two ends. */
+  #chooseMap() {
+    const isError = this.key === "error";
+    if (isError) this.#otherMap = this.map;
+    if (isError || this.#otherMap !== "") this.#map.value = isError ? "blue to red" : this.#otherMap;
+    if (!isError) this.#otherMap = "";
+  }
 
   /** Offers what the points of these clouds have. */
   offer(clouds) {

@@ -87,9 +87,16 @@ export function prepareCloud(cloud, key, model) {
   cloud.key = key;
   const values = scalars(cloud.message, key, cloud.xyz);
   cloud.interval = typicalInterval(values ?? heights(cloud, model));
+  if (key === "error") cloud.interval = symmetric(cloud.interval);
   cloud.hasValues = values !== undefined;
   cloud.values = (values ?? new Float32Array(cloud.xyz.length / 3)).map((value) => (Number.isFinite(value) ? value : NO_VALUE));
   return true;
+}
+
+/** An error of zero has the colour in the middle. */
+function symmetric([min, max]) {
+  const end = Math.max(Math.abs(min), Math.abs(max));
+  return [-end, end];
 }
 
 function hideInvalid(xyz) {

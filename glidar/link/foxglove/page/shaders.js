@@ -26,7 +26,7 @@ void main() {
 }`;
 
 const POINT_FRAGMENT = `#version 300 es
-precision mediump float;
+precision highp float;
 in vec3 colour;
 uniform float size;
 out vec4 result;
@@ -43,7 +43,7 @@ uniform mat4 projection;
 void main() { gl_Position = projection * (model * vec4(position, 1.0)); }`;
 
 const LINE_FRAGMENT = `#version 300 es
-precision mediump float;
+precision highp float;
 uniform vec4 colour;
 out vec4 result;
 void main() { result = colour; }`;

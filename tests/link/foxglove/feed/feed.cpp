@@ -25,9 +25,9 @@
 #include <string>
 #include <utility>
 
+namespace glidar::testing {
 namespace {
 
-using namespace glidar;  // a program
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kPeriod_ns = 100'000'000;
@@ -74,13 +74,12 @@ Channels add_channels(foxglove::FoxgloveServer& server) {
     return server.add_channel(
         {.topic = topic, .schema_name = name, .schema = std::string(schema), .depth = depth});
   };
-  return {.cloud = add("/points", "sensor_msgs/msg/PointCloud2", testing::kPointCloud2),
-          .depth = add("/camera/depth", "sensor_msgs/msg/Image", testing::kImage),
-          .picture = add("/camera/compressed", "sensor_msgs/msg/CompressedImage",
-                         testing::kCompressedImage),
-          .tf = add("/tf", "tf2_msgs/msg/TFMessage", testing::kTfMessage, 100),
-          .tf_static = add("/tf_static", "tf2_msgs/msg/TFMessage", testing::kTfMessage),
-          .odometry = add("/odom", "nav_msgs/msg/Odometry", testing::kOdometry, 100)};
+  return {.cloud = add("/points", "sensor_msgs/msg/PointCloud2", kPointCloud2),
+          .depth = add("/camera/depth", "sensor_msgs/msg/Image", kImage),
+          .picture = add("/camera/compressed", "sensor_msgs/msg/CompressedImage", kCompressedImage),
+          .tf = add("/tf", "tf2_msgs/msg/TFMessage", kTfMessage, 100),
+          .tf_static = add("/tf_static", "tf2_msgs/msg/TFMessage", kTfMessage),
+          .odometry = add("/odom", "nav_msgs/msg/Odometry", kOdometry, 100)};
 }
 
 /// Forward and back again.
@@ -90,8 +89,8 @@ int frame_at(std::uint64_t count, int frames) {
   return phase < frames ? phase : period - phase;
 }
 
-void publish(foxglove::FoxgloveServer& server, const Channels& to,
-             const testing::StreetDrive& drive, std::uint64_t count) {
+void publish(foxglove::FoxgloveServer& server, const Channels& to, const StreetDrive& drive,
+             std::uint64_t count) {
   const int frame = frame_at(count, drive.frames());
   const std::uint64_t stamp = kStart_ns + count * kPeriod_ns;
   server.publish_time(stamp);
@@ -101,7 +100,7 @@ void publish(foxglove::FoxgloveServer& server, const Channels& to,
   server.publish(to.depth, stamp, drive.depth_image(frame, stamp));
 }
 
-void answer_question(Requests& requests, testing::StreetDrive& drive) {
+void answer_question(Requests& requests, StreetDrive& drive) {
   std::optional<Requests::Question> question;
   {
     const std::lock_guard lock(requests.mutex);
@@ -133,10 +132,10 @@ bool is_next(Requests& requests) {
   return true;
 }
 
-void run(foxglove::FoxgloveServer& server, testing::StreetDrive& drive, Requests& requests) {
+void run(foxglove::FoxgloveServer& server, StreetDrive& drive, Requests& requests) {
   const Channels channels = add_channels(server);
-  server.publish(channels.tf_static, kStart_ns, testing::StreetDrive::static_transforms());
-  testing::CdrWriter picture;
+  server.publish(channels.tf_static, kStart_ns, StreetDrive::static_transforms());
+  CdrWriter picture;
   picture.header(kStart_ns, "camera").text("png").sequence(tiny_png());
   server.publish(channels.picture, kStart_ns, picture.payload());
   Clock::time_point next = Clock::now();
@@ -151,12 +150,10 @@ void run(foxglove::FoxgloveServer& server, testing::StreetDrive& drive, Requests
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_feed(int argc, char** argv) {
   try {
     Requests requests;
-    testing::StreetDrive drive(argc > 1 ? argv[1] : "VLP-16", argc > 3 ? std::atoi(argv[3]) : 20);
+    StreetDrive drive(argc > 1 ? argv[1] : "VLP-16", argc > 3 ? std::atoi(argv[3]) : 20);
     link::ErrorLog errors({.log =
                                [](Severity, std::string_view text) {
                                  std::fprintf(stderr, "%.*s\n", static_cast<int>(text.size()),
@@ -182,4 +179,11 @@ int main(int argc, char** argv) {
     return 1;
   }
   return 0;
+}
+
+}  // namespace
+}  // namespace glidar::testing
+
+int main(int argc, char** argv) {
+  return glidar::testing::run_feed(argc, argv);
 }
