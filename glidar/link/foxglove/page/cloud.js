@@ -103,7 +103,9 @@ function errors(cloud, xyz) {
   const given = findField(cloud, ["error", "range_error"]);
   if (given !== undefined) return column(cloud, given);
   const truth = column(cloud, findField(cloud, TRUE_RANGE));
-  return distances(cloud, xyz).map((value, i) => value - truth[i]);
+  const measured = distances(cloud, xyz);
+  for (let i = 0; i < truth.length; ++i) truth[i] = measured[i] - truth[i];
+  return truth;
 }
 
 /** The values to colour by, one per point; undefined: height, which depends on the pose. */

@@ -89,8 +89,15 @@ export function prepareCloud(cloud, key, model) {
   cloud.interval = typicalInterval(values ?? heights(cloud, model));
   if (key === "error") cloud.interval = symmetric(cloud.interval);
   cloud.hasValues = values !== undefined;
-  cloud.values = (values ?? new Float32Array(cloud.xyz.length / 3)).map((value) => (Number.isFinite(value) ? value : NO_VALUE));
+  cloud.values = replaceInvalid(values ?? new Float32Array(cloud.xyz.length / 3));
   return true;
+}
+
+function replaceInvalid(values) {
+  for (let i = 0; i < values.length; ++i) {
+    if (!Number.isFinite(values[i])) values[i] = NO_VALUE;
+  }
+  return values;
 }
 
 /** An error of zero has the colour in the middle. */
