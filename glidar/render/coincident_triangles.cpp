@@ -41,7 +41,8 @@ struct CornerKey {
 /// Triangles by a hash of their corners that does not depend on the corners' order, then by index.
 std::vector<CornerKey> sorted_keys(const Mesh& mesh) {
   std::vector<std::uint64_t> vertex_hash(mesh.positions_m.size());
-  std::transform(mesh.positions_m.begin(), mesh.positions_m.end(), vertex_hash.begin(), position_hash);
+  std::transform(mesh.positions_m.begin(), mesh.positions_m.end(), vertex_hash.begin(),
+                 position_hash);
   std::vector<CornerKey> keys(mesh.triangles.size());
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
     const Triangle& t = mesh.triangles[i];

@@ -6,10 +6,9 @@
 #include <glidar/math/simd.hpp>
 #include <glidar/render/block_kernels.hpp>
 #include <glidar/render/coincident_triangles.hpp>
-#include <glidar/render/common/hit_rule.hpp>
-#include <glidar/render/common/triangle_blocks.hpp>
 #include <glidar/render/grazing.hpp>
 #include <glidar/render/shading.hpp>
+#include <glidar/render/uncertain_hits.hpp>
 
 #include <algorithm>
 #include <array>
@@ -73,18 +72,6 @@ void find_corners(const Triangle* triangles, const HitBlock& block, CornerIndice
     corners[1][i] = triangle[1];
     corners[2][i] = triangle[2];
   }
-}
-
-/// Whether the hit rule accepts every hit of a block. Single precision may accept no other.
-[[maybe_unused]] bool are_hits_of_rule(const Resolver& resolver, const HitBlock& block,
-                                       const ExactHits& exact) {
-  bool are_hits = true;
-  for_lanes(block.mask, [&](unsigned i) {
-    const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
-    const Mesh& mesh = resolver.mesh(block.instance[i]);
-    are_hits = are_hits && hit_distance(ray, corners_of(mesh, block.primitive[i])) > 0.0;
-  });
-  return are_hits;
 }
 
 void gather_vectors(const BlockKernel& kernel, const Eigen::Vector3f* of_vertex,

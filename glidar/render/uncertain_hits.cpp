@@ -3,6 +3,7 @@
 #include <glidar/render/uncertain_hits.hpp>
 
 #include <glidar/math/simd.hpp>
+#include <glidar/render/common/triangle_blocks.hpp>
 #include <glidar/render/corners.hpp>
 
 namespace glidar {
@@ -37,6 +38,16 @@ std::uint32_t uncertain_lanes(const Resolver& resolver, const HitBlock& block,
     corners.set(i, mesh.positions_m.data(), mesh.triangles[block.primitive[i]]);
   }
   return outside(exact, corners) & block.mask;
+}
+
+bool are_hits_of_rule(const Resolver& resolver, const HitBlock& block, const ExactHits& exact) {
+  bool are_hits = true;
+  for_lanes(block.mask, [&](unsigned i) {
+    const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
+    const Mesh& mesh = resolver.mesh(block.instance[i]);
+    are_hits = are_hits && hit_distance(ray, corners_of(mesh, block.primitive[i])) > 0.0;
+  });
+  return are_hits;
 }
 
 }  // namespace glidar

@@ -14,4 +14,8 @@ namespace glidar {
 std::uint32_t uncertain_lanes(const Resolver& resolver, const HitBlock& block,
                               const ExactHits& exact);
 
+/// Whether the hit rule accepts every hit of a block, for assertions: single precision may accept
+/// no other.
+bool are_hits_of_rule(const Resolver& resolver, const HitBlock& block, const ExactHits& exact);
+
 }  // namespace glidar

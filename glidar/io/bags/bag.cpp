@@ -22,9 +22,13 @@ std::filesystem::path without_separators(const std::filesystem::path& path) {
 
 }  // namespace
 
-bool is_bag_path(const std::filesystem::path& path) {
+bool is_bag_name(const std::filesystem::path& path) {
   const std::string suffix = without_separators(path).extension().string();
-  if (suffix == ".mcap" || suffix == ".bag" || suffix == ".rosbag2") return true;
+  return suffix == ".mcap" || suffix == ".bag" || suffix == ".rosbag2";
+}
+
+bool is_bag_path(const std::filesystem::path& path) {
+  if (is_bag_name(path)) return true;
   std::error_code ignored;
   return std::filesystem::is_regular_file(path / "metadata.yaml", ignored);
 }

@@ -26,6 +26,9 @@ enum class BagFormat : std::uint8_t {
 /// metadata.yaml.
 bool is_bag_path(const std::filesystem::path& path);
 
+/// True for the names of new bags: with the suffix .mcap, .rosbag2 or .bag.
+bool is_bag_name(const std::filesystem::path& path);
+
 /// Throws Error naming the suffixes.
 BagFormat bag_format_for(const std::filesystem::path& path);
 

@@ -31,6 +31,10 @@ std::unique_ptr<PacketDecoder> make_packet_decoder(const Sensor& sensor,
   fail_of_maker(sensor);
 }
 
+bool is_capture_name(const std::filesystem::path& path) {
+  return path.extension() == ".pcap";
+}
+
 PacketWriter::PacketWriter(const std::filesystem::path& path, const Sensor& sensor,
                            const PacketOptions& options)
     : encoder_(make_packet_encoder(sensor, options)),

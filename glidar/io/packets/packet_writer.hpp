@@ -22,6 +22,9 @@ struct PacketOptions {
   OusterOptions ouster;
 };
 
+/// True for the names of packet captures: with the suffix .pcap.
+bool is_capture_name(const std::filesystem::path& path);
+
 /// The encoder of the sensor's manufacturer, by the sensor's name. Throws Error, naming the sensor,
 /// when it has none or its beams do not fit.
 std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Vectors = ImuSamples::Vectors;
+using VectorList = ImuSamples::Vectors;
 
 /// Blocks of random words of a triad and purpose.
 constexpr std::uint32_t kGyroscope = 0;
@@ -64,7 +64,7 @@ struct TriadErrors {
   Vector3d turn_on_bias;
 };
 
-void sample_biases(const TriadErrors& errors, Vectors& biases) {
+void sample_biases(const TriadErrors& errors, VectorList& biases) {
   const InertialTriad& triad = errors.triad;
   std::fill(biases.begin(), biases.end(), errors.turn_on_bias);
   add_process(
@@ -74,8 +74,8 @@ void sample_biases(const TriadErrors& errors, Vectors& biases) {
               key_of(errors.run, Purpose::imu_random_walk, errors.number), errors.first, biases);
 }
 
-void measure_triad(const TriadErrors& errors, const Vectors& truth, Vectors& biases,
-                   Vectors& measured) {
+void measure_triad(const TriadErrors& errors, const VectorList& truth, VectorList& biases,
+                   VectorList& measured) {
   biases.resize(truth.size());
   measured.resize(truth.size());
   sample_biases(errors, biases);
