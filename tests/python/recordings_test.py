@@ -16,7 +16,7 @@ sensors:
   - {name: camera, sensor: {optics: {type: pinhole, width: 32, height: 24, fx: 30, fy: 30, cx: 16, cy: 12}}}
 imus: [{name: imu, imu: {rate_hz: 100}}]
 rig_pose: {position: [0, 0, 0.5]}
-rig_motion: {twist: {linear_m_s: [1, 0, 0], angular_rad_s: [0, 0, 0.5]}}
+rig_motion: {twist: {velocity_m_s: [1, 0, 0], rate_rad_s: [0, 0, 0.5], frame: body}}
 """
 
 
@@ -57,13 +57,15 @@ def test_a_bag_has_all_sensors_of_a_rig_with_their_frames_and_ground_truth(folde
     found = messages(folder / name)
     assert set(found) == {"/lidar/points", "/camera/points", "/camera/depth/image_raw", "/camera/depth/camera_info",
                           "/imu/data", "/tf", "/tf_static", "/odom", "/clock"}  # fmt: skip
-    assert [stamp for stamp, _ in found["/lidar/points"]] == [0, 100_000_000]
+    stamps = [stamp for stamp, _ in found["/lidar/points"]]
+    assert stamps == pytest.approx([0, 1e8], abs=2e5)  # frames begin with a firing
     assert len(found["/camera/points"]) == 6
     static = {t.child_frame_id for t in found["/tf_static"][0][1].transforms}
     assert static == {"lidar", "camera", "imu"}
     assert found["/lidar/points"][0][1].header.frame_id == "lidar"
     times = [stamp for stamp, _ in found["/tf"]]
-    assert times == list(range(0, 200_000_001, 10_000_000))
+    assert times == list(range(0, times[-1] + 1, 10_000_000))
+    assert times[-1] >= 200_000_000
     odometry = found["/odom"][-1][1]
     assert odometry.twist.twist.linear.x == pytest.approx(1.0, abs=1e-12)
     assert odometry.twist.twist.angular.z == pytest.approx(0.5, abs=1e-12)

@@ -191,7 +191,7 @@ TEST_P(EveryBag, BadTopicsAndTimesAreErrors) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bags, EveryBag, ::testing::ValuesIn(kinds()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -236,7 +236,7 @@ TEST_P(EveryFile, AnyChangedByteIsReadOrAnError) {
 INSTANTIATE_TEST_SUITE_P(Bags, EveryFile,
                          ::testing::ValuesIn(std::vector<Kind>(kinds().begin(),
                                                                kinds().begin() + 5)),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Mcap, AChangedChunkFailsItsChecksum) {
   const testing::TestFolder folder;
