@@ -36,7 +36,7 @@ std::string content_of(const std::filesystem::path& path) {
 TEST(ImuSamplesFile, CsvHasAColumnForEveryNumber) {
   const TestFolder folder;
   const auto path = folder.path() / "walk.imu.csv";
-  write_imu_samples(two_samples(), {.name = "imu"}, path);
+  write_imu_samples(two_samples(), {.name = "imu", .imu = {}, .run = {}}, path);
   EXPECT_EQ(content_of(path),
             imu_csv_header() +
                 "\n0,0.1,0.2,0.3,1,2,3,0.1,0.2,0.3,1,2,3,0,0,0,0,0,0,7,0,0,0,0,0,1,0,0,0\n"

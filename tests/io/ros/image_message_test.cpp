@@ -132,7 +132,10 @@ Measured scanner(Spinning::RotationDirection direction) {
   spinning.channels = {{.elevation_rad = 0.0, .ring = 3}, {.elevation_rad = 0.1, .ring = 4}};
   spinning.columns_per_turn = 8;
   spinning.rotation_direction = direction;
-  return measured({.optics = spinning, .rate_hz = 10.0});
+  Sensor sensor;
+  sensor.optics = spinning;
+  sensor.rate_hz = 10.0;
+  return measured(sensor);
 }
 
 TEST(LaserScanMessage, AnglesGrowCounterClockwiseAndTimesFollow) {
