@@ -127,7 +127,7 @@ void describe(Imu& imu, FieldVisitor& visitor) {
   const auto gyroscope = [&](FieldVisitor& nested) {
     describe_triad(kGyroscopeKeys, imu.gyroscope, nested);
   };
-  visitor.object({"gyroscope", "errors of the gyroscopes, see [IMUs](../imu.md)"}, true,
+  visitor.object({"gyroscope", "errors of the gyroscopes"}, true,
                  FieldVisitor::Describe(gyroscope));
   const auto accelerometer = [&](FieldVisitor& nested) {
     describe_triad(kAccelerometerKeys, imu.accelerometer, nested);
