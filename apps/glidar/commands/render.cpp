@@ -123,6 +123,14 @@ OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs,
   return flags.duration_s ? numbered(files, frame) : files;
 }
 
+/// The files of a frame; none if only recordings are written.
+std::vector<Output> plan_frame(const RenderFlags& flags, const OutputFlags& files,
+                               const SidecarContext& context, Console& console) {
+  if (!has_outputs(files)) return {};
+  return plan_outputs(files, flags.input, context, console.report(),
+                      [&console](double fraction) { console.set_progress(fraction); });
+}
+
 /// Appends a frame to the recordings.
 void record(const Job& job, const ActiveSensor& active, const View& view, Console& console) {
   if (job.recordings.empty()) return;
@@ -162,12 +170,8 @@ void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active,
                                  .command = command,
                                  .inputs = prepared.files};
     const View view{prepared.scene, active.sensor, *beams, frame};
-    std::vector<Output> outputs;
-    if (has_outputs(files)) {
-      outputs =
-          plan_outputs(files_of(flags, files, active, k), flags.input, context, console.report(),
-                       [&console](double fraction) { console.set_progress(fraction); });
-    }
+    const std::vector<Output> outputs =
+        plan_frame(flags, files_of(flags, files, active, k), context, console);
     refuse_overwrite_of_inputs(prepared.files, outputs);
     set_frame_header(flags, k, active, frame);
     measure(active, needed_hit_columns(job, active, outputs), console, frame);

@@ -37,6 +37,13 @@ std::string labelled(const std::string& path, const std::string& label) {
   return result;
 }
 
+void print_samples(const RenderFlags& flags, const RigImu& imu, std::size_t samples,
+                   const std::string& file) {
+  if (flags.quiet) return;
+  fmt::print(writes_standard_output(flags.output) ? stderr : stdout, "{} samples of {}\nwrote {}\n",
+             samples, imu.imu.name, file);
+}
+
 }  // namespace
 
 void check_imu_outputs(const RenderFlags& flags) {
@@ -66,20 +73,15 @@ void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, 
   for (std::size_t i = 0; i < prepared.imus.size(); ++i) {
     const RigImu& on_rig = prepared.imus[i];
     const ImuSamples samples = rig_imu_samples(flags, prepared, i, 0, until_ns);
+    const ImuDescription description{.name = on_rig.name,
+                                     .imu = on_rig.imu,
+                                     .run = run_of(flags, prepared, i),
+                                     .rig_from_imu = on_rig.rig_from_imu};
     for (const std::string& path : flags.output.imu_paths) {
       const std::string file = prepared.imus.size() > 1 ? labelled(path, on_rig.name) : path;
-      write_imu_samples(samples,
-                        {.name = on_rig.name,
-                         .imu = on_rig.imu,
-                         .run = run_of(flags, prepared, i),
-                         .rig_from_imu = on_rig.rig_from_imu},
-                        file, prepared.files);
+      write_imu_samples(samples, description, file, prepared.files);
       written.emplace_back(file);
-      const std::string line =
-          fmt::format("{} samples of {}\nwrote {}\n", samples.t_ns.size(), on_rig.imu.name, file);
-      if (!flags.quiet) {
-        fmt::print(writes_standard_output(flags.output) ? stderr : stdout, "{}", line);
-      }
+      print_samples(flags, on_rig, samples.t_ns.size(), file);
     }
   }
 }

@@ -42,22 +42,32 @@ std::unique_ptr<RecordingOutput> make_capture(const std::string& path,
   return std::make_unique<CaptureOutput>(path, prepared.sensors.front().sensor);
 }
 
+std::unique_ptr<RecordingOutput> make_recording(const std::string& path, const RenderFlags& flags,
+                                                const PreparedScene& prepared) {
+  refuse_overwrite_of_inputs(prepared.files, path);
+  return is_capture_name(path) ? make_capture(path, prepared)
+                               : make_bag_output(path, flags, prepared);
+}
+
+/// Throws Error when two recordings have the same name.
+void check_names(const std::vector<std::string>& paths) {
+  std::set<std::filesystem::path> names;
+  for (const std::string& path : paths) {
+    if (names.insert(real_path(path)).second) continue;
+    throw Error({path, "is given twice as output", "", "choose another name"});
+  }
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<RecordingOutput>> make_recordings(const RenderFlags& flags,
                                                               const PreparedScene& prepared) {
   std::vector<std::unique_ptr<RecordingOutput>> recordings;
-  std::set<std::filesystem::path> names;
-  for (const std::string& path : flags.output.recording_paths) {
-    with_option_name("--output", [&] {
-      refuse_overwrite_of_inputs(prepared.files, path);
-      if (!names.insert(real_path(path)).second) {
-        throw Error({path, "is given twice as output", "", "choose another name"});
-      }
-      recordings.push_back(is_capture_name(path) ? make_capture(path, prepared)
-                                                 : make_bag_output(path, flags, prepared));
-    });
-  }
+  with_option_name("--output", [&] {
+    check_names(flags.output.recording_paths);
+    for (const std::string& path : flags.output.recording_paths)
+      recordings.push_back(make_recording(path, flags, prepared));
+  });
   return recordings;
 }
 

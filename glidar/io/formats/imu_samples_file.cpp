@@ -61,10 +61,11 @@ void write_csv(const ImuSamples& samples, AtomicFile& file) {
     fmt::format_to(std::back_inserter(line), "{}", samples.t_ns[i]);
     for (const VectorColumn& column : kVectors) {
       const Eigen::Vector3d& v = column.values(samples)[i];
-      fmt::format_to(std::back_inserter(line), ",{},{},{}", v.x(), v.y(), v.z());
+      fmt::format_to(std::back_inserter(line), ",{},{},{}", v.x() + 0.0, v.y() + 0.0,
+                     v.z() + 0.0);  // no sign of zeros
     }
     const PoseVector pose = to_xyz_wxyz(samples.ground_truth.world_from_imu[i]);
-    for (const double number : pose) fmt::format_to(std::back_inserter(line), ",{}", number);
+    for (const double number : pose) fmt::format_to(std::back_inserter(line), ",{}", number + 0.0);
     line.push_back('\n');
     file.write(std::string_view(line.data(), line.size()));
   }

@@ -31,8 +31,10 @@ struct Measured {
   [[nodiscard]] CloudSource source() const { return {frame, sensor, beams}; }
 };
 
-Measured measured(Sensor sensor) {
-  Measured made{std::move(sensor), {}, {}};
+Measured measured(Optics optics, double rate_hz = 30.0) {
+  Measured made;
+  made.sensor.optics = std::move(optics);
+  made.sensor.rate_hz = rate_hz;
   made.beams = make_beams(made.sensor);
   Frame& frame = made.frame;
   frame.frame_id = "camera_optical_frame";
@@ -45,10 +47,10 @@ Measured measured(Sensor sensor) {
 }
 
 Measured camera() {
-  return measured({.optics = pinhole_from_fov(3, 2, 1.0)});
+  return measured(pinhole_from_fov(3, 2, 1.0));
 }
 
-void lose(Measured& made, std::size_t beam, Status why) {
+void invalidate(Measured& made, std::size_t beam, Status why) {
   made.frame.range_m[beam] = kNaN;
   made.frame.status[beam] = why;
   made.frame.intensity[beam] = 0.0F;
@@ -64,7 +66,7 @@ std::vector<Number> pixels(const Image& image) {
 
 TEST(DepthImage, IsMillimetresOrMetresAlongTheBoresight) {
   Measured made = camera();
-  lose(made, 4, Status::miss);
+  invalidate(made, 4, Status::miss);
   const Image in_mm = depth_image(made.source(), DepthEncoding::millimetres_16uc1);
   EXPECT_EQ(in_mm.encoding, "16UC1");
   EXPECT_EQ(in_mm.step, 6U);
@@ -132,10 +134,7 @@ Measured scanner(Spinning::RotationDirection direction) {
   spinning.channels = {{.elevation_rad = 0.0, .ring = 3}, {.elevation_rad = 0.1, .ring = 4}};
   spinning.columns_per_turn = 8;
   spinning.rotation_direction = direction;
-  Sensor sensor;
-  sensor.optics = spinning;
-  sensor.rate_hz = 10.0;
-  return measured(sensor);
+  return measured(spinning, 10.0);
 }
 
 TEST(LaserScanMessage, AnglesGrowCounterClockwiseAndTimesFollow) {
@@ -159,9 +158,9 @@ TEST(LaserScanMessage, AnglesGrowCounterClockwiseAndTimesFollow) {
 TEST(LaserScanMessage, MissingReturnsFollowRep117) {
   Measured made = scanner(Spinning::RotationDirection::counterclockwise);
   const std::size_t ring3 = ring_of(made.beams, 0) == 3 ? 0 : 8;
-  lose(made, ring3, Status::miss);
-  lose(made, ring3 + 1, Status::too_near);
-  lose(made, ring3 + 2, Status::dropped);
+  invalidate(made, ring3, Status::miss);
+  invalidate(made, ring3 + 1, Status::too_near);
+  invalidate(made, ring3 + 2, Status::dropped);
   const LaserScan scan = laser_scan(made.source(), 3);
   EXPECT_EQ(scan.ranges[0], std::numeric_limits<float>::infinity());
   EXPECT_EQ(scan.ranges[1], -std::numeric_limits<float>::infinity());
@@ -172,7 +171,7 @@ TEST(LaserScanMessage, MissingReturnsFollowRep117) {
 TEST(LaserScanMessage, OtherPatternsAreErrors) {
   const Measured made = scanner(Spinning::RotationDirection::clockwise);
   EXPECT_THAT(error_text([&] { laser_scan(made.source(), 9); }), HasSubstr("0 beams"));
-  const Measured pixels = measured({.optics = pinhole_from_fov(9, 1, 2.0)});
+  const Measured pixels = measured(pinhole_from_fov(9, 1, 2.0));
   EXPECT_THAT(error_text([&] { laser_scan(pixels.source(), 0); }), HasSubstr("rad apart"));
 }
 
