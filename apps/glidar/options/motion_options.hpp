@@ -3,7 +3,6 @@
 #pragma once
 
 #include <apps/glidar/options/cli_fwd.hpp>
-#include <glidar/motion/timed_poses.hpp>
 
 #include <Eigen/Core>
 
@@ -22,7 +21,6 @@ struct MotionFlags {
   std::optional<double> trajectory_rate_hz = {};
   std::string trajectory_times = {};
   std::optional<std::int64_t> trajectory_start_ns = {};
-  Interpolation trajectory_interpolation = Interpolation::linear;
 };
 
 /// The options of poses come first: some of them exclude these.

@@ -85,8 +85,7 @@ Pose woods2016_pose(const PoseFlags& flags) {
 
 TimedPoses load_sensor_poses(const MotionFlags& flags) {
   TrajectoryFileOptions options{.rate_hz = flags.trajectory_rate_hz,
-                                .times_file = flags.trajectory_times,
-                                .interpolation = flags.trajectory_interpolation};
+                                .times_file = flags.trajectory_times};
   if (flags.trajectory_start_ns) options.start_ns = *flags.trajectory_start_ns;
   return load_trajectory_file(flags.trajectory, options);
 }

@@ -248,9 +248,8 @@ struct NamedSchema {
   Schema (*make)();
 };
 
-constexpr std::array<NamedSchema, 7> kSchemas = {
+constexpr std::array<NamedSchema, 6> kSchemas = {
     {{"sensor", "GLIDAR sensor file", schema_of<SensorKeys>},
-     {"imu", "GLIDAR IMU file", schema_of<Imu>},
      {"scene", "GLIDAR scene file", scene_schema},
      {"pose", "a pose in a GLIDAR scene file", schema_of<PoseKeys>},
      {"motion", "a motion in a GLIDAR scene file", schema_of<MotionKeys>},
