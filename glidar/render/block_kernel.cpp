@@ -6,6 +6,8 @@
 #include <glidar/render/corner_gather.hpp>
 #include <glidar/render/plane_gather.hpp>
 
+#include <cstddef>
+
 namespace glidar::rays::GLIDAR_KERNEL {
 namespace {
 
@@ -91,7 +93,7 @@ void orient(const double* sensor_from_object, const Lanes3<double>& front,
     out_y[i] = static_cast<float>(sign * y[i]);
     out_z[i] = static_cast<float>(sign * z[i]);
   }
-  for (unsigned i = 0; i < kLanes; ++i) {
+  for (std::size_t i = 0; i < kLanes; ++i) {
     normals[3 * i] = out_x[i];
     normals[3 * i + 1] = out_y[i];
     normals[3 * i + 2] = out_z[i];
