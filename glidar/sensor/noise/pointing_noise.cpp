@@ -102,6 +102,12 @@ GLIDAR_SIMD void rotate_about_z(const PairBatch& angle, std::size_t count, doubl
   }
 }
 
+void record_turn_error(double normal, const Sampler& sampler) {
+  record(sampler, [&](std::size_t /*i*/) {
+    return RandomSample{.value = normal, .use = "error of the whole frame"};
+  });
+}
+
 constexpr NumberRule kSmallAngle = {0.0, 5.0, false, "degrees from 0 to 5"};
 
 }  // namespace
@@ -127,11 +133,7 @@ void perturb(const EncoderError& step, const Sampler& sampler, std::size_t first
   PairBatch back;
   for (std::size_t begin = first; begin < first + count; begin += kSampleBatch) {
     const std::size_t size = std::min(kSampleBatch, first + count - begin);
-    if (step.turn_sigma_rad > 0.0) {
-      record(later_batch(sampler, begin), [&](std::size_t /*i*/) {
-        return RandomSample{.value = normal, .use = "error of the whole frame"};
-      });
-    }
+    if (step.turn_sigma_rad > 0.0) record_turn_error(normal, later_batch(sampler, begin));
     find_azimuths(size, beams.directions[begin].data(), azimuth_rad);
     error_rad.fill(of_turn);
     if (step.step_rad > 0.0) add_encoder_rounding(step.step_rad, azimuth_rad, error_rad);
