@@ -9,6 +9,17 @@
 #include <type_traits>
 
 namespace glidar {
+namespace {
+
+// std::fill_n() uses the vectors of the oldest processor only.
+GLIDAR_SIMD void fill_numbers(double* first, std::size_t count, double value) {
+  for (std::size_t i = 0; i < count; ++i) first[i] = value;
+}
+GLIDAR_SIMD void fill_numbers(float* first, std::size_t count, float value) {
+  for (std::size_t i = 0; i < count; ++i) first[i] = value;
+}
+
+}  // namespace
 
 HitColumnMask operator|(const HitColumnMask& a, const HitColumnMask& b) {
   return {.depth = a.depth || b.depth,
@@ -60,17 +71,6 @@ void copy_hit(const Hits& from, std::size_t source, const HitColumnMask& hit_col
   if (hit_columns.object_point) to.object_point_m[target] = from.object_point_m[source];
   if (hit_columns.noise_scale) to.noise_scale[target] = from.noise_scale[source];
 }
-
-namespace {
-
-GLIDAR_SIMD void fill_numbers(double* first, std::size_t count, double value) {
-  for (std::size_t i = 0; i < count; ++i) first[i] = value;
-}
-GLIDAR_SIMD void fill_numbers(float* first, std::size_t count, float value) {
-  for (std::size_t i = 0; i < count; ++i) first[i] = value;
-}
-
-}  // namespace
 
 void write_misses(const HitColumnMask& hit_columns, std::size_t first, std::size_t count,
                   Hits& hits) {

@@ -24,6 +24,13 @@ struct HitBlock {
 /// The mask of all lanes.
 inline constexpr std::uint32_t kAllLanes = (1U << kLanes) - 1U;
 
+/// True when all lanes, also those outside of the mask, have the same instance.
+inline bool is_one_instance(const HitBlock& block) {
+  std::uint32_t differing = 0;
+  for (unsigned i = 1; i < kLanes; ++i) differing |= block.instance[i] ^ block.instance[0];
+  return differing == 0;
+}
+
 /// Writes value_of(lane) to the beams of these lanes; `column` has one entry per beam.
 template <class T, class ValueOf>
 void write_lanes(const HitBlock& block, std::uint32_t lanes, const ValueOf& value_of,

@@ -29,12 +29,6 @@ std::uint32_t lanes_not_on(const HitBlock& block, std::uint32_t instance) {
   return others;
 }
 
-bool is_one_instance(const HitBlock& block) {
-  std::uint32_t differing = 0;
-  for (unsigned i = 1; i < kLanes; ++i) differing |= block.instance[i] ^ block.instance[0];
-  return differing == 0;
-}
-
 /// Copies the rays of the lanes that hit the instance.
 GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const ExactHits& source,
                            ExactHits& exact) {

@@ -115,9 +115,7 @@ SurfaceColours::SurfaceColours(const Scene& scene) : scene_(scene) {
 }
 
 bool SurfaceColours::has_one_slot(const HitBlock& block) const {
-  std::uint32_t differing = 0;
-  for (unsigned i = 1; i < kLanes; ++i) differing |= block.instance[i] ^ block.instance[0];
-  return differing == 0 && slots_[block.instance[0]].of_triangle == nullptr;
+  return is_one_instance(block) && slots_[block.instance[0]].of_triangle == nullptr;
 }
 
 const SurfaceColours::Slot& SurfaceColours::slot_of(std::uint32_t instance,

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <vector>
 
 namespace glidar {
 namespace {
@@ -62,7 +64,7 @@ Mesh random_mesh(Draws& draws, std::uint32_t triangles) {
 }
 
 /// Up to four instances of up to two meshes, of different sizes and at different distances, some in
-/// the same place; all of them far away from the world's origin.
+/// the same place.
 Scene random_scene(Draws& draws, const Eigen::Vector3d& centre) {
   Scene scene = testing::builtin_scene("box");
   scene.meshes[0] = random_mesh(draws, 1 + below(draws, 200));

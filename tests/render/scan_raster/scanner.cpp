@@ -49,7 +49,14 @@ std::size_t expect_same_hits(const Hits& found, const Hits& expected) {
   expect_same_bytes(found.primitive, expected.primitive, "primitive");
   expect_same_bytes(found.range_m, expected.range_m, "range");
   expect_same_bytes(found.normal, expected.normal, "normal");
+  expect_same_bytes(found.shading_normal, expected.shading_normal, "shading normal");
+  expect_same_bytes(found.cos_incidence, expected.cos_incidence, "cosine of incidence");
+  expect_same_bytes(found.cos_shading, expected.cos_shading, "cosine of shading");
   expect_same_bytes(found.barycentrics, expected.barycentrics, "barycentrics");
+  expect_same_bytes(found.colour, expected.colour, "colour");
+  expect_same_bytes(found.diffuse, expected.diffuse, "diffuse");
+  expect_same_bytes(found.object_point_m, expected.object_point_m, "object point");
+  expect_same_bytes(found.noise_scale, expected.noise_scale, "noise scale");
   expect_same_bytes(found.depth_m, expected.depth_m, "depth");
   expect_same_bytes(found.reflectance, expected.reflectance, "reflectance");
   std::size_t hits = 0;
