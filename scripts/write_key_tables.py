@@ -14,7 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-SCHEMA_FILES = {"sensor": "sensors/sensor.schema.json", "scene": "examples/scene.schema.json"}
+SCHEMA_FILES = {"sensor": "sensors/sensor.schema.json", "imu": "sensors/imu.schema.json", "scene": "examples/scene.schema.json"}
 MARKED = re.compile(r"(<!-- keys: ([^\n]*) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 
 

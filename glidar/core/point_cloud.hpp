@@ -76,6 +76,9 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
 /// The column of this name, or nullptr.
 const Column* find_column(const PointCloud& cloud, std::string_view name);
 
+/// Copies the numbers of the points with the indices `kept`, in that order, to another column.
+void select_points(const Column& from, std::span<const std::uint32_t> kept, Column& to);
+
 /// Copies the points with a valid xyz to `hits`, as one row, and reuses its memory; `hits` must be
 /// another cloud. Throws Error if there is no column xyz.
 void remove_invalid_points(const PointCloud& cloud, PointCloud& hits);

@@ -12,12 +12,13 @@ namespace {
 
 /// Copies kWidth numbers of each kept point.
 template <std::size_t kWidth, class Number>
-void gather(const Number* from, const std::vector<std::uint32_t>& kept, Number* to) {
+void gather(const Number* from, std::span<const std::uint32_t> kept, Number* to) {
   for (const std::uint32_t point : kept) to = std::copy_n(from + kWidth * point, kWidth, to);
 }
 
-/// Copies the points with the indices `kept` to a column of the same type.
-void select(const Column& from, const std::vector<std::uint32_t>& kept, Column& to) {
+}  // namespace
+
+void select_points(const Column& from, std::span<const std::uint32_t> kept, Column& to) {
   to.name = from.name;
   to.components = from.components;
   const std::size_t width = from.components.size();
@@ -37,8 +38,6 @@ void select(const Column& from, const std::vector<std::uint32_t>& kept, Column& 
       },
       from.values);
 }
-
-}  // namespace
 
 const Column* find_column(const PointCloud& cloud, std::string_view name) {
   const auto found = std::find_if(cloud.columns.begin(), cloud.columns.end(),
@@ -66,7 +65,7 @@ void remove_invalid_points(const PointCloud& cloud, PointCloud& hits) {
   hits.world_from_cloud = cloud.world_from_cloud;
   hits.columns.resize(cloud.columns.size());
   for (std::size_t i = 0; i < cloud.columns.size(); ++i) {
-    select(cloud.columns[i], kept, hits.columns[i]);
+    select_points(cloud.columns[i], kept, hits.columns[i]);
   }
 }
 

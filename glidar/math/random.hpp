@@ -19,6 +19,10 @@ enum class Purpose : std::uint8_t {
   detection = 1,
   weather = 3,
   fog = 4,
+  imu_constants = 8,
+  imu_noise = 9,
+  imu_correlated_bias = 10,
+  imu_random_walk = 11,
   first_noise_step = 32,  ///< noise step k of a sensor, from 0, uses first_noise_step + k
 };
 

@@ -71,7 +71,7 @@ Trajectory moved_by(const Pose& moved, const TimedPoses& timed) {
     pose.position_m = moved * pose.position_m;
     pose.orientation = rotation * pose.orientation;
   }
-  return TimedPoses(std::move(poses));
+  return TimedPoses(std::move(poses), timed.interpolation());
 }
 
 Trajectory moved_by(const Pose& moved, const TorqueFreeRotation& tumbling) {
@@ -140,6 +140,13 @@ const TimedPoses* timed_poses(const Trajectory& trajectory) {
   return std::get_if<TimedPoses>(&trajectory);
 }
 
+bool is_linear(const Trajectory& trajectory) {
+  const TimedPoses* timed = timed_poses(trajectory);
+  constexpr std::size_t kMin = 3;  // two poses have one velocity
+  return timed != nullptr && timed->poses().size() >= kMin &&
+         timed->interpolation() == Interpolation::linear;
+}
+
 std::string seconds_text(std::int64_t t_ns) {
   return std::to_string(static_cast<double>(t_ns) / 1e9) + " s";
 }
@@ -187,6 +194,14 @@ void warn_extrapolation(const Trajectory& trajectory, std::string_view name,
               seconds_text(known.first_ns) + " to " + seconds_text(known.last_ns) +
               ", requested is " + seconds_text(requested.first_ns) + " to " +
               seconds_text(requested.last_ns) + "; outside, its first or last pose is used");
+}
+
+void warn_linear_interpolation(const Trajectory& trajectory, std::string_view name,
+                               const Report& report) {
+  if (!is_linear(trajectory)) return;
+  report.warn(std::string(name) +
+              ": its timed poses are interpolated linearly, so velocities jump at every pose and "
+              "the acceleration between poses is 0; inertial sensors need 'interpolation: spline'");
 }
 
 Motion static_motion(const Scene& scene, const Pose& world_from_sensor) {

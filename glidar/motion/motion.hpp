@@ -54,6 +54,10 @@ TimeInterval valid_interval(const Trajectory& trajectory);
 void warn_extrapolation(const Trajectory& trajectory, std::string_view name,
                         const TimeInterval& requested, const Report& report);
 
+/// Warns if the trajectory interpolates timed poses linearly, which suits no inertial sensor.
+void warn_linear_interpolation(const Trajectory& trajectory, std::string_view name,
+                               const Report& report);
+
 /// The poses of the sensor and of all instances as functions of time.
 struct Motion {
   Trajectory world_from_sensor;

@@ -152,7 +152,10 @@ void poses_at(const Trajectory& trajectory, std::span<const std::int64_t> t_ns, 
     throw Error({"poses_at", std::to_string(t_ns.size()) + " times",
                  "at most " + std::to_string(PoseBlock::kSize), ""});
   }
-  if (const auto* timed = std::get_if<TimedPoses>(&trajectory)) return poses_at(*timed, t_ns, out);
+  const auto* timed = std::get_if<TimedPoses>(&trajectory);
+  if (timed != nullptr && timed->interpolation() == Interpolation::linear) {
+    return poses_at(*timed, t_ns, out);
+  }
   std::array<Pose, PoseBlock::kSize> poses;
   poses_at(trajectory, t_ns, std::span<Pose>(poses.data(), t_ns.size()));
   for (std::size_t i = 0; i < t_ns.size(); ++i) out.set(i, poses[i]);

@@ -3,6 +3,8 @@
 #include <glidar/motion/timed_poses.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/motion/kinematics.hpp>
+#include <glidar/motion/pose_spline.hpp>
 #include <glidar/motion/times.hpp>
 
 #include <algorithm>
@@ -53,12 +55,19 @@ std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPos
   return std::nullopt;
 }
 
-TimedPoses::TimedPoses(std::vector<TimedPose> poses) : poses_(std::move(poses)) {
+TimedPoses::TimedPoses(std::vector<TimedPose> poses, Interpolation interpolation)
+    : poses_(std::move(poses)) {
   check(poses_);
   for (TimedPose& pose : poses_) pose.orientation.normalize();
+  set_interpolation(interpolation);
 }
 
-TimedPoses TimedPoses::restored(std::vector<TimedPose> poses) {
+void TimedPoses::set_interpolation(Interpolation interpolation) {
+  if (interpolation == Interpolation::linear) return;
+  spline_ = std::make_shared<const PoseSpline>(poses_);
+}
+
+TimedPoses TimedPoses::restored(std::vector<TimedPose> poses, Interpolation interpolation) {
   check(poses);
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -69,6 +78,7 @@ TimedPoses TimedPoses::restored(std::vector<TimedPose> poses) {
   }
   TimedPoses result;
   result.poses_ = std::move(poses);
+  result.set_interpolation(interpolation);
   return result;
 }
 
@@ -83,6 +93,10 @@ void TimedPoses::between(std::size_t next, std::int64_t t_ns, Pose& pose) const 
   const TimedPose& before = poses_[next - 1];
   if (next == poses_.size() || before.t_ns == t_ns) return to_pose(before, pose);
   const TimedPose& after = poses_[next];
+  if (spline_) {
+    pose = spline_->pose_at(poses_, next - 1, seconds_between(before.t_ns, t_ns));
+    return;
+  }
   const double fraction =
       seconds_between(before.t_ns, t_ns) / seconds_between(before.t_ns, after.t_ns);
   TimedPose middle;
@@ -95,6 +109,17 @@ Pose TimedPoses::pose_at(std::int64_t t_ns) const {
   Pose pose;
   between(next_after(t_ns), t_ns, pose);
   return pose;
+}
+
+KinematicState TimedPoses::state_at(std::int64_t t_ns) const {
+  const bool is_moving = poses_.size() > 1 && t_ns >= first_ns() && t_ns <= last_ns();
+  if (!is_moving) return {.pose = pose_at(t_ns)};
+  const std::size_t before = std::min(next_after(t_ns), poses_.size() - 1) - 1;
+  const double since_s = seconds_between(poses_[before].t_ns, t_ns);
+  KinematicState state =
+      spline_ ? spline_->state_at(poses_, before, since_s) : linear_state(poses_, before);
+  state.pose = pose_at(t_ns);
+  return state;
 }
 
 void TimedPoses::poses_at(std::span<const std::int64_t> t_ns, std::span<Pose> out) const {

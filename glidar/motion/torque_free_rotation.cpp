@@ -279,6 +279,13 @@ Vector3d TorqueFreeRotation::rate_at(std::int64_t t_ns) const {
   return solution_->unit * (solution_->ordered_from_principal.transpose() * solution_->rate(phase));
 }
 
+Vector3d TorqueFreeRotation::angular_acceleration_at(std::int64_t t_ns) const {
+  if (!solution_) return Vector3d::Zero();
+  const Vector3d rate = rate_at(t_ns) / solution_->unit;
+  const Vector3d moments = start_.moments_kg_m2 / size_of(start_.moments_kg_m2);
+  return solution_->unit * solution_->unit * gyroscopic(moments, rate).cwiseQuotient(moments);
+}
+
 Pose TorqueFreeRotation::pose_at(std::int64_t t_ns) const {
   const double seconds = seconds_between(start_.t0_ns, t_ns);
   Pose world_from_principal = start_.world_from_body * start_.body_from_principal;

@@ -47,6 +47,10 @@ class TorqueFreeRotation {
   /// The angular velocity in the principal axes, rad/s.
   [[nodiscard]] Eigen::Vector3d rate_at(std::int64_t t_ns) const;
 
+  /// The angular acceleration in the principal axes, rad/s^2: Euler's equations without torque
+  /// (Landau and Lifshitz, equation 36.5).
+  [[nodiscard]] Eigen::Vector3d angular_acceleration_at(std::int64_t t_ns) const;
+
   [[nodiscard]] const InitialRotation& start() const { return start_; }
 
  private:

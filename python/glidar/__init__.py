@@ -15,6 +15,7 @@ from ._cloud import Cloud
 from ._errors import Error
 from ._frame import Frame
 from ._fisher_information import EigenDirection, FisherInformation
+from ._imu import Imu, ImuSamples, RigImu, imu_names, load_imu, rig_imus, simulate_imu, simulate_imus
 from ._mesh import Mesh, from_open3d, from_trimesh
 from ._object import SceneObject
 from ._pictures import Picture
@@ -41,7 +42,10 @@ __all__ = [
     "Error",
     "Frame",
     "FisherInformation",
+    "Imu",
+    "ImuSamples",
     "Mesh",
+    "RigImu",
     "RigSensor",
     "SceneObject",
     "Picture",
@@ -60,17 +64,22 @@ __all__ = [
     "camera",
     "from_open3d",
     "from_trimesh",
+    "imu_names",
+    "load_imu",
     "load_scene",
     "load_sensor",
     "look_at",
     "pose",
     "quaternion",
+    "rig_imus",
     "sensor",
     "sensor_file",
     "sensor_names",
     "datasheet",
     "simulate",
     "simulate_batch",
+    "simulate_imu",
+    "simulate_imus",
     "simulate_iter",
     "simulate_rig",
     "surface_names",

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats, numbers, path_of, shape_text
+from ._inputs import FloatArray, floats, numbers, one_of, path_of, shape_text
 from ._state import Immutable, key_of, part, restoring, make_state
 
 _MAX_TIME_S = 9.2e9
@@ -31,6 +31,10 @@ def _times_ns(value_s: npt.ArrayLike, where: str) -> npt.NDArray[np.int64]:
     if np.abs(seconds).max() > _MAX_TIME_S:
         raise Error(where, f"{seconds[np.abs(seconds).argmax()]}", "seconds up to 9.2e9")
     return np.rint(seconds * 1e9).astype(np.int64)
+
+
+def _is_spline(interpolation: str) -> bool:
+    return one_of(interpolation, "interpolation", ("linear", "spline")) == "spline"
 
 
 class Trajectory(Immutable):
@@ -95,11 +99,15 @@ class Trajectory(Immutable):
         return Trajectory(_core.twist(start, angular, linear, in_world, _ns(t0_s, "t0_s")))
 
     @staticmethod
-    def timed(times_s: npt.ArrayLike, poses: npt.ArrayLike) -> Trajectory:
-        """Poses (N, 4, 4) at increasing times (N,), s: positions are interpolated linearly, rotations by slerp.
-        The first and last pose are held outside the interval."""
+    def timed(times_s: npt.ArrayLike, poses: npt.ArrayLike, *, interpolation: str = "linear") -> Trajectory:
+        """Poses (N, 4, 4) at increasing times (N,), s. The first and last pose are held outside the interval.
+
+        Args:
+            interpolation: "linear": positions linearly, rotations by slerp; "spline": twice continuously
+                differentiable, as IMUs need.
+        """
         times = _times_ns(times_s, "times_s")
-        return Trajectory(_core.timed(times, floats(poses, "poses", (len(times), 4, 4))))
+        return Trajectory(_core.timed(times, floats(poses, "poses", (len(times), 4, 4)), _is_spline(interpolation)))
 
     @staticmethod
     def tumbling(
@@ -136,6 +144,7 @@ class Trajectory(Immutable):
         rate_hz: float | None = None,
         times_file: str | os.PathLike[str] | None = None,
         start_s: float | None = None,
+        interpolation: str = "linear",
     ) -> Trajectory:
         """Timed poses from a TUM, KITTI or CSV file. The first row determines the format.
 
@@ -143,6 +152,7 @@ class Trajectory(Immutable):
             rate_hz: poses per second of a KITTI file, the first at 0. Or:
             times_file: file with the times of a KITTI file, one per line, s.
             start_s: shifts all times so that the first is this, s.
+            interpolation: "linear" or "spline", see ``timed``.
 
         Raises:
             Error: the file cannot be read or is malformed, with its line and column.
@@ -150,7 +160,8 @@ class Trajectory(Immutable):
         start = None if start_s is None else _ns(start_s, "start_s")
         rate = None if rate_hz is None else float(floats(rate_hz, "rate_hz", ()))
         times = "" if times_file is None else path_of(times_file, "times_file")
-        return Trajectory(_core.load_trajectory(path_of(path, "path"), rate, times, start))
+        spline = _is_spline(interpolation)
+        return Trajectory(_core.load_trajectory(path_of(path, "path"), rate, times, start, spline))
 
     def pose_at(self, time_s: float) -> FloatArray:
         """The pose at a time (s), (4, 4)."""

@@ -13,6 +13,7 @@ void bind_errors(nb::module_& module);
 void bind_motion(nb::module_& module);
 void bind_scene(nb::module_& module);
 void bind_sensor(nb::module_& module);
+void bind_imu(nb::module_& module);
 void bind_scene_state(nb::module_& module);
 void bind_trajectory_state(nb::module_& module);
 void bind_frame(nb::module_& module);

@@ -10,6 +10,7 @@ NB_MODULE(_core, module) {
   glidar::python::bind_errors(module);
   glidar::python::bind_motion(module);
   glidar::python::bind_trajectory_state(module);
+  glidar::python::bind_imu(module);
   glidar::python::bind_scene(module);
   glidar::python::bind_scene_state(module);
   glidar::python::bind_sensor(module);

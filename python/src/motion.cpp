@@ -50,13 +50,17 @@ Trajectories twist(const PoseArray& pose, const Eigen::Vector3d& angular_rad_s,
                            .t0_ns = t0_ns});
 }
 
-Trajectories timed(const Numbers<std::int64_t>& t_ns, const PoseArray& poses) {
+Interpolation interpolation_of(bool is_spline) {
+  return is_spline ? Interpolation::spline : Interpolation::linear;
+}
+
+Trajectories timed(const Numbers<std::int64_t>& t_ns, const PoseArray& poses, bool spline) {
   std::vector<TimedPose> all;
   for (std::size_t k = 0; k < poses.shape(0); ++k) {
     const Pose pose = pose_of(poses, k, "poses");
     all.push_back({t_ns.data()[k], pose.translation(), Eigen::Quaterniond(pose.linear())});
   }
-  return one(TimedPoses(std::move(all)));
+  return one(TimedPoses(std::move(all), interpolation_of(spline)));
 }
 
 Trajectories tumbling(const PoseArray& poses, const Eigen::Vector3d& moments_kg_m2,
@@ -71,9 +75,12 @@ Trajectories tumbling(const PoseArray& poses, const Eigen::Vector3d& moments_kg_
 }
 
 Trajectories load(const std::filesystem::path& path, std::optional<double> rate_hz,
-                  const std::filesystem::path& times_file, std::optional<std::int64_t> start_ns) {
-  return one(load_trajectory_file(
-      path, {.rate_hz = rate_hz, .times_file = times_file, .start_ns = start_ns}));
+                  const std::filesystem::path& times_file, std::optional<std::int64_t> start_ns,
+                  bool spline) {
+  return one(load_trajectory_file(path, {.rate_hz = rate_hz,
+                                         .times_file = times_file,
+                                         .start_ns = start_ns,
+                                         .interpolation = interpolation_of(spline)}));
 }
 
 Trajectories joined(const std::vector<Trajectories>& parts) {
@@ -161,13 +168,13 @@ void bind_motion(nb::module_& module) {
   module.def("spin", spin, nb::arg("pose"), nb::arg("rate_rad_s"), nb::arg("t0_ns"));
   module.def("twist", twist, nb::arg("pose"), nb::arg("angular_rad_s"), nb::arg("linear_m_s"),
              nb::arg("in_world"), nb::arg("t0_ns"));
-  module.def("timed", timed, nb::arg("t_ns"), nb::arg("poses"));
+  module.def("timed", timed, nb::arg("t_ns"), nb::arg("poses"), nb::arg("spline") = false);
   module.def("tumbling", tumbling, nb::arg("poses"), nb::arg("moments_kg_m2"),
              nb::arg("rate_rad_s"), nb::arg("velocity_m_s"), nb::arg("t0_ns"));
   module.def("load_trajectory", load, nb::arg("path"), nb::arg("rate_hz").none(),
-             nb::arg("times_file"), nb::arg("start_ns").none(),
+             nb::arg("times_file"), nb::arg("start_ns").none(), nb::arg("spline") = false,
              nb::sig("def load_trajectory(path: str, rate_hz: float | None, times_file: str, "
-                     "start_ns: int | None) -> Trajectories"));
+                     "start_ns: int | None, spline: bool = False) -> Trajectories"));
   module.def("mounted", part_of, nb::arg("body"), nb::arg("body_from_part"));
   module.def("joined", joined, nb::arg("parts"));
   module.def("look_at", looking_at, nb::arg("eye"), nb::arg("target"), nb::arg("up").none());

@@ -47,6 +47,8 @@ SceneHandle handle_of(SceneFile file) {
   handle.world_from_rig = file.world_from_rig;
   handle.looks_at = file.looks_at;
   handle.rig_motion = std::move(file.rig_motion);
+  handle.imus = std::move(file.imus);
+  handle.gravity_m_s2 = file.gravity_m_s2;
   handle.files = std::move(file.files);
   return handle;
 }
@@ -240,6 +242,15 @@ nb::list rig_of(const SceneHandle& handle) {
   return rig;
 }
 
+/// Name, IMU and rig_from_imu of each IMU of the scene file.
+nb::list imus_of(const SceneHandle& handle) {
+  nb::list imus;
+  for (const RigImu& one : handle.imus) {
+    imus.append(nb::make_tuple(one.name, ImuHandle{one.imu}, matrix_of(one.rig_from_imu)));
+  }
+  return imus;
+}
+
 /// The rig's motion or pose in the scene file.
 std::optional<Trajectories> rig_motion_of(const SceneHandle& handle) {
   if (handle.rig_motion) return Trajectories{{*handle.rig_motion}};
@@ -337,6 +348,8 @@ void bind_scene(nb::module_& module) {
       .def_prop_ro("files", files_read)
       .def("drop_last", drop_last)
       .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
+      .def("imus", imus_of, nb::sig("def imus(self) -> list[tuple[str, Imu, numpy.ndarray]]"))
+      .def_prop_ro("gravity_m_s2", [](const SceneHandle& self) { return self.gravity_m_s2; })
       .def("rig_motion", rig_motion_of);
   module.def("length_units", length_units);
   module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none(),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "imu.hpp"
 #include "motion.hpp"
 #include "sensor.hpp"
 
@@ -42,6 +43,8 @@ struct SceneHandle {
   std::optional<Pose> world_from_rig;
   bool looks_at = false;  ///< see SceneFile
   std::optional<Trajectory> rig_motion;
+  std::vector<RigImu> imus;
+  Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();
   std::vector<std::string> files;  ///< the scene file and the files that it names, except models
   std::map<std::pair<std::string, unsigned>, std::shared_ptr<PreparedScene>> prepared;
 

@@ -64,6 +64,7 @@ nb::dict state_of(const TimedPoses& timed) {
   state["t_ns"] = t_ns;
   state["positions_m"] = positions_m;
   state["orientations_wxyz"] = wxyz;
+  state["spline"] = timed.interpolation() == Interpolation::spline;
   return state;
 }
 
@@ -93,7 +94,9 @@ TimedPoses timed_from(const nb::dict& state) {
     poses.push_back(
         {t_ns[k], positions_m.row(k).transpose(), Eigen::Quaterniond(q[0], q[1], q[2], q[3])});
   }
-  return TimedPoses::restored(std::move(poses));
+  const bool is_spline = state.contains("spline") && nb::cast<bool>(state["spline"]);
+  return TimedPoses::restored(std::move(poses),
+                              is_spline ? Interpolation::spline : Interpolation::linear);
 }
 
 Trajectory motion_from(const nb::dict& state) {

@@ -46,6 +46,10 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"recording", {"two_frames"}},
       {"mesh_blob", {"triangle", "textured", "failure", "cached"}},
       {"pose_text", {"position", "quaternion"}},
+      {"cdr", {"cloud", "transforms", "scan"}},
+      {"ros1", {"cloud", "transforms", "scan"}},
+      {"mcap", {"chunk", "plain", "lz4"}},
+      {"rosbag1", {"chunk", "lz4"}},
   };
   for (const testing::FileDecoder& decoder : testing::file_decoders()) {
     std::size_t files = 0;

@@ -122,7 +122,7 @@ class Refusals(CliTest):
     def test_layouts(self):
         render = ("render", "nofile.ply", "-o", "x.pcd")
         error = self.refused(*render, "--layout", "velodine")
-        self.assertIn("--layout: 'velodine'; allowed: minimal, velodyne, ouster, livox, autoware", error)
+        self.assertIn("--layout: 'velodine'; allowed: minimal, velodyne, ouster, ouster-2022, livox, livox-custom, robosense, hesai, autoware", error)
         self.assertIn("did you mean velodyne?", error)
         for columns in ("xyz", "default"):
             error = self.refused(*render, "--layout", "velodyne", "--columns", columns)

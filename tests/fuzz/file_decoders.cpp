@@ -4,6 +4,7 @@
 
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/config/ray_file.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
@@ -13,6 +14,7 @@
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/png_texture.hpp>
+#include <glidar/io/ros/cloud_from_message.hpp>
 #include <glidar/link/recording.hpp>
 
 #include <fcntl.h>
@@ -91,7 +93,35 @@ void read_pose_text(const fs::path& file) {
   }
 }
 
-constexpr std::array<FileDecoder, 11> kDecoders = {{
+template <class Message>
+void read_ros_message(std::span<const std::byte> bytes, ros::Wire wire) {
+  const auto message = ros::deserialize<Message>(bytes, wire);
+  if constexpr (requires { ros::to_point_cloud(message); }) ros::to_point_cloud(message);
+}
+
+/// The first byte selects the type of the message in the rest.
+void read_ros_message(const fs::path& file, ros::Wire wire) {
+  using Read = void (*)(std::span<const std::byte>, ros::Wire);
+  constexpr std::array<Read, 8> kReaders = {
+      read_ros_message<ros::PointCloud2>,  read_ros_message<ros::LaserScan>,
+      read_ros_message<ros::CameraInfo>,   read_ros_message<ros::TFMessage>,
+      read_ros_message<ros::Odometry>,     read_ros_message<ros::CustomMsg>,
+      read_ros_message<ros::VelodyneScan>, read_ros_message<ros::Image>};
+  std::ifstream in(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (text.empty()) throw Error({"message", "no type", "at least one byte"});
+  const auto bytes = std::as_bytes(std::span(text));
+  kReaders[std::to_integer<std::size_t>(bytes[0]) % kReaders.size()](bytes.subspan(1), wire);
+}
+
+void read_bag(const fs::path& file) {
+  const auto bag = bags::open_bag(file);
+  bags::BagMessage message;
+  while (bag->next(message)) {
+  }
+}
+
+constexpr std::array<FileDecoder, 15> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"scene", "scene.yaml", read_scene},
     {"beam_csv", "beams.csv", [](const fs::path& file) { load_scan_csv(file); }},
@@ -103,6 +133,10 @@ constexpr std::array<FileDecoder, 11> kDecoders = {{
     {"recording", "stream.jsonl", read_recording},
     {"mesh_blob", "a.model", read_block},
     {"pose_text", "pose.txt", read_pose_text},
+    {"cdr", "message.cdr", [](const fs::path& file) { read_ros_message(file, ros::Wire::cdr); }},
+    {"ros1", "message.ros1", [](const fs::path& file) { read_ros_message(file, ros::Wire::ros1); }},
+    {"mcap", "run.mcap", read_bag},
+    {"rosbag1", "run.bag", read_bag},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.

@@ -28,7 +28,7 @@ const BadFile kBadScenes[] = {
     {"NoModels", "sensor: c.yaml\n", "s.yaml:1:1: the key 'models' is missing; add 'models: ...'"},
     {"UnknownTopKey", with_model("sensr: c.yaml"),
      "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_pose, "
-     "sensor_motion, sensors, rig_pose, rig_motion; did you mean "
+     "sensor_motion, sensors, rig_pose, rig_motion, imus, gravity_m_s2; did you mean "
      "'sensor'?"},
     {"SensorBesideSensors", with_model("sensors: [{name: a, sensor: VLP-16}]\nsensor: VLP-16"),
      "s.yaml:3:9: sensor: given beside 'sensors'; allowed: sensors, rig_pose, rig_motion; a rig of "
@@ -165,7 +165,7 @@ const BadFile kBadScenes[] = {
      "trajectory file"},
     {"TrajectoryUnknownKey", model("motion: {trajectory: {file: t.tum, rate: 1}}"),
      "s.yaml:3:40: models[0].motion.trajectory.rate: unknown key 'rate'; allowed: file, rate_hz, "
-     "times, start_s; did you mean 'rate_hz'?"},
+     "times, start_s, interpolation; did you mean 'rate_hz'?"},
     {"SizeIsAMap", model("size: {x: 1}"),
      "s.yaml:3:11: models[0].size: a map; allowed: a number, or a list of 3"},
     {"SpinWithoutRate", model("motion: {spin: {}}"),

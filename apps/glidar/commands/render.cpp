@@ -4,9 +4,11 @@
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/fisher_output.hpp>
+#include <apps/glidar/run/imu_outputs.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
+#include <apps/glidar/run/recording_outputs.hpp>
 #include <apps/glidar/run/rig_outputs.hpp>
 #include <glidar/core/error.hpp>
 
@@ -29,6 +31,9 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd
+  glidar render builtin:box --sensor VLP-16 --imu BMI088 --trajectory walk.tum
+      --trajectory-interpolation spline --duration 5 -o scan.pcd -o walk.imu.csv
+  glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --duration 1 -o scans.mcap -o scans.pcap
   glidar render builtin:box -o - --format csv
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --legacy-output view
 With your own files:
@@ -66,12 +71,6 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
   fmt::print(to, "\n");
 }
 
-HitColumnMask needed_hit_columns(const RenderFlags& flags, const std::vector<Output>& outputs) {
-  HitColumnMask hit_columns = hit_columns_for_outputs(outputs);
-  hit_columns.normal = hit_columns.normal || flags.fisher.is_requested;
-  return hit_columns;
-}
-
 /// Writes a frame and prints the summary.
 void write(const RenderFlags& flags, const View& view, const std::vector<Output>& outputs,
            Console& console) {
@@ -92,8 +91,19 @@ struct Job {
   const RenderFlags& flags;
   const CommandRecord& command;
   const PreparedScene& prepared;
+  std::vector<std::unique_ptr<RecordingOutput>> recordings = {};
   std::vector<std::filesystem::path> written = {};  ///< so far
 };
+
+HitColumnMask needed_hit_columns(const Job& job, const ActiveSensor& active,
+                                 const std::vector<Output>& outputs) {
+  HitColumnMask hit_columns = hit_columns_for_outputs(outputs);
+  hit_columns.normal = hit_columns.normal || job.flags.fisher.is_requested;
+  for (const auto& recording : job.recordings) {
+    hit_columns = hit_columns | hit_columns_for(recording->columns(active));
+  }
+  return hit_columns;
+}
 
 /// The error, with the outputs that were written before it.
 Error after_writing(const Error& error, const std::vector<std::filesystem::path>& written) {
@@ -113,7 +123,36 @@ OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs,
   return flags.duration_s ? numbered(files, frame) : files;
 }
 
-/// All frames of one sensor, each written to files of its own.
+/// The files of a frame; none if only recordings are written.
+std::vector<Output> plan_frame(const RenderFlags& flags, const OutputFlags& files,
+                               const SidecarContext& context, Console& console) {
+  if (!has_outputs(files)) return {};
+  return plan_outputs(files, flags.input, context, console.report(),
+                      [&console](double fraction) { console.set_progress(fraction); });
+}
+
+/// Appends a frame to the recordings.
+void record(const Job& job, const ActiveSensor& active, const View& view, Console& console) {
+  if (job.recordings.empty()) return;
+  const ProgressScope progress(console, "writing");
+  for (const auto& recording : job.recordings) recording->write(active, view.frame, view.beams);
+}
+
+/// Completes the recordings.
+void finish_recordings(Job& job) {
+  for (const auto& recording : job.recordings) {
+    recording->finish();
+    std::string names;
+    for (const std::filesystem::path& file : recording->files()) {
+      job.written.push_back(file);
+      names += " " + file.string();
+    }
+    if (job.flags.quiet) continue;
+    fmt::print(writes_standard_output(job.flags.output) ? stderr : stdout, "wrote{}\n", names);
+  }
+}
+
+/// All frames of one sensor, each written to files of its own and to the recordings.
 void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active, Console& console) {
   const RenderFlags& flags = job.flags;
   const PreparedScene& prepared = job.prepared;
@@ -132,13 +171,13 @@ void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active,
                                  .inputs = prepared.files};
     const View view{prepared.scene, active.sensor, *beams, frame};
     const std::vector<Output> outputs =
-        plan_outputs(files_of(flags, files, active, k), flags.input, context, console.report(),
-                     [&console](double fraction) { console.set_progress(fraction); });
+        plan_frame(flags, files_of(flags, files, active, k), context, console);
     refuse_overwrite_of_inputs(prepared.files, outputs);
     set_frame_header(flags, k, active, frame);
-    measure(active, needed_hit_columns(flags, outputs), console, frame);
+    measure(active, needed_hit_columns(job, active, outputs), console, frame);
     if (k == 0) print_advice(view_advice(view), console);
-    write(flags, view, outputs, console);
+    record(job, active, view, console);
+    if (!outputs.empty()) write(flags, view, outputs, console);
     for (const Output& output : outputs) job.written.push_back(output.path);
   }
 }
@@ -146,26 +185,32 @@ void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active,
 int run_render(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
   check_fisher(flags);
+  check_imu_outputs(flags);
   if (flags.duration_s) numbered(flags.output, 0);  // for its errors only
   const CommandRecord command = {.arguments = reproducible_arguments(arguments),
                                  .folder = std::filesystem::current_path()};
   PreparedScene prepared;
   const ActiveSensor unknown;
-  const std::vector<Output> outputs =  // to report errors before the work begins
-      plan_outputs(flags.output, flags.input,
-                   {.scene = prepared.scene,
-                    .sensor = unknown.sensor,
-                    .beams = unknown.beams,
-                    .renderer = renderer_name(flags)},
-                   console.report());
+  std::vector<Output> outputs;  // to report errors before the work begins
+  if (has_outputs(flags.output) || !has_run_outputs(flags.output)) {
+    outputs = plan_outputs(flags.output, flags.input,
+                           {.scene = prepared.scene,
+                            .sensor = unknown.sensor,
+                            .beams = unknown.beams,
+                            .renderer = renderer_name(flags)},
+                           console.report());
+  }
   prepare_scene(
       flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
   const std::vector<OutputFlags> files = outputs_by_sensor(flags, prepared, console);
-  Job job{flags, command, prepared};
+  Job job{flags, command, prepared, make_recordings(flags, prepared)};
   try {
     for (std::size_t i = 0; i < prepared.sensors.size(); ++i) {
-      if (has_outputs(files[i])) measure_all(job, files[i], prepared.sensors[i], console);
+      if (!has_outputs(files[i]) && job.recordings.empty()) continue;
+      measure_all(job, files[i], prepared.sensors[i], console);
     }
+    finish_recordings(job);
+    write_imu_outputs(flags, prepared, console, job.written);
   } catch (const Error& error) {
     if (job.written.empty()) throw;
     throw after_writing(error, job.written);

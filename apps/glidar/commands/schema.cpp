@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kSchemaExamples = R"(Examples:
   glidar schema sensor > sensor.schema.json
+  glidar schema imu > imu.schema.json
   glidar schema scene > scene.schema.json
 
 Editors with the YAML language server complete and check the keys of a sensor or scene file with
@@ -30,8 +31,9 @@ Command add_schema(CLI::App& program) {
       *program.add_subcommand("schema", "Print the JSON Schema of YAML files, for editors");
   const auto name = std::make_shared<std::string>("sensor");
   command.footer(kSchemaExamples);
-  command.add_option("KIND", *name,
-                     "sensor (default), scene, surfaces; pose, motion, materials: parts of scenes");
+  command.add_option(
+      "KIND", *name,
+      "sensor (default), imu, scene, surfaces; pose, motion, materials: parts of scenes");
   return [name] {
     fmt::print("{}\n", json_schema(*name));
     return kDone;

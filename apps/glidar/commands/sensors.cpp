@@ -4,6 +4,7 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/imu_list.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/text.hpp>
@@ -36,17 +37,21 @@ constexpr const char* kSensorsExamples = R"(Examples:
   glidar sensors Livox-Mid-40 -o pattern.png
   glidar sensors OS1-128 --json
   glidar sensors --surfaces
+  glidar sensors --imus
+  glidar sensors BMI088
 
 Use a name with 'glidar render MODEL --sensor NAME'. "backed" counts the values with a source in the
 manufacturer's documents (data sheets, manuals, drivers, factory calibrations); the others are
 marked *. "beam" is the beam divergence, horizontal x vertical, full width at 1/e^2. Use the name of
-a surface with 'glidar render MODEL --surface NAME', and with 'surface:' in scene files.
+a surface with 'glidar render MODEL --surface NAME', and with 'surface:' in scene files; that of an
+IMU with '--imu NAME', and with 'imus:' in scene files.
 Exit codes: 0 done, 2 no such sensor.)";
 
 struct SensorsFlags {
   std::string name;
   std::string picture;
   bool surfaces = false;
+  bool imus = false;
   bool json = false;
 };
 
@@ -293,7 +298,26 @@ int list_all(const SensorsFlags& flags) {
   return kDone;
 }
 
+/// Lists the IMUs, or prints the one that is named; false: neither is requested.
+bool print_imus(const SensorsFlags& flags) {
+  const auto file = imu_preset_named(flags.name);
+  if (!flags.imus && !file) return false;
+  const bool is_alone = flags.picture.empty() && !flags.surfaces;
+  if (!is_alone || (flags.imus && !flags.name.empty())) {
+    throw Error({.where = flags.imus ? "--imus" : flags.name,
+                 .found = "a sensor, an output or --surfaces is given too",
+                 .allowed = "--imus or the name of an IMU alone, or with --json"});
+  }
+  if (flags.imus) {
+    list_imus(flags.json);
+  } else {
+    print_imu(*file, flags.json);
+  }
+  return true;
+}
+
 int run_sensors(const SensorsFlags& flags) {
+  if (print_imus(flags)) return kDone;
   if (flags.surfaces) return list_surfaces(flags);
   if (flags.name.empty()) return list_all(flags);
   const std::filesystem::path file = find_sensor_file(flags.name);
@@ -323,11 +347,13 @@ Command add_sensors(CLI::App& program) {
       *program.add_subcommand("sensors", "List the sensor presets, or print one with its sources");
   const auto flags = std::make_shared<SensorsFlags>();
   command.footer(kSensorsExamples);
-  command.add_option("name", flags->name, "Sensor preset or sensor file")->type_name("NAME");
+  command.add_option("name", flags->name, "Sensor preset or sensor file, or IMU preset")
+      ->type_name("NAME");
   OptionGroup(command, "Options")
       .add("-o,--output", "OUT.png", "Image of its beam pattern (PNG)", flags->picture, png_name);
   command.add_flag("--surfaces", flags->surfaces,
                    "List the surface presets and their reflectances");
+  command.add_flag("--imus", flags->imus, "List the IMU presets");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run_sensors(*flags); };
 }

@@ -34,7 +34,14 @@ void add_motion_options(CLI::App& command, MotionFlags& flags) {
              flags.trajectory_times);
   motion.add("--trajectory-start", "S", "Time of the first pose, s [as in the file]",
              flags.trajectory_start_ns, parse_start_ns);
-  require_option(command, {"--trajectory-rate", "--trajectory-times", "--trajectory-start"},
+  motion.add("--trajectory-interpolation", "NAME",
+             "Between poses: linear, or spline, as IMUs need [linear]",
+             flags.trajectory_interpolation,
+             one_of<Interpolation>(
+                 {{"linear", Interpolation::linear}, {"spline", Interpolation::spline}}));
+  require_option(command,
+                 {"--trajectory-rate", "--trajectory-times", "--trajectory-start",
+                  "--trajectory-interpolation"},
                  "--trajectory");
   motion.add("--object-rate", "X,Y,Z", "Angular rate of the model about its axes, rad/s",
              flags.object_rate_rad_s, parse_angular_rate);

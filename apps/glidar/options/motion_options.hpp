@@ -3,6 +3,7 @@
 #pragma once
 
 #include <apps/glidar/options/cli_fwd.hpp>
+#include <glidar/motion/timed_poses.hpp>
 
 #include <Eigen/Core>
 
@@ -21,6 +22,7 @@ struct MotionFlags {
   std::optional<double> trajectory_rate_hz = {};
   std::string trajectory_times = {};
   std::optional<std::int64_t> trajectory_start_ns = {};
+  Interpolation trajectory_interpolation = Interpolation::linear;
 };
 
 /// The options of poses come first: some of them exclude these.

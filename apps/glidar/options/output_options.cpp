@@ -5,7 +5,10 @@
 #include <apps/glidar/options/help_text.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/imu_samples_file.hpp>
+#include <glidar/io/packets/packet_writer.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -44,6 +47,12 @@ std::vector<std::string> stream_formats() {
     if (!format.is_folder) names.push_back(format.suffix.substr(1));
   }
   return names;
+}
+
+/// The list for an output of this name.
+std::vector<std::string>& paths_for(const std::string& path, OutputFlags& flags) {
+  if (is_imu_samples_path(path)) return flags.imu_paths;
+  return bags::is_bag_name(path) || is_capture_name(path) ? flags.recording_paths : flags.paths;
 }
 
 void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
@@ -94,8 +103,9 @@ const std::vector<std::string>& default_columns() {
 
 void add_output_options(CLI::App& command, OutputFlags& flags) {
   const OptionGroup group(command, kOutputHeading);
-  group.add_repeatable("-o,--output", "FILE", "File to write, repeatable; -: standard output",
-                       [&flags](const std::string& text) { flags.paths.push_back(text); });
+  group.add_repeatable(
+      "-o,--output", "FILE", "File to write, repeatable; -: standard output",
+      [&flags](const std::string& text) { paths_for(text, flags).push_back(text); });
   group.add("--format", "NAME", "Format of -o -, standard output: csv, pcd ...", flags.format,
             one_of(stream_formats()));
   add_cloud_options(group, flags);
@@ -119,6 +129,13 @@ std::string output_names_text() {
   for (const FileFormat& format : file_formats()) {
     text += fmt::format("  {:<17} {}\n", format.suffix, format.description);
   }
+  text += fmt::format("  {:<17} {}\n", ".imu.csv", "samples of IMUs, text (render --duration)");
+  text += fmt::format("  {:<17} {}\n", ".imu.npz", "samples of IMUs, NumPy archive");
+  text += fmt::format("  {:<17} {}\n", ".mcap", "ROS bag of all frames and sensors (render)");
+  text +=
+      fmt::format("  {:<17} {}\n", ".rosbag2", "the same as a folder with SQLite, for ros2 bag");
+  text += fmt::format("  {:<17} {}\n", ".bag", "the same for ROS 1");
+  text += fmt::format("  {:<17} {}\n", ".pcap", "UDP packets as the sensor sends them (render)");
   text += "\nColumns of clouds (* by default):\n";
   std::string names;
   for (const std::string& name : cloud_column_names()) {
@@ -144,6 +161,10 @@ const FileFormat& format_of(const OutputFlags& flags, const std::string& path) {
 
 bool writes_standard_output(const OutputFlags& flags) {
   return contains(flags.paths, kStandardOutput);
+}
+
+bool has_run_outputs(const OutputFlags& flags) {
+  return !flags.imu_paths.empty() || !flags.recording_paths.empty();
 }
 
 bool has_outputs(const OutputFlags& flags) {

@@ -12,7 +12,9 @@ namespace glidar::app {
 
 /// The files to write.
 struct OutputFlags {
-  std::vector<std::string> paths;    ///< "-": standard output
+  std::vector<std::string> paths;            ///< "-": standard output
+  std::vector<std::string> imu_paths;        ///< of IMU samples
+  std::vector<std::string> recording_paths;  ///< bags and packet captures
   std::string format;                ///< of standard output, without the dot; empty: not given
   std::string legacy_name;           ///< --legacy-output NAME; empty: not given
   std::vector<std::string> columns;  ///< of clouds; empty: default_columns()
@@ -46,7 +48,10 @@ const FileFormat& format_of(const OutputFlags& flags, const std::string& path);
 /// Whether one of the paths is standard output; text for the user goes to standard error then.
 bool writes_standard_output(const OutputFlags& flags);
 
-/// Whether any file is written.
+/// Whether any file of a single frame is written.
 bool has_outputs(const OutputFlags& flags);
+
+/// Whether any file of a whole run is written: samples of IMUs, bags, packet captures.
+bool has_run_outputs(const OutputFlags& flags);
 
 }  // namespace glidar::app

@@ -32,6 +32,7 @@ struct RenderFlags {
   PoseFlags pose;
   MotionFlags motion;
   std::string surface;      ///< of the whole model; empty: its own
+  std::string imu;          ///< preset or file of an IMU at the sensor; empty: not given
   std::string sensor_name;  ///< the only sensor of the rig that measures; empty: all
   OutputFlags output;
   FisherFlags fisher;

@@ -170,6 +170,16 @@ void check(const CLI::App& command, const StreamFlags& flags) {
     throw Error(
         {"--lockstep and --rate max", "requests give the times of frames", "", "leave --rate out"});
   }
+  if (!flags.render.output.recording_paths.empty()) {
+    throw Error({"--output, " + flags.render.output.recording_paths.front(),
+                 "a bag or a packet capture, which glidar stream does not write", "files of frames",
+                 "write it with glidar render --duration"});
+  }
+  if (!flags.render.output.imu_paths.empty()) {
+    throw Error({"--output, " + flags.render.output.imu_paths.front(),
+                 "samples of IMUs, which glidar stream does not write", "files of clouds",
+                 "use glidar render with --duration"});
+  }
   if (!has_outputs(flags.render.output)) {
     if (!flags.port && flags.record.empty()) {
       throw Error({"--port and --output", "neither is given, so no cloud would be sent or written",

@@ -27,7 +27,7 @@ std::vector<std::string> requested_columns(const OutputFlags& flags) {
 }
 
 void check_layout(const OutputFlags& flags) {
-  if (flags.sink.layout.empty()) return;
+  if (flags.sink.layout.empty() || !flags.recording_paths.empty()) return;
   const auto takes_columns = [&](const std::string& path) {
     return format_of(flags, path).takes_more;
   };

@@ -6,7 +6,7 @@
 #include <apps/glidar/run/placement.hpp>
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 
@@ -214,6 +214,19 @@ void place_sensors(const RenderFlags& flags, const SceneFile& loaded, Console& c
   for (ActiveSensor& active : prepared.sensors) active.motion = motion_of(prepared.motion, active);
 }
 
+/// The IMUs of the scene file, or that of --imu at the sensor.
+void set_imus(const RenderFlags& flags, const SceneFile& loaded, PreparedScene& prepared) {
+  prepared.imus = loaded.imus;
+  prepared.gravity_m_s2 = loaded.gravity_m_s2;
+  if (flags.imu.empty()) return;
+  if (!loaded.imus.empty()) {
+    throw Error({"--imu", "the scene file has IMUs", "a scene without 'imus'", "leave it out"});
+  }
+  const std::filesystem::path file = find_imu_file(flags.imu);
+  prepared.imus = {{.name = "imu", .imu = load_imu_file(file)}};
+  prepared.files.push_back(file.string());
+}
+
 }  // namespace
 
 void print_advice(const std::vector<std::string>& advice, Console& console) {
@@ -228,6 +241,7 @@ void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loa
   SceneFile loaded = load(flags, console);
   prepared.sensors = make_active_sensors(flags, loaded.sensors);
   prepared.files = files_read(flags, loaded, prepared.sensors);
+  set_imus(flags, loaded, prepared);
   if (on_loaded) on_loaded();
   prepared.scene = std::move(loaded.scene);
   apply_surface_option(flags, prepared.sensors.front().sensor, prepared.scene);

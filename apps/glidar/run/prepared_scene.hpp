@@ -4,6 +4,7 @@
 
 #include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/console.hpp>
+#include <glidar/io/config/scene_file.hpp>
 #include <glidar/simulate/simulator.hpp>
 #include <glidar/woods2016/framebuffer.hpp>
 
@@ -39,7 +40,9 @@ struct PreparedScene {
   RigMotion motion;
   std::unique_ptr<Renderer> renderer;
   std::unique_ptr<Woods2016Camera> woods2016_camera;  ///< for --quantized-framebuffer; else none
-  std::vector<std::string> files;                     ///< all files that were read
+  std::vector<RigImu> imus;                           ///< on the rig
+  Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();
+  std::vector<std::string> files;  ///< all files that were read
 };
 
 /// Loads and prepares the inputs of the options; `on_loaded` is called before the renderer is

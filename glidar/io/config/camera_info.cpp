@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/camera_info.hpp>
 
-#include <array>
 #include <string_view>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -33,24 +33,36 @@ NamedCoefficients coefficients_of(const Fisheye& d) {
 
 }  // namespace
 
-Json camera_info_json(const Optics& optics) {
+std::optional<CameraModel> camera_model(const Optics& optics) {
   const auto* pinhole = std::get_if<Pinhole>(&optics);
-  if (pinhole == nullptr) return {};
+  if (pinhole == nullptr) return std::nullopt;
   const PinholeIntrinsics& i = pinhole->intrinsics;
   const double cx = i.cx - i.pixel_centre;
   const double cy = i.cy - i.pixel_centre;
-  const NamedCoefficients named =
+  NamedCoefficients named =
       std::visit([](const auto& d) { return coefficients_of(d); }, pinhole->distortion);
+  return CameraModel{.width = i.width,
+                     .height = i.height,
+                     .distortion_model = std::string(named.model),
+                     .d = std::move(named.d),
+                     .k = {i.fx, 0.0, cx, 0.0, i.fy, cy, 0.0, 0.0, 1.0},
+                     .r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0},
+                     .p = {i.fx, 0.0, cx, 0.0, 0.0, i.fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}};
+}
+
+Json camera_info_json(const Optics& optics) {
+  const std::optional<CameraModel> model = camera_model(optics);
+  if (!model) return {};
   return {{"convention",
            "pixel centres have whole coordinates, as in OpenCV, ROS and Open3D; those of optics "
            "have optics.pixel_centre more"},
-          {"width", i.width},
-          {"height", i.height},
-          {"distortion_model", named.model},
-          {"d", named.d},
-          {"k", std::array{i.fx, 0.0, cx, 0.0, i.fy, cy, 0.0, 0.0, 1.0}},
-          {"r", std::array{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}},
-          {"p", std::array{i.fx, 0.0, cx, 0.0, 0.0, i.fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}}};
+          {"width", model->width},
+          {"height", model->height},
+          {"distortion_model", model->distortion_model},
+          {"d", model->d},
+          {"k", model->k},
+          {"r", model->r},
+          {"p", model->p}};
 }
 
 }  // namespace glidar

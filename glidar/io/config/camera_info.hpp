@@ -8,10 +8,30 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace glidar {
 
 /// Intrinsics and distortion of a camera as in ROS' sensor_msgs/CameraInfo, for OpenCV's convention
-/// that the first pixel's centre is (0, 0); null for other optics.
+/// that the first pixel's centre is (0, 0).
+struct CameraModel {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::string distortion_model;  ///< plumb_bob, rational_polynomial or equidistant
+  std::vector<double> d;         ///< coefficients in OpenCV's order
+  std::array<double, 9> k{};     ///< row by row
+  std::array<double, 9> r{};
+  std::array<double, 12> p{};
+};
+
+/// Empty for optics other than a camera.
+std::optional<CameraModel> camera_model(const Optics& optics);
+
+/// The camera model as JSON; null for other optics.
 nlohmann::ordered_json camera_info_json(const Optics& optics);
 
 }  // namespace glidar

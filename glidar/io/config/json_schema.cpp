@@ -248,8 +248,9 @@ struct NamedSchema {
   Schema (*make)();
 };
 
-constexpr std::array<NamedSchema, 6> kSchemas = {
+constexpr std::array<NamedSchema, 7> kSchemas = {
     {{"sensor", "GLIDAR sensor file", schema_of<SensorKeys>},
+     {"imu", "GLIDAR IMU file", schema_of<Imu>},
      {"scene", "GLIDAR scene file", scene_schema},
      {"pose", "a pose in a GLIDAR scene file", schema_of<PoseKeys>},
      {"motion", "a motion in a GLIDAR scene file", schema_of<MotionKeys>},

@@ -7,8 +7,8 @@
 
 namespace glidar {
 
-/// The kinds of files that have a schema, "sensor", "scene" and "surfaces", and the parts of scene
-/// files that have one: "pose", "motion" and "materials".
+/// The kinds of files that have a schema, "sensor", "imu", "scene" and "surfaces", and the parts of
+/// scene files that have one: "pose", "motion" and "materials".
 std::vector<std::string> schema_names();
 
 /// A JSON Schema (draft 7) of a kind of file, for editors and validators. Beside the standard words

@@ -5,6 +5,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -19,6 +20,15 @@ void visit_file(FieldVisitor& visitor, const FieldInfo& field, std::string& path
   if (!visitor.is_reading() || path.empty() || std::filesystem::exists(path)) return;
   visitor.reject(field.key, "no such file: " + path, "the path of a trajectory file",
                  "paths are relative to the folder of this file");
+}
+
+void visit_interpolation(FieldVisitor& visitor, Interpolation& interpolation) {
+  constexpr std::array<Named<Interpolation>, 2> kNames = {
+      {{"linear", Interpolation::linear}, {"spline", Interpolation::spline}}};
+  visit_choice(
+      visitor,
+      {"interpolation", "`linear`: velocities jump at every pose; `spline`: smooth, as IMUs need"},
+      kNames, interpolation);
 }
 
 struct TrajectoryFileKeys {
@@ -37,6 +47,7 @@ void describe(TrajectoryFileKeys& keys, FieldVisitor& visitor) {
   visitor.number({"start_s", "shifts all times so that the first one is this", kUnitSecond, false,
                   "times of the file"},
                  {-9.2e9, 9.2e9, false, "seconds from -9.2e9 to 9.2e9"}, start_s);
+  visit_interpolation(visitor, keys.options.interpolation);
   if (!visitor.is_reading()) return;
   if (visitor.has("rate_hz")) keys.options.rate_hz = rate_hz;
   if (visitor.has("start_s")) keys.options.start_ns = std::llround(start_s * 1e9);
@@ -74,10 +85,11 @@ void visit_kind(FieldVisitor& visitor, const FieldInfo& field, MotionKeys& keys)
 }
 
 void visit_trajectory(FieldVisitor& visitor, MotionKeys& keys) {
-  const FieldInfo field = {"trajectory",
-                           "a path, or `{file: , rate_hz: , times: , start_s: }`: poses over time "
-                           "from a [file](motion.md#trajectory-files)",
-                           kNoUnit, false, kNoMotion};
+  const FieldInfo field = {
+      "trajectory",
+      "a path, or `{file: , rate_hz: , times: , start_s: , interpolation: }`: poses over time "
+      "from a [file](motion.md#trajectory-files)",
+      kNoUnit, false, kNoMotion};
   if (visitor.is_writing()) return;
   if (visitor.is_reading() && keys.start && visitor.has(field.key)) {
     visitor.reject(field.key, "given beside a pose",

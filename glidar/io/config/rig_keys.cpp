@@ -88,23 +88,13 @@ struct RigSensorPlan {
   std::string where_name = {};  ///< for errors
 };
 
-void check_name(const FieldVisitor& visitor, const std::string& name) {
-  constexpr std::size_t kMaxLength = 31;
-  const auto is_plain = [](char letter) {
-    return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-' || letter == '_';
-  };
-  if (name.size() <= kMaxLength && std::all_of(name.begin(), name.end(), is_plain)) return;
+[[noreturn]] void reject_name(const FieldVisitor& visitor, const std::string& name) {
   visitor.reject("name", "'" + excerpt(name) + "'", "up to 31 letters, digits, - and _",
                  "files and topics are named by it");
 }
 
 void describe(RigSensorPlan& plan, FieldVisitor& visitor) {
-  visitor.text(
-      {"name", "up to 31 letters, digits, `-` and `_`, unique; part of file names and topics",
-       kNoUnit, kRequired},
-      plan.name);
-  if (visitor.is_reading()) check_name(visitor, plan.name);
-  plan.where_name = visitor.where("name");
+  plan.where_name = visit_rig_name(visitor, plan.name);
   visit_sensor(visitor, {"sensor", "as the key `sensor` of a scene", kNoUnit, kRequired}, true,
                plan.sensor);
   visit_pose(visitor,
@@ -197,6 +187,20 @@ void visit_sensors(FieldVisitor& visitor, ScenePlan& plan) {
 }
 
 }  // namespace
+
+std::string visit_rig_name(FieldVisitor& visitor, std::string& name) {
+  constexpr std::size_t kMaxLength = 31;
+  const auto is_plain = [](char letter) {
+    return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-' || letter == '_';
+  };
+  visitor.text(
+      {"name", "up to 31 letters, digits, `-` and `_`, unique; part of file names and topics",
+       kNoUnit, kRequired},
+      name);
+  const bool is_fit = name.size() <= kMaxLength && std::all_of(name.begin(), name.end(), is_plain);
+  if (visitor.is_reading() && !is_fit) reject_name(visitor, name);
+  return visitor.where("name");
+}
 
 void visit_rig(FieldVisitor& visitor, ScenePlan& plan) {
   for (const char* key : {"sensor", "sensor_pose", "sensor_motion"}) {

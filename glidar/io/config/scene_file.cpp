@@ -45,7 +45,9 @@ SceneFile load_plan(const ScenePlan& plan, const Report& report) {
           .looks_at = plan.looks_at,
           .files = plan.files,
           .world_from_instance = trajectories(plan),
-          .rig_motion = plan.rig_motion};
+          .rig_motion = plan.rig_motion,
+          .imus = plan.imus,
+          .gravity_m_s2 = plan.gravity_m_s2};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <glidar/core/report.hpp>
 #include <glidar/io/model/model.hpp>
 #include <glidar/motion/motion.hpp>
+#include <glidar/sensor/imu/imu.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <filesystem>
@@ -21,6 +22,13 @@ struct RigSensor {
   Pose rig_from_sensor = Pose::Identity();
 };
 
+/// An IMU and where it sits on the rig.
+struct RigImu {
+  std::string name;  ///< fit for file names and topics, unique among sensors and IMUs
+  Imu imu;
+  Pose rig_from_imu = Pose::Identity();
+};
+
 /// What a scene file holds: the world and how it moves, and perhaps sensors and where they are. A
 /// single sensor is a rig of its own.
 struct SceneFile {
@@ -31,6 +39,8 @@ struct SceneFile {
   std::vector<std::string> files;      ///< this file, and the sensor and trajectory files it names
   std::vector<Trajectory> world_from_instance = {};  ///< one per instance; empty: all are static
   std::optional<Trajectory> rig_motion = {};         ///< empty: the rig is static
+  std::vector<RigImu> imus = {};                     ///< on the rig
+  Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();  ///< that IMUs measure, world axes
 };
 
 /// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.

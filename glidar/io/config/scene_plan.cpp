@@ -5,6 +5,7 @@
 #include <glidar/core/excerpt.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/pose_keys.hpp>
+#include <glidar/io/config/imu_keys.hpp>
 #include <glidar/io/config/length_unit.hpp>
 #include <glidar/io/config/motion_keys.hpp>
 #include <glidar/io/config/rig_keys.hpp>
@@ -196,6 +197,7 @@ void describe(ScenePlan& plan, FieldVisitor& visitor) {
              "at least one model", plan.instances, model);
   if (visitor.is_reading()) plan.files = files_of(plan.instances);
   visit_rig(visitor, plan);
+  visit_imus(visitor, plan);
 }
 
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {

@@ -39,6 +39,8 @@ struct ScenePlan {
   std::optional<Pose> world_from_rig;
   bool looks_at = false;                 ///< see SceneFile
   std::optional<Trajectory> rig_motion;  ///< empty: stationary
+  std::vector<RigImu> imus;
+  Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();
   std::vector<std::string> files;  ///< the scene file, and the files that it names except models
 };
 

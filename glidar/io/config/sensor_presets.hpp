@@ -4,7 +4,9 @@
 
 #include <glidar/sensor/sensor.hpp>
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,7 @@ struct ValueCount {
   std::size_t total = 0;
 };
 ValueCount count_values(const Datasheet& sheet);
+ValueCount count_values(std::span<const DatasheetEntry> entries);
 
 /// Like load_sensor_file, with the sources that the file gives.
 Datasheet load_datasheet(const std::filesystem::path& path);

@@ -4,14 +4,13 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/file_sync.hpp>
+#include <glidar/io/files/unfinished_files.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -26,44 +25,6 @@ namespace {
 
 /// A block stays in a core's cache until the system has copied it.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
-constexpr std::size_t kSlots = 128;
-constexpr std::size_t kSlotPathBytes = 4096;
-
-// States of a slot; int, because only plain atomics are sure to work in a signal handler.
-constexpr int kFree = 0;
-constexpr int kFilling = 1;
-constexpr int kListed = 2;
-constexpr int kRemoving = 3;
-
-/// A temporary file's name in memory that a signal handler can read without allocation and locks.
-struct Slot {
-  std::atomic<int> state{kFree};
-  std::array<char, kSlotPathBytes> path{};
-};
-static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
-
-// Global, because a signal handler has no arguments.
-constinit std::array<Slot, kSlots> unfinished{};
-
-int list_unfinished(const std::string& path) {
-  if (path.size() >= kSlotPathBytes) return -1;
-  for (std::size_t i = 0; i < kSlots; ++i) {
-    int expected = kFree;
-    if (!unfinished[i].state.compare_exchange_strong(expected, kFilling)) continue;
-    std::memcpy(unfinished[i].path.data(), path.c_str(), path.size() + 1);
-    unfinished[i].state.store(kListed);
-    return static_cast<int>(i);
-  }
-  return -1;
-}
-
-/// A slot that a handler is reading is not changed, because the process is ending.
-void unlist(int slot) {
-  if (slot < 0) return;
-  int expected = kListed;
-  unfinished[static_cast<std::size_t>(slot)].state.compare_exchange_strong(expected, kFree);
-}
-
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
   const std::string reason = std::generic_category().message(code);
   std::string remedy;
@@ -104,7 +65,7 @@ Temporary open_temporary(const std::filesystem::path& folder, const std::filesys
     const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     const int code = errno;
     if (descriptor >= 0) return {std::move(name), descriptor, slot};
-    unlist(slot);
+    unlist_unfinished(slot);
     if ((code == EMFILE || code == ENFILE) && waits++ < kMaxWaits) {
       std::this_thread::sleep_for(kWait);
       continue;
@@ -144,7 +105,7 @@ AtomicFile::AtomicFile(int target, const std::filesystem::path& name)
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
-  unlist(slot_);
+  unlist_unfinished(slot_);
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
@@ -192,7 +153,7 @@ void AtomicFile::commit() {
   if (target_ >= 0) return send();
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "rename", errno);
   temporary_.clear();
-  unlist(std::exchange(slot_, -1));
+  unlist_unfinished(std::exchange(slot_, -1));
 }
 
 void AtomicFile::commit_durably() {
@@ -244,15 +205,6 @@ void AtomicFile::write_through(std::span<const std::byte> bytes) {
     if (written < 0) fail(path_, "write", failure_ = errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
-}
-
-void remove_unfinished_files() noexcept {
-  const int saved_errno = errno;
-  for (Slot& slot : unfinished) {
-    int expected = kListed;
-    if (slot.state.compare_exchange_strong(expected, kRemoving)) ::unlink(slot.path.data());
-  }
-  errno = saved_errno;
 }
 
 }  // namespace glidar

@@ -95,7 +95,14 @@ double return_type(double status) {
   return status == static_cast<double>(Status::hit) ? 1.0 : 0.0;
 }
 
-/// The sources of each layout are in docs/files.md.
+/// The fields of rslidar_sdk and HesaiLidar_ROS_2.0, which are equal.
+std::vector<LayoutField> absolute_time_fields() {
+  return {{"x", F32{}, "xyz", 0, same},     {"y", F32{}, "xyz", 1, same},
+          {"z", F32{}, "xyz", 2, same},     {"intensity", F32{}, kReflectivity, 0, percent_byte},
+          {"ring", U16{}, "ring", 0, same}, {"timestamp", F64{}, "stamp", 0, seconds}};
+}
+
+/// The sources of each layout are in docs/files/layouts.md.
 const std::vector<Layout>& layouts() {
   static const std::vector<Layout> kLayouts = {
       {"minimal",
@@ -122,6 +129,17 @@ const std::vector<Layout>& layouts() {
         {"ring", U16{}, "ring", 0, same},
         {"ambient", U16{}, "", 0, nullptr},
         {"range", U32{}, "range", 0, millimetres}}},
+      {"ouster-2022",
+       "ouster_example before 2023, LIO-SAM",
+       {{"x", F32{}, "xyz", 0, same},
+        {"y", F32{}, "xyz", 1, same},
+        {"z", F32{}, "xyz", 2, same},
+        {"intensity", F32{}, "intensity", 0, same},
+        {"t", U32{}, "time", 0, same},
+        {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
+        {"ring", U8{}, "ring", 0, same},
+        {"noise", U16{}, "", 0, nullptr},
+        {"range", U32{}, "range", 0, millimetres}}},
       {"livox",
        "livox_ros_driver2",
        {{"x", F32{}, "xyz", 0, same},
@@ -131,6 +149,17 @@ const std::vector<Layout>& layouts() {
         {"tag", U8{}, "return", 0, livox_tag},
         {"line", U8{}, "ring", 0, same},
         {"timestamp", F64{}, "stamp", 0, same}}},
+      {"livox-custom",
+       "livox_ros_driver2, CustomMsg",
+       {{"offset_time", U32{}, "time", 0, same},
+        {"x", F32{}, "xyz", 0, same},
+        {"y", F32{}, "xyz", 1, same},
+        {"z", F32{}, "xyz", 2, same},
+        {"reflectivity", U8{}, kReflectivity, 0, livox_byte},
+        {"tag", U8{}, "return", 0, livox_tag},
+        {"line", U8{}, "ring", 0, same}}},
+      {"robosense", "rslidar_sdk", absolute_time_fields()},
+      {"hesai", "HesaiLidar_ROS_2.0", absolute_time_fields()},
       {"autoware",
        "Autoware",
        {{"x", F32{}, "xyz", 0, same},

@@ -3,6 +3,8 @@
 #include <glidar/io/formats/trajectory_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag.hpp>
+#include <glidar/io/bags/bag_poses.hpp>
 #include <glidar/io/files/text_file.hpp>
 #include <glidar/io/formats/text_row_reader.hpp>
 
@@ -167,18 +169,46 @@ std::vector<TimedPose> read_kitti(TextRowReader& rows, const std::string& file,
   return poses;
 }
 
+void require_no_times(const std::string& file, const TrajectoryFileOptions& options) {
+  if (!options.rate_hz && options.times_file.empty()) return;
+  throw Error({file, "a file that has times of its own", "a rate or times with KITTI files only",
+               "omit them"});
+}
+
 std::vector<TimedPose> read_quaternions(TextRowReader& rows, const std::string& file,
                                         const TrajectoryFileOptions& options) {
-  if (options.rate_hz || !options.times_file.empty()) {
-    throw Error({file, "a file that has times of its own", "a rate or times with KITTI files only",
-                 "omit them"});
-  }
+  require_no_times(file, options);
   const bool csv = rows.has_commas();
   const Columns columns = csv ? named_columns(rows) : kTumColumns;
   std::vector<TimedPose> poses;
   if (!csv) read_quaternion_row(rows, columns, poses);
   while (rows.next()) read_quaternion_row(rows, columns, poses);
   return poses;
+}
+
+std::vector<TimedPose> read_text(const std::filesystem::path& path,
+                                 const TrajectoryFileOptions& options) {
+  const std::string file = path.string();
+  if (!options.topic.empty() || !options.parent_frame.empty() || !options.child_frame.empty()) {
+    throw Error({file, "a topic or coordinate frames of a text file", "a bag with them",
+                 "omit them, or name a bag"});
+  }
+  const std::string content = read_text_file(path, file_kind());
+  TextRowReader rows(file, content);
+  if (!rows.next()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
+  const std::size_t width = rows.words().size();
+  if (!rows.has_commas() && width != kTum && width != kKitti) {
+    rows.reject(rows.words()[0], std::to_string(width) + " columns",
+                "8 (TUM: t x y z qx qy qz qw), 12 (KITTI), or names with commas between (CSV)");
+  }
+  const bool kitti = !rows.has_commas() && width == kKitti;
+  return kitti ? read_kitti(rows, file, options) : read_quaternions(rows, file, options);
+}
+
+std::vector<TimedPose> read_bag(const std::filesystem::path& path,
+                                const TrajectoryFileOptions& options) {
+  require_no_times(path.string(), options);
+  return bags::read_bag_poses(path, {options.topic, options.parent_frame, options.child_frame});
 }
 
 void shift(std::int64_t start_ns, const std::string& file, std::vector<TimedPose>& poses) {
@@ -193,6 +223,18 @@ void shift(std::int64_t start_ns, const std::string& file, std::vector<TimedPose
   }
 }
 
+/// The poses were checked; only their spline may not exist.
+TimedPoses interpolated(std::vector<TimedPose> poses, Interpolation interpolation,
+                        const std::string& file) {
+  try {
+    return TimedPoses(std::move(poses), interpolation);
+  } catch (const Error& error) {
+    ErrorParts parts = error.parts();
+    parts.where = file + ", " + parts.where;
+    throw Error(parts);
+  }
+}
+
 }  // namespace
 
 TimedPoses load_trajectory_file(const std::filesystem::path& path,
@@ -202,20 +244,11 @@ TimedPoses load_trajectory_file(const std::filesystem::path& path,
     throw Error(
         {file, "a rate of " + std::to_string(*options.rate_hz) + " Hz", "from 0.01 to 1e9 Hz"});
   }
-  const std::string content = read_text_file(path, file_kind());
-  TextRowReader rows(file, content);
-  if (!rows.next()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
-  const std::size_t width = rows.words().size();
-  if (!rows.has_commas() && width != kTum && width != kKitti) {
-    rows.reject(rows.words()[0], std::to_string(width) + " columns",
-                "8 (TUM: t x y z qx qy qz qw), 12 (KITTI), or names with commas between (CSV)");
-  }
-  const bool kitti = !rows.has_commas() && width == kKitti;
   std::vector<TimedPose> poses =
-      kitti ? read_kitti(rows, file, options) : read_quaternions(rows, file, options);
+      bags::is_bag_path(path) ? read_bag(path, options) : read_text(path, options);
   if (poses.empty()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
   if (options.start_ns) shift(*options.start_ns, file, poses);
-  return TimedPoses(std::move(poses));
+  return interpolated(std::move(poses), options.interpolation, file);
 }
 
 }  // namespace glidar

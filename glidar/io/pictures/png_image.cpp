@@ -3,6 +3,7 @@
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/function_ref.hpp>
 
 #include <fmt/format.h>
 #include <png.h>
@@ -17,10 +18,13 @@ namespace {
 
 constexpr int kCompressionLevel = 4;  // twice as fast as libpng's default, a few percent larger
 
+/// Receives the bytes of a file, in order.
+using PngBytes = FunctionRef<void(std::span<const std::byte>)>;
+
 /// Data of the callbacks. libpng uses longjmp, which must not skip exceptions or destructors, so
 /// errors are stored here and thrown after it has returned.
 struct Writing {
-  AtomicFile& file;
+  PngBytes write;
   std::exception_ptr failure;
   std::string message;
 };
@@ -28,7 +32,7 @@ struct Writing {
 void on_bytes(png_structp png, png_bytep bytes, std::size_t size) {
   Writing& writing = *static_cast<Writing*>(png_get_io_ptr(png));
   try {
-    writing.file.write(std::as_bytes(std::span(bytes, size)));
+    writing.write(std::as_bytes(std::span(bytes, size)));
     return;
   } catch (...) {
     writing.failure = std::current_exception();
@@ -102,10 +106,9 @@ std::vector<png_bytep> rows_of(const PngImage& image) {
   return rows;
 }
 
-}  // namespace
-
-void write_png(const PngImage& image, AtomicFile& file) {
-  Writing writing{file, nullptr, {}};
+/// Passes the bytes of the file on; `where` appears in errors.
+void encode_to(const PngImage& image, PngBytes write, const std::string& where) {
+  Writing writing{write, nullptr, {}};
   std::vector<png_bytep> rows = rows_of(image);
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writing, on_error, on_warning);
   png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
@@ -118,8 +121,24 @@ void write_png(const PngImage& image, AtomicFile& file) {
   png_destroy_write_struct(&png, &info);
   if (writing.failure) std::rethrow_exception(writing.failure);
   if (!written) {
-    throw Error({file.path().string(), fmt::format("cannot write the PNG: {}", writing.message)});
+    throw Error({where, fmt::format("cannot write the PNG: {}", writing.message)});
   }
+}
+
+}  // namespace
+
+void write_png(const PngImage& image, AtomicFile& file) {
+  const auto write = [&](std::span<const std::byte> bytes) { file.write(bytes); };
+  encode_to(image, PngBytes(write), file.path().string());
+}
+
+std::vector<std::byte> encode_png(const PngImage& image) {
+  std::vector<std::byte> file;
+  const auto write = [&](std::span<const std::byte> bytes) {
+    file.insert(file.end(), bytes.begin(), bytes.end());
+  };
+  encode_to(image, PngBytes(write), "PNG image");
+  return file;
 }
 
 void write_png(const Picture& picture, const std::string& description, AtomicFile& file) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -26,5 +27,8 @@ struct PngImage {
 /// Writes a PNG. Throws Error when it cannot be written.
 void write_png(const PngImage& image, AtomicFile& file);
 void write_png(const Picture& picture, const std::string& description, AtomicFile& file);
+
+/// The bytes of a PNG file. Throws Error when the system has no memory for them.
+std::vector<std::byte> encode_png(const PngImage& image);
 
 }  // namespace glidar

@@ -17,6 +17,7 @@ namespace glidar {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -46,6 +47,13 @@ TEST(PointFieldLayout, TimesHaveTheUnitOfTheDriver) {
       points_with("stamp", std::vector<std::int64_t>{-1, 1700000000123456789, 0});
   EXPECT_THAT(field<double>(late, "livox", "timestamp"),
               ElementsAre(-1.0, 1.7000000001234568e18, 0));
+  for (const char* layout : {"robosense", "hesai"}) {
+    EXPECT_THAT(field<double>(late, layout, "timestamp"),
+                ElementsAre(DoubleEq(-1e-9), DoubleEq(1700000000.1234567), 0));
+  }
+  EXPECT_THAT(field<std::uint32_t>(made, "ouster-2022", "t"), ElementsAre(0, 55296, 99999999));
+  EXPECT_THAT(field<std::uint32_t>(made, "livox-custom", "offset_time"),
+              ElementsAre(0, 55296, 99999999));
 }
 
 TEST(PointFieldLayout, RangesAreMillimetresOrMetres) {
@@ -146,15 +154,20 @@ TEST(PointFieldLayout, UnknownFieldsAreZeroAndMissesHaveNoReturn) {
   EXPECT_THAT(field<std::uint16_t>(made, "ouster", "ambient"), ElementsAre(0, 0, 0, 0, 0));
   EXPECT_THAT(field<std::uint8_t>(made, "livox", "tag"), ElementsAre(0, 0, 0, 0, 0));
   EXPECT_THAT(field<std::uint8_t>(made, "livox", "line"), ElementsAre(0, 254, 255, 255, 255));
+  EXPECT_THAT(field<std::uint8_t>(made, "livox-custom", "line"),
+              ElementsAre(0, 254, 255, 255, 255));
+  EXPECT_THAT(field<std::uint8_t>(made, "ouster-2022", "ring"), ElementsAre(0, 254, 255, 255, 255));
   EXPECT_THAT(field<std::uint8_t>(made, "autoware", "return_type"), ElementsAre(1, 1, 0, 1, 1));
   EXPECT_TRUE(std::isnan(field<float>(made, "minimal", "x")[2]));
 }
 
 TEST(PointFieldLayout, AnUnknownNameIsReportedWithAllNamesAndTheNearest) {
-  EXPECT_THAT(error_text([] { find_layout("velodine"); }),
-              AllOf(HasSubstr("'velodine' is not known"),
-                    HasSubstr("minimal velodyne ouster livox autoware"),
-                    HasSubstr("did you mean 'velodyne'?")));
+  EXPECT_THAT(
+      error_text([] { find_layout("velodine"); }),
+      AllOf(HasSubstr("'velodine' is not known"),
+            HasSubstr(
+                "minimal velodyne ouster ouster-2022 livox livox-custom robosense hesai autoware"),
+            HasSubstr("did you mean 'velodyne'?")));
   const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   EXPECT_THAT(

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/imu_outputs.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/imu_samples_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace glidar::app {
+namespace {
+
+ImuRun run_of(const RenderFlags& flags, const PreparedScene& prepared, std::size_t imu) {
+  return {.seed = flags.seed,
+          .imu = static_cast<std::uint32_t>(imu),
+          .start_ns = 0,
+          .gravity_m_s2 = prepared.gravity_m_s2};
+}
+
+/// The end of the last frame, or of the duration.
+std::int64_t end_ns(const RenderFlags& flags, const PreparedScene& prepared) {
+  std::int64_t end = std::llround(*flags.duration_s * 1e9);
+  for (const ActiveSensor& active : prepared.sensors) {
+    end = std::max(end, frame_interval(active.sensor, active.frames - 1).end_ns);
+  }
+  return end;
+}
+
+std::string labelled(const std::string& path, const std::string& label) {
+  std::string result = path;
+  constexpr std::size_t kSuffix = 8;  // of .imu.csv and .imu.npz
+  result.insert(result.size() - kSuffix, "_" + label);
+  return result;
+}
+
+void print_samples(const RenderFlags& flags, const RigImu& imu, std::size_t samples,
+                   const std::string& file) {
+  if (flags.quiet) return;
+  fmt::print(writes_standard_output(flags.output) ? stderr : stdout, "{} samples of {}\nwrote {}\n",
+             samples, imu.imu.name, file);
+}
+
+}  // namespace
+
+void check_imu_outputs(const RenderFlags& flags) {
+  if (flags.output.imu_paths.empty() || flags.duration_s) return;
+  throw Error({"--output, " + flags.output.imu_paths.front(), "samples of IMUs without a duration",
+               "this output with --duration", "add --duration 1, for example"});
+}
+
+ImuSamples rig_imu_samples(const RenderFlags& flags, const PreparedScene& prepared, std::size_t imu,
+                           std::int64_t from_ns, std::int64_t until_ns) {
+  const RigImu& on_rig = prepared.imus.at(imu);
+  return simulate_imu(on_rig.imu,
+                      compose_extrinsic(prepared.motion.world_from_rig, on_rig.rig_from_imu),
+                      run_of(flags, prepared, imu), from_ns, until_ns);
+}
+
+void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, Console& console,
+                       std::vector<std::filesystem::path>& written) {
+  if (flags.output.imu_paths.empty()) return;
+  if (prepared.imus.empty()) {
+    throw Error({"--output, " + flags.output.imu_paths.front(), "there is no IMU",
+                 "a scene file with 'imus', or --imu", "add --imu BMI088, for example"});
+  }
+  const std::int64_t until_ns = end_ns(flags, prepared) + 1;
+  warn_linear_interpolation(prepared.motion.world_from_rig, prepared.imus.front().name,
+                            console.report());
+  for (std::size_t i = 0; i < prepared.imus.size(); ++i) {
+    const RigImu& on_rig = prepared.imus[i];
+    const ImuSamples samples = rig_imu_samples(flags, prepared, i, 0, until_ns);
+    const ImuDescription description{.name = on_rig.name,
+                                     .imu = on_rig.imu,
+                                     .run = run_of(flags, prepared, i),
+                                     .rig_from_imu = on_rig.rig_from_imu};
+    for (const std::string& path : flags.output.imu_paths) {
+      const std::string file = prepared.imus.size() > 1 ? labelled(path, on_rig.name) : path;
+      write_imu_samples(samples, description, file, prepared.files);
+      written.emplace_back(file);
+      print_samples(flags, on_rig, samples.t_ns.size(), file);
+    }
+  }
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/ros/codec.hpp>
+#include <glidar/io/ros/message_types.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glidar::bags {
+
+/// The formats of bags, by the suffix of their path.
+enum class BagFormat : std::uint8_t {
+  mcap,     ///< NAME.mcap, one file: mcap.dev/spec
+  rosbag2,  ///< NAME.rosbag2, a folder with metadata.yaml
+  rosbag1,  ///< NAME.bag, one file of ROS 1: wiki.ros.org/Bags/Format/2.0
+};
+
+/// True for paths that name a bag: .mcap, .rosbag2 and .bag, and existing folders with a
+/// metadata.yaml.
+bool is_bag_path(const std::filesystem::path& path);
+
+/// True for the names of new bags: with the suffix .mcap, .rosbag2 or .bag.
+bool is_bag_name(const std::filesystem::path& path);
+
+/// Throws Error naming the suffixes.
+BagFormat bag_format_for(const std::filesystem::path& path);
+
+enum class Compression : std::uint8_t { none, lz4, zstd };
+
+struct BagOptions {
+  Compression compression = Compression::none;  ///< of chunks; rosbag1: none or lz4
+  bool mcap_storage = false;                    ///< rosbag2: one MCAP file instead of SQLite
+  std::string library = "glidar";               ///< name of the writing program
+};
+
+/// A topic to be written.
+struct BagTopic {
+  std::string name;  ///< with a leading slash: /points
+  const ros::MessageType* type = nullptr;
+  ros::Qos qos;
+};
+
+template <class Message>
+BagTopic bag_topic(std::string name) {
+  const ros::MessageType& type = ros::message_type<Message>();
+  return {std::move(name), &type, type.qos};
+}
+
+/// Writes a bag, which appears under its name when finish() returns. Without finish() nothing
+/// remains, and an existing bag stays unchanged.
+class BagWriter {
+ public:
+  BagWriter() = default;
+  BagWriter(const BagWriter&) = delete;
+  BagWriter& operator=(const BagWriter&) = delete;
+  virtual ~BagWriter() = default;
+
+  /// How messages must be serialized.
+  [[nodiscard]] virtual ros::Wire wire() const = 0;
+  /// The number of a new topic. Throws Error when its name is in use or no topic name.
+  virtual std::size_t add_topic(const BagTopic& topic) = 0;
+  /// Appends a serialized message. Times need not increase. Throws Error for times before 1970,
+  /// unknown topics and when the system refuses.
+  virtual void write(std::size_t topic, std::int64_t time_ns,
+                     std::span<const std::byte> message) = 0;
+  /// Completes the bag and gives it its name. Throws Error.
+  virtual void finish() = 0;
+};
+
+/// A new bag, in the format of the path's suffix. Throws Error when the suffix is unknown, an
+/// option does not fit the format, or nothing can be created in the folder.
+std::unique_ptr<BagWriter> create_bag(const std::filesystem::path& path,
+                                      const BagOptions& options = {});
+
+/// Serializes and appends a message.
+template <class Message>
+void write_message(BagWriter& bag, std::size_t topic, std::int64_t time_ns,
+                   const Message& message) {
+  bag.write(topic, time_ns, ros::serialize(message, bag.wire()));
+}
+
+/// A topic of a bag that is read.
+struct StoredTopic {
+  std::string name;
+  std::string type;  ///< as the bag names it
+  ros::Wire wire = ros::Wire::cdr;
+  bool is_ros = true;  ///< false: messages of another encoding, such as JSON in MCAP
+};
+
+/// A message of a bag.
+struct BagMessage {
+  std::size_t topic = 0;  ///< index in topics()
+  std::int64_t time_ns = 0;
+  std::span<const std::byte> data;  ///< valid until the next call of next()
+};
+
+/// Reads a bag in the order of its messages' times; holds only some chunks of it in memory.
+class BagReader {
+ public:
+  BagReader() = default;
+  BagReader(const BagReader&) = delete;
+  BagReader& operator=(const BagReader&) = delete;
+  virtual ~BagReader() = default;
+
+  [[nodiscard]] virtual std::span<const StoredTopic> topics() const = 0;
+  /// Reads only these topics, by index; all before the first call.
+  virtual void select(std::span<const std::size_t> topics) = 0;
+  /// The next message; false at the end. Throws Error when the bag is damaged.
+  virtual bool next(BagMessage& message) = 0;
+};
+
+/// Opens a bag. A folder of rosbag2 may have any name and several files. Throws Error when it is
+/// missing, damaged, incomplete, or compressed in a way that is not supported.
+std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path);
+
+}  // namespace glidar::bags

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/bags/bag_poses.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/bags/bag_topics.hpp>
+#include <glidar/io/ros/pose_message.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace glidar::bags {
+namespace {
+
+/// As many as a trajectory file can have.
+constexpr std::size_t kMaxPoses = 5'000'000;
+constexpr std::size_t kMaxPairs = 1000;
+
+struct PairPoses {
+  ros::FramePair frames;
+  std::vector<TimedPose> poses;
+};
+
+/// ROS 1 had names with a leading slash.
+std::string frame_name(const std::string& name) {
+  return name.starts_with('/') ? name.substr(1) : name;
+}
+
+/// Collects the poses of each pair of frames, in the order in which the pairs appear.
+class PoseCollector {
+ public:
+  PoseCollector(const std::filesystem::path& path, const PoseSelection& selection)
+      : path_(path),
+        parent_(frame_name(selection.parent_frame)),
+        child_(frame_name(selection.child_frame)) {}
+
+  void add(const ros::FramePair& frames, const TimedPose& pose) {
+    if (fits(frames.parent, frames.child)) return put(frames, pose);
+    if (parent_.empty() || child_.empty() || !fits(frames.child, frames.parent)) return;
+    TimedPose inverse = pose;
+    inverse.orientation = pose.orientation.conjugate();
+    inverse.position_m = -(inverse.orientation * pose.position_m);
+    put({frames.child, frames.parent}, inverse);
+  }
+
+  /// The poses of the first pair with several of different times, else of the first pair.
+  std::vector<TimedPose> chosen() {
+    for (PairPoses& pair : pairs_) {
+      const std::int64_t first_ns = pair.poses.front().t_ns;
+      if (std::any_of(pair.poses.begin(), pair.poses.end(),
+                      [&](const TimedPose& pose) { return pose.t_ns != first_ns; }))
+        return std::move(pair.poses);
+    }
+    if (!pairs_.empty()) return std::move(pairs_.front().poses);
+    throw Error({path_.string(), "no pose " + wanted(), "frames: " + seen(), "name others"});
+  }
+
+ private:
+  [[nodiscard]] bool fits(const std::string& parent, const std::string& child) {
+    if (seen_.size() < 20) remember(parent + " > " + child);
+    return (parent_.empty() || parent == parent_) && (child_.empty() || child == child_);
+  }
+
+  void remember(const std::string& pair) {
+    const std::string text = excerpt(pair, 80);
+    if (std::find(seen_.begin(), seen_.end(), text) == seen_.end()) seen_.push_back(text);
+  }
+
+  void put(const ros::FramePair& frames, const TimedPose& pose) {
+    auto pair = std::find_if(pairs_.begin(), pairs_.end(),
+                             [&](const PairPoses& known) { return known.frames == frames; });
+    if (pair == pairs_.end()) {
+      if (pairs_.size() == kMaxPairs)
+        reject(fmt::format("more than {} pairs of frames", kMaxPairs));
+      pair = pairs_.insert(pair, {frames, {}});
+    }
+    if (++poses_ > kMaxPoses) reject(fmt::format("more than {} poses", kMaxPoses));
+    pair->poses.push_back(pose);
+  }
+
+  [[noreturn]] void reject(const std::string& found) const {
+    throw Error({path_.string(), found, "fewer", "name the topic and the frames"});
+  }
+
+  [[nodiscard]] std::string wanted() const {
+    return fmt::format("of {} in {}", child_.empty() ? "any frame" : child_,
+                       parent_.empty() ? "any frame" : parent_);
+  }
+  [[nodiscard]] std::string seen() const {
+    return seen_.empty() ? "none" : fmt::format("{}", fmt::join(seen_, ", "));
+  }
+
+  std::filesystem::path path_;
+  std::string parent_;
+  std::string child_;
+  std::vector<PairPoses> pairs_;
+  std::vector<std::string> seen_;  ///< for errors
+  std::size_t poses_ = 0;
+};
+
+void add_message(const ros::MessageType* type, std::span<const std::byte> data, ros::Wire wire,
+                 PoseCollector& collector) {
+  if (type == &ros::message_type<ros::TFMessage>()) {
+    for (const auto& transform : ros::deserialize<ros::TFMessage>(data, wire).transforms) {
+      collector.add({frame_name(transform.header.frame_id), frame_name(transform.child_frame_id)},
+                    ros::timed_pose(transform));
+    }
+  } else if (type == &ros::message_type<ros::Odometry>()) {
+    const auto odometry = ros::deserialize<ros::Odometry>(data, wire);
+    collector.add({frame_name(odometry.header.frame_id), frame_name(odometry.child_frame_id)},
+                  ros::timed_pose(odometry));
+  } else {
+    const auto pose = ros::deserialize<ros::PoseStamped>(data, wire);
+    collector.add({frame_name(pose.header.frame_id), ""}, ros::timed_pose(pose));
+  }
+}
+
+/// Without an explicit name, /tf is preferred to other transforms, which may be static.
+std::size_t pose_topic(const BagReader& bag, const PoseSelection& selection,
+                       const std::filesystem::path& path) {
+  const ros::MessageType* transforms = &ros::message_type<ros::TFMessage>();
+  const std::array types = {transforms, &ros::message_type<ros::Odometry>(),
+                            &ros::message_type<ros::PoseStamped>()};
+  if (!selection.topic.empty()) return find_topic(bag, selection.topic, types, path);
+  const std::span<const StoredTopic> topics = bag.topics();
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    if (topics[i].name == "/tf" && type_of(topics[i]) == transforms) return i;
+  }
+  const std::array others = {types[1], types[2], types[0]};
+  return find_topic(bag, "", others, path);
+}
+
+}  // namespace
+
+std::vector<TimedPose> read_bag_poses(const std::filesystem::path& path,
+                                      const PoseSelection& selection) {
+  const std::unique_ptr<BagReader> bag = open_bag(path);
+  const std::size_t topic = pose_topic(*bag, selection, path);
+  const StoredTopic stored = bag->topics()[topic];
+  const ros::MessageType* type = type_of(stored);
+  bag->select({&topic, 1});
+  PoseCollector collector(path, selection);
+  BagMessage message;
+  while (bag->next(message)) add_message(type, message.data, stored.wire, collector);
+  std::vector<TimedPose> poses = collector.chosen();
+  const auto time_of = [](const TimedPose& pose) { return pose.t_ns; };
+  std::ranges::stable_sort(poses, {}, time_of);
+  poses.erase(std::ranges::unique(poses, {}, time_of).begin(), poses.end());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto error = find_error(i == 0 ? nullptr : &poses[i - 1], poses[i]);
+    if (error)
+      throw Error({fmt::format("{}, topic {}, pose {}", path.string(), stored.name, i + 1),
+                   error->found, error->allowed});
+  }
+  return poses;
+}
+
+}  // namespace glidar::bags

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/bags/chunk_merger.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/bags/byte_reader.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace glidar::bags {
+namespace {
+
+/// Of all chunks that are in memory together.
+constexpr std::size_t kMaxOpenBytes = std::size_t{1} << 30U;
+
+}  // namespace
+
+ChunkMerger::ChunkMerger(std::string place, std::vector<ChunkRange> chunks, Load load)
+    : place_(std::move(place)), chunks_(std::move(chunks)), load_(std::move(load)) {
+  order_.resize(chunks_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+    return chunks_[a].first_ns < chunks_[b].first_ns;
+  });
+}
+
+bool ChunkMerger::next(BagMessage& message) {
+  current_.clear();
+  load_due();
+  if (open_.empty()) return false;
+  const std::size_t at = earliest();
+  Open& from = *open_[at];
+  const ChunkEntry& entry = from.chunk.entries[from.entry];
+  message.topic = entry.topic;
+  message.time_ns = entry.time_ns;
+  message.data = std::span(from.chunk.bytes).subspan(entry.offset, entry.size);
+  if (++from.entry == from.chunk.entries.size()) {
+    open_bytes_ -= from.chunk.bytes.size();
+    current_ = std::move(from.chunk.bytes);  // moving a vector keeps its bytes in place
+    open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  return true;
+}
+
+/// Opens every chunk that may contain the next message.
+void ChunkMerger::load_due() {
+  while (next_ < order_.size()) {
+    if (!open_.empty()) {
+      const Open& first = *open_[earliest()];
+      if (chunks_[order_[next_]].first_ns > first.chunk.entries[first.entry].time_ns) return;
+    }
+    open(order_[next_++]);
+  }
+}
+
+void ChunkMerger::open(std::size_t number) {
+  auto opened = std::make_unique<Open>();
+  opened->number = number;
+  opened->chunk = load_(number);
+  std::vector<ChunkEntry>& entries = opened->chunk.entries;
+  const ChunkRange& range = chunks_[number];
+  for (const ChunkEntry& entry : entries) {
+    if (entry.time_ns >= range.first_ns && entry.time_ns <= range.last_ns) continue;
+    reject_bag(place_, fmt::format("a message at {} ns in a chunk of {} to {} ns", entry.time_ns,
+                                   range.first_ns, range.last_ns));
+  }
+  if (!selected_.empty())
+    std::erase_if(entries, [&](const ChunkEntry& entry) { return !selected_[entry.topic]; });
+  if (entries.empty()) return;
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const ChunkEntry& a, const ChunkEntry& b) { return a.time_ns < b.time_ns; });
+  open_bytes_ += opened->chunk.bytes.size();
+  if (open_bytes_ > kMaxOpenBytes) {
+    throw Error({place_, "chunks of more than 1 GiB whose times overlap",
+                 "messages that are roughly in order of time", "sort the bag"});
+  }
+  open_.push_back(std::move(opened));
+}
+
+/// Of equal times, the message of the first chunk in the file.
+std::size_t ChunkMerger::earliest() const {
+  const auto key = [](const std::unique_ptr<Open>& open) {
+    return std::pair(open->chunk.entries[open->entry].time_ns, open->number);
+  };
+  const auto first = std::min_element(
+      open_.begin(), open_.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  return static_cast<std::size_t>(first - open_.begin());
+}
+
+}  // namespace glidar::bags

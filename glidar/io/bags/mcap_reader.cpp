@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/bags/mcap_reader.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/bags/bag_file.hpp>
+#include <glidar/io/bags/chunk_codec.hpp>
+#include <glidar/io/bags/chunk_merger.hpp>
+#include <glidar/io/bags/mcap_channels.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace glidar::bags {
+namespace {
+
+using McapOp = mcap::Op;
+
+/// Of records that are neither chunks nor messages.
+constexpr std::uint64_t kMaxRecord = std::uint64_t{16} << 20U;
+
+/// Messages in a chunk, or in records that follow each other in the file.
+struct McapChunk {
+  std::uint64_t offset = 0;  ///< of the records, which may be compressed
+  std::uint64_t stored_size = 0;
+  std::uint64_t size = 0;
+  Compression compression = Compression::none;
+  std::uint32_t crc = 0;  ///< 0: none
+  ChunkRange range;
+};
+
+/// A time of MCAP. Throws Error beyond the year 2262.
+std::int64_t time_of(std::uint64_t time, const ByteReader& reader) {
+  if (time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+    reader.reject(fmt::format("a time of {} ns", time));
+  return static_cast<std::int64_t>(time);
+}
+
+Compression compression_of(const std::string& name, const std::string& place) {
+  if (name.empty()) return Compression::none;
+  if (name == "lz4") return Compression::lz4;
+  if (name == "zstd") return Compression::zstd;
+  throw Error({place, "a chunk compressed by '" + excerpt(name) + "'", "none, lz4 or zstd",
+               "write the bag again with one of them"});
+}
+
+/// Walks through the records of a file without reading messages.
+class McapScan {
+ public:
+  explicit McapScan(BagFile& file) : file_(file) {}
+
+  void run();
+  std::vector<McapChunk> chunks;
+  McapChannels channels;
+
+ private:
+  void check_ends();
+  void take_record(const McapRecord& record, std::uint64_t at);
+  void add_chunk(std::uint64_t at, std::uint64_t size);
+  void add_message(std::uint64_t at, std::uint64_t size);
+
+  BagFile& file_;
+  bool ended_ = false;
+  std::optional<std::uint64_t> run_end_;  ///< end of the last chunk of plain messages
+};
+
+void McapScan::run() {
+  check_ends();
+  std::uint64_t at = mcap::kMagic.size();
+  const std::uint64_t end = file_.size() - mcap::kMagic.size();
+  while (at < end && !ended_) {
+    if (end - at < mcap::kRecordHead) reject_bag(file_.place(at), "a record that ends early");
+    ByteReader head(file_.peek(at, mcap::kRecordHead), file_.place(at));
+    const McapRecord record = read_mcap_head(head);
+    at += mcap::kRecordHead;
+    if (record.size > end - at) reject_bag(file_.place(at), "a record longer than the file");
+    take_record(record, at);
+    at += record.size;
+  }
+  if (!ended_) reject_bag(file_.place(at), "no footer");
+}
+
+void McapScan::check_ends() {
+  const std::size_t size = mcap::kMagic.size();
+  const auto is_magic = [&](std::uint64_t at) {
+    const auto bytes = file_.peek(at, size);
+    return std::equal(bytes.begin(), bytes.end(), std::as_bytes(std::span(mcap::kMagic)).begin());
+  };
+  if (file_.size() < 2 * size || !is_magic(0))
+    reject_bag(file_.place(0), "no MCAP file", "a file that begins with \\x89MCAP0\\r\\n");
+  if (is_magic(file_.size() - size)) return;
+  throw Error({file_.place(file_.size() - size), "the file has no end", "a file that was completed",
+               "use `mcap recover` or record it again"});
+}
+
+void McapScan::take_record(const McapRecord& record, std::uint64_t at) {
+  switch (record.op) {
+    case McapOp::footer:
+      ended_ = true;
+      return;
+    case McapOp::chunk:
+      return add_chunk(at, record.size);
+    case McapOp::message:
+      return add_message(at, record.size);
+    case McapOp::schema:
+    case McapOp::channel: {
+      if (record.size > kMaxRecord)
+        reject_bag(file_.place(at), "a schema or channel of more than 16 MiB");
+      ByteReader content(file_.peek(at, record.size), file_.place(at));
+      return channels.add(record.op, content);
+    }
+    default:
+      return;
+  }
+}
+
+void McapScan::add_chunk(std::uint64_t at, std::uint64_t size) {
+  constexpr std::uint64_t kMaxHead = 64;
+  const std::uint64_t head_size = std::min(size, kMaxHead);
+  ByteReader head(file_.peek(at, head_size), file_.place(at));
+  McapChunk chunk;
+  chunk.range.first_ns = time_of(head.number<std::uint64_t>(), head);
+  chunk.range.last_ns = time_of(head.number<std::uint64_t>(), head);
+  chunk.size = head.number<std::uint64_t>();
+  chunk.crc = head.number<std::uint32_t>();
+  chunk.compression = compression_of(head.text(), head.place());
+  chunk.stored_size = head.number<std::uint64_t>();
+  chunk.offset = at + head.position();
+  if (chunk.stored_size > size - head.position()) head.reject("a chunk longer than its record");
+  chunks.push_back(chunk);
+  run_end_.reset();
+}
+
+/// Messages outside chunks are read in runs of up to kChunkBytes.
+void McapScan::add_message(std::uint64_t at, std::uint64_t size) {
+  if (size < mcap::kMessageHead) reject_bag(file_.place(at), "a message that ends early");
+  ByteReader head(file_.peek(at, mcap::kMessageHead), file_.place(at));
+  head.take(sizeof(std::uint16_t) + sizeof(std::uint32_t));
+  const std::int64_t time_ns = time_of(head.number<std::uint64_t>(), head);
+  const std::uint64_t begin = at - mcap::kRecordHead;
+  const std::uint64_t whole = size + mcap::kRecordHead;
+  if (run_end_ == begin && chunks.back().size < kChunkBytes) {
+    McapChunk& run = chunks.back();
+    run.size = run.stored_size += whole;
+    run.range.first_ns = std::min(run.range.first_ns, time_ns);
+    run.range.last_ns = std::max(run.range.last_ns, time_ns);
+  } else {
+    chunks.push_back(
+        {.offset = begin, .stored_size = whole, .size = whole, .range = {time_ns, time_ns}});
+  }
+  run_end_ = begin + whole;
+}
+
+class McapReader : public BagReader {
+ public:
+  explicit McapReader(const std::filesystem::path& path) : file_(path) {
+    McapScan scan(file_);
+    scan.run();
+    chunks_ = std::move(scan.chunks);
+    channels_ = std::move(scan.channels);
+    if (channels_.topics().empty()) find_channels();
+    std::vector<ChunkRange> ranges;
+    for (const McapChunk& chunk : chunks_) ranges.push_back(chunk.range);
+    merger_.emplace(path.string(), std::move(ranges),
+                    [this](std::size_t number) { return load(chunks_[number]); });
+  }
+
+  [[nodiscard]] std::span<const StoredTopic> topics() const override { return channels_.topics(); }
+
+  void select(std::span<const std::size_t> topics) override {
+    std::vector<bool> selected(channels_.topics().size(), false);
+    for (const std::size_t topic : topics) selected.at(topic) = true;
+    merger_->select(std::move(selected));
+  }
+
+  bool next(BagMessage& message) override { return merger_->next(message); }
+
+ private:
+  Bytes records_of(const McapChunk& chunk) {
+    const std::string place = file_.place(chunk.offset);
+    Bytes records = chunk.compression == Compression::none && chunk.size == chunk.stored_size
+                        ? file_.read(chunk.offset, chunk.size)
+                        : decompress(file_.read(chunk.offset, chunk.stored_size), chunk.compression,
+                                     chunk.size, place);
+    if (chunk.crc != 0 && crc32_of(records) != chunk.crc)
+      reject_bag(place, "a chunk whose checksum does not match");
+    return records;
+  }
+
+  LoadedChunk load(const McapChunk& chunk) {
+    LoadedChunk loaded;
+    loaded.bytes = records_of(chunk);
+    ByteReader reader(loaded.bytes, "chunk at " + file_.place(chunk.offset));
+    while (reader.left() > 0) {
+      const McapRecord record = read_mcap_head(reader);
+      const std::size_t begin = reader.position();
+      ByteReader content(reader.take(record.size), reader.place());
+      if (record.op != McapOp::message) continue;
+      const auto channel = content.number<std::uint16_t>();
+      content.number<std::uint32_t>();  // the number in the sequence
+      const std::int64_t time_ns = time_of(content.number<std::uint64_t>(), content);
+      content.number<std::uint64_t>();  // the time of publication
+      loaded.entries.push_back({time_ns, channels_.topic_of(channel, reader),
+                                begin + content.position(), content.left()});
+    }
+    return loaded;
+  }
+
+  /// In a file without a summary, channels are described in chunks only.
+  void find_channels() {
+    for (const McapChunk& chunk : chunks_) {
+      const Bytes records = records_of(chunk);
+      ByteReader reader(records, "chunk at " + file_.place(chunk.offset));
+      while (reader.left() > 0) {
+        const McapRecord record = read_mcap_head(reader);
+        ByteReader content(reader.take(record.size), reader.place());
+        channels_.add(record.op, content);
+      }
+    }
+  }
+
+  BagFile file_;
+  std::vector<McapChunk> chunks_;
+  McapChannels channels_;
+  std::optional<ChunkMerger> merger_;
+};
+
+}  // namespace
+
+std::unique_ptr<BagReader> open_mcap(const std::filesystem::path& path) {
+  return std::make_unique<McapReader>(path);
+}
+
+}  // namespace glidar::bags

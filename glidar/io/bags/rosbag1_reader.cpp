@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/bags/rosbag1_reader.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/bags/bag_file.hpp>
+#include <glidar/io/bags/byte_reader.hpp>
+#include <glidar/io/bags/chunk_codec.hpp>
+#include <glidar/io/bags/chunk_merger.hpp>
+#include <glidar/io/bags/rosbag1_records.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace glidar::bags {
+namespace {
+
+using Rosbag1Op = rosbag1::Op;
+
+/// Of headers, and of the data of records other than chunks.
+constexpr std::uint32_t kMaxHeader = std::uint32_t{16} << 20U;
+
+/// The fields of a header.
+class BagFields {
+ public:
+  explicit BagFields(std::span<const std::byte> bytes, std::string place)
+      : place_(std::move(place)) {
+    ByteReader reader(bytes, place_);
+    while (reader.left() > 0) {
+      const std::span<const std::byte> field = reader.sized();
+      const auto equals = std::find(field.begin(), field.end(), std::byte{'='});
+      if (equals == field.end()) reader.reject("a field without '='");
+      const auto name_size = static_cast<std::size_t>(equals - field.begin());
+      const std::string name(reinterpret_cast<const char*>(field.data()), name_size);
+      fields_[name] = field.subspan(name_size + 1);
+    }
+  }
+
+  template <class Number>
+  [[nodiscard]] Number number(const std::string& name) const {
+    const std::span<const std::byte> bytes = value(name);
+    if (bytes.size() != sizeof(Number))
+      reject_bag(place_, "a field '" + name + "' of another size");
+    Number number;
+    std::memcpy(&number, bytes.data(), sizeof number);
+    return number;
+  }
+
+  [[nodiscard]] std::int64_t time_ns(const std::string& name) const {
+    const auto packed = number<std::uint64_t>(name);
+    return static_cast<std::int64_t>((packed & 0xFFFFFFFFU) * 1'000'000'000U + (packed >> 32U));
+  }
+
+  [[nodiscard]] std::string text(const std::string& name) const {
+    const std::span<const std::byte> bytes = value(name);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+
+  [[nodiscard]] Rosbag1Op op() const { return static_cast<Rosbag1Op>(number<std::uint8_t>("op")); }
+
+ private:
+  [[nodiscard]] std::span<const std::byte> value(const std::string& name) const {
+    const auto found = fields_.find(name);
+    if (found == fields_.end()) reject_bag(place_, "no field '" + name + "'");
+    return found->second;
+  }
+
+  std::string place_;
+  std::map<std::string, std::span<const std::byte>> fields_;
+};
+
+struct Rosbag1Chunk {
+  std::uint64_t position = 0;  ///< of the record
+  std::uint64_t offset = 0;    ///< of the data
+  std::uint32_t stored_size = 0;
+  std::uint32_t size = 0;
+  Compression compression = Compression::none;
+  std::optional<ChunkRange> range;  ///< from its chunk info
+};
+
+Compression rosbag1_compression(const std::string& name, const std::string& place) {
+  if (name == "none") return Compression::none;
+  if (name == "lz4") return Compression::lz4;
+  throw Error({place, "a chunk compressed by '" + excerpt(name) + "'", "none or lz4",
+               "use `rosbag decompress`"});
+}
+
+class Rosbag1Reader : public BagReader {
+ public:
+  explicit Rosbag1Reader(const std::filesystem::path& path) : file_(path) {
+    check_start();
+    std::uint64_t at = rosbag1::kMagic.size();
+    while (at < file_.size()) at = scan_record(at);
+    std::vector<ChunkRange> ranges;
+    for (const Rosbag1Chunk& chunk : chunks_) {
+      if (!chunk.range) reject_bag(file_.place(chunk.position), "a chunk that the index lacks");
+      ranges.push_back(*chunk.range);
+    }
+    merger_.emplace(path.string(), std::move(ranges),
+                    [this](std::size_t number) { return load(chunks_[number]); });
+  }
+
+  [[nodiscard]] std::span<const StoredTopic> topics() const override { return topics_; }
+
+  void select(std::span<const std::size_t> topics) override {
+    std::vector<bool> selected(topics_.size(), false);
+    for (const std::size_t topic : topics) selected.at(topic) = true;
+    merger_->select(std::move(selected));
+  }
+
+  bool next(BagMessage& message) override { return merger_->next(message); }
+
+ private:
+  void check_start() {
+    const std::size_t size = rosbag1::kMagic.size();
+    const auto bytes = file_.peek(0, std::min<std::uint64_t>(size, file_.size()));
+    const auto magic = std::as_bytes(std::span(rosbag1::kMagic));
+    if (std::equal(bytes.begin(), bytes.end(), magic.begin(), magic.end())) return;
+    reject_bag(file_.place(0), "no bag of ROS 1", "a file that begins with #ROSBAG V2.0");
+  }
+
+  std::uint32_t size_at(std::uint64_t at) {
+    ByteReader reader(file_.peek(at, sizeof(std::uint32_t)), file_.place(at));
+    return reader.number<std::uint32_t>();
+  }
+
+  /// Returns the place of the next record.
+  std::uint64_t scan_record(std::uint64_t at) {
+    const std::uint32_t header_size = size_at(at);
+    if (header_size > kMaxHeader) reject_bag(file_.place(at), "a header of more than 16 MiB");
+    const std::uint64_t header_at = at + sizeof header_size;
+    const Bytes header = file_.read(header_at, header_size);
+    const BagFields fields(header, file_.place(at));
+    const std::uint64_t data_at = header_at + header_size + sizeof(std::uint32_t);
+    const std::uint32_t data_size = size_at(data_at - sizeof(std::uint32_t));
+    if (data_size > file_.size() - data_at)
+      reject_bag(file_.place(at), "a record longer than the file");
+    switch (fields.op()) {
+      case Rosbag1Op::bag_header:
+        check_index(fields, at);
+        break;
+      case Rosbag1Op::chunk:
+        by_position_[at] = chunks_.size();
+        chunks_.push_back({at, data_at, data_size, fields.number<std::uint32_t>("size"),
+                           rosbag1_compression(fields.text("compression"), file_.place(at)),
+                           std::nullopt});
+        break;
+      case Rosbag1Op::connection:
+        add_connection(fields, data_at, data_size);
+        break;
+      case Rosbag1Op::chunk_info:
+        add_chunk_info(fields, at);
+        break;
+      default:
+        break;
+    }
+    return data_at + data_size;
+  }
+
+  void check_index(const BagFields& fields, std::uint64_t at) {
+    if (fields.number<std::uint64_t>("index_pos") != 0) return;
+    throw Error({file_.place(at), "the bag has no index", "a bag that was completed",
+                 "use `rosbag reindex`"});
+  }
+
+  void add_connection(const BagFields& fields, std::uint64_t data_at, std::uint32_t data_size) {
+    const auto number = fields.number<std::uint32_t>("conn");
+    if (connections_.contains(number)) return;
+    if (data_size > kMaxHeader)
+      reject_bag(file_.place(data_at), "a connection of more than 16 MiB");
+    const Bytes data = file_.read(data_at, data_size);
+    const BagFields details(data, file_.place(data_at));
+    connections_.emplace(number, topics_.size());
+    topics_.push_back({fields.text("topic"), details.text("type"), ros::Wire::ros1, true});
+  }
+
+  void add_chunk_info(const BagFields& fields, std::uint64_t at) {
+    const auto chunk = by_position_.find(fields.number<std::uint64_t>("chunk_pos"));
+    if (chunk == by_position_.end()) reject_bag(file_.place(at), "the index of a missing chunk");
+    chunks_[chunk->second].range = {fields.time_ns("start_time"), fields.time_ns("end_time")};
+  }
+
+  LoadedChunk load(const Rosbag1Chunk& chunk) {
+    const std::string place = file_.place(chunk.offset);
+    LoadedChunk loaded;
+    loaded.bytes = file_.read(chunk.offset, chunk.stored_size);
+    if (chunk.compression != Compression::none || chunk.size != chunk.stored_size)
+      loaded.bytes = decompress(loaded.bytes, chunk.compression, chunk.size, place);
+    ByteReader reader(loaded.bytes, "chunk at " + place);
+    while (reader.left() > 0) {
+      const BagFields fields(reader.sized(), reader.place());
+      const std::size_t size = reader.number<std::uint32_t>();
+      const std::size_t begin = reader.position();
+      reader.take(size);
+      if (fields.op() != Rosbag1Op::message) continue;
+      const auto connection = connections_.find(fields.number<std::uint32_t>("conn"));
+      if (connection == connections_.end()) reader.reject("a message of an unknown connection");
+      loaded.entries.push_back({fields.time_ns("time"), connection->second, begin, size});
+    }
+    return loaded;
+  }
+
+  BagFile file_;
+  std::vector<StoredTopic> topics_;
+  std::map<std::uint32_t, std::size_t> connections_;  ///< index in topics_
+  std::vector<Rosbag1Chunk> chunks_;
+  std::map<std::uint64_t, std::size_t> by_position_;  ///< index in chunks_
+  std::optional<ChunkMerger> merger_;
+};
+
+}  // namespace
+
+std::unique_ptr<BagReader> open_rosbag1(const std::filesystem::path& path) {
+  return std::make_unique<Rosbag1Reader>(path);
+}
+
+}  // namespace glidar::bags

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/packets/packet_codec.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+#include <memory>
+
+namespace glidar {
+
+/// True for sensors named after Pandar64, PandarQT or XT32.
+bool is_hesai(const Sensor& sensor);
+
+/// Throws Error, naming the sensor, when its channels or columns are not those of its model, or its
+/// returns are not the strongest, the last, or both.
+std::unique_ptr<PacketEncoder> make_hesai_encoder(const Sensor& sensor);
+
+/// `follow_rotation`: the head turns on between a block's azimuth and a channel's firing. Hesai's
+/// drivers do so only with a file of firing times. Throws Error like make_hesai_encoder.
+std::unique_ptr<PacketDecoder> make_hesai_decoder(const Sensor& sensor,
+                                                  bool follow_rotation = true);
+
+}  // namespace glidar

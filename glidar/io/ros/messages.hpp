@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Messages of ROS as plain structs. The members of each one are listed once, in wire order, by its
+// function visit_members(), from which all codecs follow (codec.hpp). Definitions: the packages
+// std_msgs, sensor_msgs, geometry_msgs, tf2_msgs, nav_msgs and rosgraph_msgs of ROS 1 Noetic and
+// ROS 2, livox_ros_driver2 (CustomMsg) and velodyne_msgs (VelodyneScan).
+
+#include <glidar/io/ros/payload.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace glidar::ros {
+
+/// For constraints: Type is Message or const Message.
+template <class Type, class Message>
+concept Is = std::same_as<std::remove_const_t<Type>, Message>;
+
+/// A member that ROS 2 does not have.
+template <class Type>
+struct Ros1Only {
+  Type& value;
+};
+template <class Type>
+Ros1Only(Type&) -> Ros1Only<Type>;
+
+struct Time {
+  std::int32_t sec = 0;  ///< unsigned in ROS 1
+  std::uint32_t nanosec = 0;
+  bool operator==(const Time&) const = default;
+};
+void visit_members(Is<Time> auto& m, auto&& visit) {
+  visit(m.sec, m.nanosec);
+}
+
+/// Throws Error outside the range of ROS 2, the years 1901 to 2038.
+Time time_from_ns(std::int64_t t_ns);
+std::int64_t to_ns(const Time& time);
+
+struct Header {
+  std::uint32_t seq = 0;
+  Time stamp;
+  std::string frame_id;  ///< without a leading slash
+};
+void visit_members(Is<Header> auto& m, auto&& visit) {
+  visit(Ros1Only{m.seq}, m.stamp, m.frame_id);
+}
+
+struct PointField {
+  /// Values of `datatype`.
+  enum Datatype : std::uint8_t {
+    int8 = 1,
+    uint8 = 2,
+    int16 = 3,
+    uint16 = 4,
+    int32 = 5,
+    uint32 = 6,
+    float32 = 7,
+    float64 = 8,
+  };
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 0;
+  std::uint32_t count = 1;
+};
+void visit_members(Is<PointField> auto& m, auto&& visit) {
+  visit(m.name, m.offset, m.datatype, m.count);
+}
+
+struct PointCloud2 {
+  Header header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::vector<PointField> fields;
+  bool is_bigendian = false;
+  std::uint32_t point_step = 0;
+  std::uint32_t row_step = 0;
+  Payload data;
+  bool is_dense = false;
+};
+void visit_members(Is<PointCloud2> auto& m, auto&& visit) {
+  visit(m.header, m.height, m.width, m.fields, m.is_bigendian, m.point_step, m.row_step, m.data,
+        m.is_dense);
+}
+
+struct LaserScan {
+  Header header;
+  float angle_min = 0.0F;        ///< rad
+  float angle_max = 0.0F;        ///< rad
+  float angle_increment = 0.0F;  ///< rad
+  float time_increment = 0.0F;   ///< s
+  float scan_time = 0.0F;        ///< s
+  float range_min = 0.0F;        ///< m
+  float range_max = 0.0F;        ///< m
+  std::vector<float> ranges;     ///< m
+  std::vector<float> intensities;
+};
+void visit_members(Is<LaserScan> auto& m, auto&& visit) {
+  visit(m.header, m.angle_min, m.angle_max, m.angle_increment, m.time_increment, m.scan_time,
+        m.range_min, m.range_max, m.ranges, m.intensities);
+}
+
+struct Image {
+  Header header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::string encoding;
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t step = 0;
+  Payload data;
+};
+void visit_members(Is<Image> auto& m, auto&& visit) {
+  visit(m.header, m.height, m.width, m.encoding, m.is_bigendian, m.step, m.data);
+}
+
+struct CompressedImage {
+  Header header;
+  std::string format;
+  Payload data;
+};
+void visit_members(Is<CompressedImage> auto& m, auto&& visit) {
+  visit(m.header, m.format, m.data);
+}
+
+struct RegionOfInterest {
+  std::uint32_t x_offset = 0;
+  std::uint32_t y_offset = 0;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  bool do_rectify = false;
+};
+void visit_members(Is<RegionOfInterest> auto& m, auto&& visit) {
+  visit(m.x_offset, m.y_offset, m.height, m.width, m.do_rectify);
+}
+
+struct CameraInfo {
+  Header header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::string distortion_model;
+  std::vector<double> d;
+  std::array<double, 9> k{};
+  std::array<double, 9> r{};
+  std::array<double, 12> p{};
+  std::uint32_t binning_x = 0;
+  std::uint32_t binning_y = 0;
+  RegionOfInterest roi;
+};
+void visit_members(Is<CameraInfo> auto& m, auto&& visit) {
+  visit(m.header, m.height, m.width, m.distortion_model, m.d, m.k, m.r, m.p, m.binning_x,
+        m.binning_y, m.roi);
+}
+
+struct Vector3 {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+};
+void visit_members(Is<Vector3> auto& m, auto&& visit) {
+  visit(m.x, m.y, m.z);
+}
+
+struct Quaternion {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  double w = 1.0;
+};
+void visit_members(Is<Quaternion> auto& m, auto&& visit) {
+  visit(m.x, m.y, m.z, m.w);
+}
+
+struct Imu {
+  Header header;
+  Quaternion orientation;
+  std::array<double, 9> orientation_covariance{};
+  Vector3 angular_velocity;  ///< rad/s
+  std::array<double, 9> angular_velocity_covariance{};
+  Vector3 linear_acceleration;  ///< m/s^2
+  std::array<double, 9> linear_acceleration_covariance{};
+};
+void visit_members(Is<Imu> auto& m, auto&& visit) {
+  visit(m.header, m.orientation, m.orientation_covariance, m.angular_velocity,
+        m.angular_velocity_covariance, m.linear_acceleration, m.linear_acceleration_covariance);
+}
+
+struct Transform {
+  Vector3 translation;  ///< m
+  Quaternion rotation;
+};
+void visit_members(Is<Transform> auto& m, auto&& visit) {
+  visit(m.translation, m.rotation);
+}
+
+/// The pose of child_frame_id in header.frame_id.
+struct TransformStamped {
+  Header header;
+  std::string child_frame_id;
+  Transform transform;
+};
+void visit_members(Is<TransformStamped> auto& m, auto&& visit) {
+  visit(m.header, m.child_frame_id, m.transform);
+}
+
+struct TFMessage {
+  std::vector<TransformStamped> transforms;
+};
+void visit_members(Is<TFMessage> auto& m, auto&& visit) {
+  visit(m.transforms);
+}
+
+/// geometry_msgs/Pose; the position has the members of Vector3.
+struct PoseMessage {
+  Vector3 position;  ///< m
+  Quaternion orientation;
+};
+void visit_members(Is<PoseMessage> auto& m, auto&& visit) {
+  visit(m.position, m.orientation);
+}
+
+struct PoseStamped {
+  Header header;
+  PoseMessage pose;
+};
+void visit_members(Is<PoseStamped> auto& m, auto&& visit) {
+  visit(m.header, m.pose);
+}
+
+struct Clock {
+  Time clock;
+};
+void visit_members(Is<Clock> auto& m, auto&& visit) {
+  visit(m.clock);
+}
+
+/// geometry_msgs/PoseWithCovariance and TwistWithCovariance in place.
+struct Odometry {
+  Header header;
+  std::string child_frame_id;
+  PoseMessage pose;  ///< of child_frame_id in header.frame_id
+  std::array<double, 36> pose_covariance{};
+  Vector3 linear_velocity;   ///< m/s, in child_frame_id
+  Vector3 angular_velocity;  ///< rad/s, in child_frame_id
+  std::array<double, 36> twist_covariance{};
+};
+void visit_members(Is<Odometry> auto& m, auto&& visit) {
+  visit(m.header, m.child_frame_id, m.pose, m.pose_covariance, m.linear_velocity,
+        m.angular_velocity, m.twist_covariance);
+}
+
+struct CustomPoint {
+  std::uint32_t offset_time = 0;  ///< ns since CustomMsg::timebase
+  float x = 0.0F;                 ///< m
+  float y = 0.0F;                 ///< m
+  float z = 0.0F;                 ///< m
+  std::uint8_t reflectivity = 0;
+  std::uint8_t tag = 0;
+  std::uint8_t line = 0;
+};
+void visit_members(Is<CustomPoint> auto& m, auto&& visit) {
+  visit(m.offset_time, m.x, m.y, m.z, m.reflectivity, m.tag, m.line);
+}
+
+/// livox_ros_driver2/CustomMsg.
+struct CustomMsg {
+  Header header;
+  std::uint64_t timebase = 0;  ///< ns, time of the first point
+  std::uint32_t point_num = 0;
+  std::uint8_t lidar_id = 0;
+  std::array<std::uint8_t, 3> rsvd{};
+  std::vector<CustomPoint> points;
+};
+void visit_members(Is<CustomMsg> auto& m, auto&& visit) {
+  visit(m.header, m.timebase, m.point_num, m.lidar_id, m.rsvd, m.points);
+}
+
+struct VelodynePacket {
+  Time stamp;
+  std::array<std::uint8_t, 1206> data{};
+};
+void visit_members(Is<VelodynePacket> auto& m, auto&& visit) {
+  visit(m.stamp, m.data);
+}
+
+struct VelodyneScan {
+  Header header;
+  std::vector<VelodynePacket> packets;
+};
+void visit_members(Is<VelodyneScan> auto& m, auto&& visit) {
+  visit(m.header, m.packets);
+}
+
+}  // namespace glidar::ros

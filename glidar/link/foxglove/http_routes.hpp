@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/link/foxglove/access_rules.hpp>
+#include <glidar/link/foxglove/page_messages.hpp>
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace glidar::foxglove {
+
+/// The parts of an HTTP request that decide the answer.
+struct HttpRequest {
+  std::string_view method;
+  std::string_view target;
+  std::string_view host;
+  std::string_view origin = {};
+  std::string_view content_type = {};
+  std::string_view body = {};
+};
+
+struct HttpReply {
+  int status = 200;
+  std::string content_type;
+  std::string body;
+};
+
+/// What the page can request of the caller.
+struct PageServices {
+  bool has_playback = false;
+  bool has_picks = false;
+};
+
+/// A reply, or a request that the caller answers.
+using HttpAction = std::variant<HttpReply, PlaybackCommand, Pick>;
+
+/// GET of the page's files; POST of /api/playback and /api/pick, which only the page itself may
+/// use.
+HttpAction route(const HttpRequest& request, const AccessRules& rules,
+                 const PageServices& services);
+
+/// Sent with every reply: scripts, styles and connections only from and to this server.
+inline constexpr std::string_view kContentSecurityPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    "img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+}  // namespace glidar::foxglove

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/foxglove/messages.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/link/foxglove/json_members.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <limits>
+
+namespace glidar::foxglove {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<std::string_view, 2> kSubprotocols = {"foxglove.sdk.v1",
+                                                           "foxglove.websocket.v1"};
+
+bool is_offered(std::string_view offered, std::string_view name) {
+  while (!offered.empty()) {
+    const std::size_t comma = std::min(offered.find(','), offered.size());
+    std::string_view word = offered.substr(0, comma);
+    while (word.starts_with(' ') || word.starts_with('\t')) word.remove_prefix(1);
+    while (word.ends_with(' ') || word.ends_with('\t')) word.remove_suffix(1);
+    if (word == name) return true;
+    offered.remove_prefix(std::min(comma + 1, offered.size()));
+  }
+  return false;
+}
+
+const Json& list_member(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end() || !found->is_array()) {
+    throw Error({.where = std::string("client message, ") + name,
+                 .found = "no list",
+                 .allowed = "a list of subscriptions"});
+  }
+  if (found->size() > kMaxSubscriptions) {
+    throw Error({.where = std::string("client message, ") + name,
+                 .found = std::to_string(found->size()) + " entries",
+                 .allowed = "at most " + std::to_string(kMaxSubscriptions)});
+  }
+  return *found;
+}
+
+std::uint32_t id_of(const Json& value, const char* name) {
+  return static_cast<std::uint32_t>(
+      whole_number(value, name, std::numeric_limits<std::uint32_t>::max()));
+}
+
+Subscribe decode_subscribe(const Json& object) {
+  Subscribe result;
+  for (const Json& entry : list_member(object, "subscriptions")) {
+    result.subscriptions.push_back(
+        {id_of(member(entry, "id"), "id"), id_of(member(entry, "channelId"), "channelId")});
+  }
+  return result;
+}
+
+Unsubscribe decode_unsubscribe(const Json& object) {
+  Unsubscribe result;
+  for (const Json& entry : list_member(object, "subscriptionIds")) {
+    result.subscriptions.push_back(id_of(entry, "subscriptionIds"));
+  }
+  return result;
+}
+
+template <std::size_t Size>
+void put(std::array<std::byte, Size>& bytes, std::size_t at, std::uint64_t value,
+         std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) bytes[at + i] = static_cast<std::byte>(value >> (8 * i));
+}
+
+}  // namespace
+
+std::string_view choose_subprotocol(std::string_view offered) {
+  for (const std::string_view name : kSubprotocols) {
+    if (is_offered(offered, name)) return name;
+  }
+  return {};
+}
+
+std::string server_info_text(const ServerInfo& info) {
+  return compact_text({{"op", "serverInfo"},
+                       {"name", info.name},
+                       {"capabilities", {"time"}},
+                       {"supportedEncodings", {"cdr"}},
+                       {"metadata", info.metadata},
+                       {"sessionId", info.session_id}});
+}
+
+std::string advertise_text(std::span<const Channel> channels) {
+  Json list = Json::array();
+  for (const Channel& channel : channels) {
+    list.push_back({{"id", channel.id},
+                    {"topic", channel.topic},
+                    {"encoding", channel.encoding},
+                    {"schemaName", channel.schema_name},
+                    {"schema", channel.schema},
+                    {"schemaEncoding", channel.schema_encoding}});
+  }
+  return compact_text({{"op", "advertise"}, {"channels", std::move(list)}});
+}
+
+std::string status_text(StatusLevel level, const std::string& message) {
+  return compact_text({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+}
+
+ClientMessage decode_client_message(std::string_view text) {
+  const Json object = parse_object(text, "client message");
+  const std::string operation = text_member(object, "op", 64);
+  if (operation == "subscribe") return decode_subscribe(object);
+  if (operation == "unsubscribe") return decode_unsubscribe(object);
+  return Unsupported{operation};
+}
+
+std::array<std::byte, 13> message_head(SubscriptionId subscription, std::uint64_t time_ns) {
+  std::array<std::byte, 13> bytes{std::byte{1}};
+  put(bytes, 1, subscription, 4);
+  put(bytes, 5, time_ns, 8);
+  return bytes;
+}
+
+std::array<std::byte, 9> time_message(std::uint64_t time_ns) {
+  std::array<std::byte, 9> bytes{std::byte{2}};
+  put(bytes, 1, time_ns, 8);
+  return bytes;
+}
+
+}  // namespace glidar::foxglove

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+/// The Foxglove WebSocket protocol, version 1: JSON texts and little-endian binary messages, which
+/// Foxglove and Lichtblick understand. Source: the specification in the repository
+/// foxglove/ws-protocol on GitHub, and the npm package @foxglove/ws-protocol 0.8.0.
+namespace glidar::foxglove {
+
+using ChannelId = std::uint32_t;
+using SubscriptionId = std::uint32_t;
+
+/// The subprotocol to answer: the first supported one in a Sec-WebSocket-Protocol header; empty if
+/// there is none.
+std::string_view choose_subprotocol(std::string_view offered);
+
+/// A topic and the description of its messages.
+struct Channel {
+  ChannelId id = 0;
+  std::string topic;
+  std::string encoding;         ///< of messages, e.g. "cdr"
+  std::string schema_name;      ///< e.g. "sensor_msgs/msg/PointCloud2"
+  std::string schema;           ///< text of the definition
+  std::string schema_encoding;  ///< e.g. "ros2msg"
+};
+
+/// The first message to a client.
+struct ServerInfo {
+  std::string name;
+  std::string session_id;  ///< differs after a restart
+  std::map<std::string, std::string> metadata = {};
+};
+
+std::string server_info_text(const ServerInfo& info);
+std::string advertise_text(std::span<const Channel> channels);
+
+enum class StatusLevel : std::uint8_t { info = 0, warning = 1, error = 2 };
+/// A message that the client shows to its user.
+std::string status_text(StatusLevel level, const std::string& message);
+
+struct Subscription {
+  SubscriptionId id = 0;  ///< chosen by the client
+  ChannelId channel = 0;
+
+  bool operator==(const Subscription&) const = default;
+};
+
+struct Subscribe {
+  std::vector<Subscription> subscriptions;
+};
+
+struct Unsubscribe {
+  std::vector<SubscriptionId> subscriptions;
+};
+
+/// A valid message of an optional part of the protocol that this server does not offer.
+struct Unsupported {
+  std::string operation;
+};
+
+using ClientMessage = std::variant<Subscribe, Unsubscribe, Unsupported>;
+
+inline constexpr std::size_t kMaxSubscriptions = 1024;  ///< of one client
+
+/// Throws Error unless the text is a JSON object with valid members.
+ClientMessage decode_client_message(std::string_view text);
+
+/// The bytes before the payload of a message: opcode 1, subscription, time in ns.
+std::array<std::byte, 13> message_head(SubscriptionId subscription, std::uint64_t time_ns);
+
+/// The time of the server: opcode 2, time in ns.
+std::array<std::byte, 9> time_message(std::uint64_t time_ns);
+
+}  // namespace glidar::foxglove

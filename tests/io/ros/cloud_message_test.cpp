@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/ros/cloud_message.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/ros/cloud_from_message.hpp>
+#include <glidar/io/ros/codec.hpp>
+#include <glidar/io/ros/firing_order.hpp>
+
+#include <io/cloud_fixture.hpp>
+#include <support/error_text.hpp>
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace glidar::ros {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// 4 rows of 5 beams; the columns fire from right to left, the first 100 ns after the frame's
+/// start.
+CloudFixture scan_fixture() {
+  CloudFixture made = make_fixture();
+  fixture::add_scan_columns(made.cloud);
+  made.frame.stamp_ns = 1'000'000'000;
+  made.beams.rows = made.rows;
+  made.beams.cols = made.cols;
+  const std::size_t count = made.cloud.size();
+  made.beams.directions.assign(count, Eigen::Vector3d::UnitX());
+  std::vector<std::uint32_t> times(count);
+  for (std::size_t i = 0; i < count; ++i)
+    times[i] = 100 + 1000 * (made.cols - 1 - static_cast<std::uint32_t>(i % made.cols));
+  made.beams.times_ns = times;
+  for (Column& column : made.cloud.columns) {
+    if (column.name == "time") column.values = times;
+  }
+  return made;
+}
+
+CloudSource source_of(const CloudFixture& made) {
+  return {made.frame, made.sensor, made.beams};
+}
+
+template <class T>
+std::vector<T> values(const PointCloud& cloud, const char* name) {
+  return std::get<std::vector<T>>(find_column(cloud, name)->values);
+}
+
+PointCloud sent(const PointCloud2& message) {
+  return to_point_cloud(deserialize<PointCloud2>(serialize(message, Wire::cdr), Wire::cdr));
+}
+
+TEST(CloudMessage, IsDenseAndInFiringOrderWithTheStampOfTheFirstFiring) {
+  const CloudFixture made = scan_fixture();
+  const PointCloud2 message = to_point_cloud2(made.cloud, source_of(made), {.layout = "ouster"});
+  EXPECT_EQ(to_ns(message.header.stamp), 1'000'000'100);
+  EXPECT_EQ(message.header.frame_id, "map");
+  EXPECT_TRUE(message.is_dense);
+  EXPECT_EQ(message.height, 1U);
+  EXPECT_EQ(message.width, 14U);  // every third of 20 misses
+  const PointCloud cloud = sent(message);
+  const auto times = values<std::uint32_t>(cloud, "t");
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+  EXPECT_EQ(times.front(), 0U);
+  EXPECT_EQ(times.back(), 4000U);
+  // Hits of the last column: beams 4, 9 and 19, in the order of their rows
+  const auto rings = values<std::uint16_t>(cloud, "ring");
+  EXPECT_THAT(std::vector(rings.begin(), rings.begin() + 3), ElementsAre(4000, 9000, 19000));
+}
+
+TEST(CloudMessage, KeepsRowsAndColumnsOnRequest) {
+  const CloudFixture made = scan_fixture();
+  const PointCloud2 message = to_point_cloud2(
+      made.cloud, source_of(made),
+      {.layout = "velodyne", .dense = false, .firing_order = false, .frame_id = "lidar"});
+  EXPECT_EQ(message.height, 4U);
+  EXPECT_EQ(message.width, 5U);
+  EXPECT_FALSE(message.is_dense);
+  EXPECT_EQ(message.header.frame_id, "lidar");
+  const PointCloud cloud = sent(message);
+  EXPECT_TRUE(std::isnan(values<double>(cloud, "xyz")[6]));
+  EXPECT_EQ(values<std::uint16_t>(cloud, "ring")[19], 19000);
+}
+
+TEST(CloudMessage, LayoutsHaveTheOffsetsOfTheirDrivers) {
+  const CloudFixture made = scan_fixture();
+  const auto offsets = [&](const char* layout, std::uint32_t step) {
+    const PointCloud2 message = to_point_cloud2(made.cloud, source_of(made), {.layout = layout});
+    EXPECT_EQ(message.point_step, step) << layout;
+    std::vector<std::uint32_t> found;
+    for (const PointField& field : message.fields) found.push_back(field.offset);
+    return found;
+  };
+  EXPECT_THAT(offsets("velodyne", 22), ElementsAre(0, 4, 8, 12, 16, 18));
+  EXPECT_THAT(offsets("livox", 26), ElementsAre(0, 4, 8, 12, 16, 17, 18));
+  EXPECT_THAT(offsets("autoware", 32), ElementsAre(0, 4, 8, 12, 13, 14, 16, 20, 24, 28));
+  EXPECT_THAT(offsets("hesai", 26), ElementsAre(0, 4, 8, 12, 16, 18));
+  EXPECT_THAT(offsets("robosense", 26), ElementsAre(0, 4, 8, 12, 16, 18));
+  EXPECT_THAT(offsets("ouster-2022", 29), ElementsAre(0, 4, 8, 12, 16, 20, 22, 23, 25));
+  EXPECT_THAT(offsets("livox-custom", 19), ElementsAre(0, 4, 8, 12, 16, 17, 18));
+}
+
+TEST(CloudMessage, WithoutALayoutHasAllColumns) {
+  const CloudFixture made = scan_fixture();
+  const PointCloud cloud = sent(to_point_cloud2(made.cloud, source_of(made)));
+  EXPECT_EQ(cloud.size(), 14U);
+  EXPECT_FLOAT_EQ(static_cast<float>(values<double>(cloud, "depth")[0]), 1.0F + 4.0F / 3.0F);
+  EXPECT_EQ(values<double>(cloud, "stamp")[0], 1700000000123456789.0 + 4 * 55296);
+  EXPECT_EQ(values<std::uint32_t>(cloud, "time")[0], 0U);
+  EXPECT_NE(find_column(cloud, "rgb"), nullptr);
+  EXPECT_NE(find_column(cloud, "normal_x"), nullptr);
+}
+
+TEST(CloudMessage, CustomMsgHasTimesFromItsTimebase) {
+  const CloudFixture made = scan_fixture();
+  const CustomMsg message = to_custom_msg(made.cloud, source_of(made));
+  EXPECT_EQ(message.timebase, 1'000'000'100U);
+  EXPECT_EQ(message.point_num, 14U);
+  ASSERT_EQ(message.points.size(), 14U);
+  EXPECT_EQ(message.points.front().offset_time, 0U);
+  EXPECT_EQ(message.points.back().offset_time, 4000U);
+  EXPECT_EQ(message.points.front().line, 255);  // ring 4000
+  const PointCloud cloud = to_point_cloud(message);
+  EXPECT_EQ(values<std::uint32_t>(cloud, "offset_time").back(), 4000U);
+}
+
+TEST(CloudMessage, CloudsWithoutTimesCannotBeSorted) {
+  CloudFixture made = scan_fixture();
+  PointCloud dense;
+  drop_column(made.cloud, "time");
+  remove_invalid_points(made.cloud, dense);
+  EXPECT_THAT(error_text([&] { to_point_cloud2(dense, source_of(made)); }),
+              HasSubstr("the cloud has no column time"));
+}
+
+TEST(FiringOrder, SortsStablyByAllBitsOfTheTime) {
+  const std::vector<std::uint32_t> times = {4'000'000'000, 5, 2048, 5, 0, 4'194'304, 2047};
+  std::vector<std::uint32_t> points(times.size());
+  std::iota(points.begin(), points.end(), 0U);
+  sort_by_time(times, points);
+  EXPECT_THAT(points, ElementsAre(4, 1, 3, 6, 2, 5, 0));
+}
+
+/// Fields of all types at odd offsets, with padding behind points and rows.
+PointCloud2 mixed_message(bool is_bigendian) {
+  PointCloud2 m;
+  m.height = 2;
+  m.width = 2;
+  m.fields = {{"z", 1, PointField::float64, 1},  {"x", 9, PointField::float32, 1},
+              {"y", 13, PointField::float32, 1}, {"a", 17, PointField::int8, 1},
+              {"b", 18, PointField::int16, 2},   {"c", 22, PointField::int32, 1}};
+  m.point_step = 30;
+  m.row_step = 64;
+  m.is_bigendian = is_bigendian;
+  std::vector<std::byte> data(2 * 64);
+  const auto put = [&](std::size_t at, auto value) {
+    std::array<std::byte, sizeof value> bytes;
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (is_bigendian) std::reverse(bytes.begin(), bytes.end());
+    std::copy(bytes.begin(), bytes.end(), data.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t at = i / 2 * 64 + i % 2 * 30;
+    put(at + 1, 3.25 + static_cast<double>(i));
+    put(at + 9, 1.5F);
+    put(at + 13, 2.5F);
+    put(at + 17, std::int8_t{-1});
+    put(at + 18, std::int16_t{-300});
+    put(at + 20, std::int16_t{300});
+    put(at + 22, std::int32_t{-70000});
+  }
+  m.data = Payload(std::move(data));
+  return m;
+}
+
+TEST(CloudFromMessage, ReadsAllTypesOffsetsStepsAndByteOrders) {
+  for (const bool is_bigendian : {false, true}) {
+    const PointCloud cloud = to_point_cloud(mixed_message(is_bigendian));
+    EXPECT_EQ(cloud.rows, 2U);
+    EXPECT_THAT(values<double>(cloud, "xyz"),
+                ElementsAre(1.5, 2.5, 3.25, 1.5, 2.5, 4.25, 1.5, 2.5, 5.25, 1.5, 2.5, 6.25));
+    EXPECT_THAT(values<std::int64_t>(cloud, "a"), ElementsAre(-1, -1, -1, -1));
+    EXPECT_THAT(values<std::int64_t>(cloud, "b"),
+                ElementsAre(-300, 300, -300, 300, -300, 300, -300, 300));
+    EXPECT_THAT(find_column(cloud, "b")->components, ElementsAre("b_0", "b_1"));
+    EXPECT_EQ(values<std::int64_t>(cloud, "c")[3], -70000);
+  }
+}
+
+TEST(CloudFromMessage, ContradictingSizesAreErrors) {
+  const auto refused = [](const auto& change) {
+    PointCloud2 message = mixed_message(false);
+    change(message);
+    return error_text([&] { to_point_cloud(message); });
+  };
+  EXPECT_THAT(refused([](PointCloud2& m) { m.height = 3; }), HasSubstr("bytes of points"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.height = m.width = m.row_step = 0xFFFFFFFF; }),
+              HasSubstr("PointCloud2"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.point_step = 0; }), HasSubstr("rows that hold"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.row_step = 1; }), HasSubstr("rows that hold"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].offset = 27; }),
+              HasSubstr("fields within the 30 bytes"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].offset = 21; }), HasSubstr("overlap"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].count = 0xFFFFFFFF; }),
+              HasSubstr("fields within"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].datatype = 9; }), HasSubstr("types 1 to 8"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].name = "a"; }), HasSubstr("two fields 'a'"));
+  EXPECT_THAT(refused([](PointCloud2& m) { m.fields[0].name = "w"; }), HasSubstr("no x, y and z"));
+  EXPECT_THAT(refused([](PointCloud2& m) {
+                m.fields[3].name = "x";
+                m.fields[1].name = "w";
+              }),
+              HasSubstr("float32 or float64"));
+}
+
+}  // namespace
+}  // namespace glidar::ros
