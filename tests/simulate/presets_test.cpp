@@ -96,6 +96,10 @@ struct SheetPair {
   double range50_m;
 };
 
+void PrintTo(const SheetPair& pair, std::ostream* out) {
+  *out << pair.sensor << ", reflectance " << pair.reflectance;
+}
+
 class PresetRange : public ::testing::TestWithParam<SheetPair> {};
 
 TEST_P(PresetRange, IsThatOfTheDataSheetWithinOneMetre) {
@@ -140,6 +144,11 @@ struct Spread {
   double least_m;
   double most_m;
 };
+
+/// The name of a case; without it, GoogleTest prints its bytes, an address among them.
+void PrintTo(const Spread& spread, std::ostream* out) {
+  *out << spread.sensor << " at " << spread.range_m << " m, reflectance " << spread.reflectance;
+}
 
 class PresetSpread : public ::testing::TestWithParam<Spread> {};
 

@@ -148,9 +148,9 @@ std::vector<TimedPose> read_bag_poses(const std::filesystem::path& path,
   BagMessage message;
   while (bag->next(message)) add_message(type, message.data, stored.wire, collector);
   std::vector<TimedPose> poses = collector.chosen();
-  const auto time_of = [](const TimedPose& pose) { return pose.t_ns; };
-  std::ranges::stable_sort(poses, {}, time_of);
-  poses.erase(std::ranges::unique(poses, {}, time_of).begin(), poses.end());
+  std::ranges::stable_sort(poses, {}, [](const TimedPose& pose) { return pose.t_ns; });
+  const auto same_time = [](const TimedPose& a, const TimedPose& b) { return a.t_ns == b.t_ns; };
+  poses.erase(std::unique(poses.begin(), poses.end(), same_time), poses.end());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto error = find_error(i == 0 ? nullptr : &poses[i - 1], poses[i]);
     if (error)

@@ -102,6 +102,19 @@ std::vector<LayoutField> absolute_time_fields() {
           {"ring", U16{}, "ring", 0, same}, {"timestamp", F64{}, "stamp", 0, seconds}};
 }
 
+/// The fields of both drivers of Ouster; `unused` is always zero.
+std::vector<LayoutField> ouster_fields(const LayoutField& ring, const std::string& unused) {
+  return {{"x", F32{}, "xyz", 0, same},
+          {"y", F32{}, "xyz", 1, same},
+          {"z", F32{}, "xyz", 2, same},
+          {"intensity", F32{}, "intensity", 0, same},
+          {"t", U32{}, "time", 0, same},
+          {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
+          ring,
+          {unused, U16{}, "", 0, nullptr},
+          {"range", U32{}, "range", 0, millimetres}};
+}
+
 /// The sources of each layout are in docs/files/layouts.md.
 const std::vector<Layout>& layouts() {
   static const std::vector<Layout> kLayouts = {
@@ -118,28 +131,9 @@ const std::vector<Layout>& layouts() {
         {"intensity", F32{}, kReflectivity, 0, percent_byte},
         {"ring", U16{}, "ring", 0, same},
         {"time", F32{}, "time", 0, seconds}}},
-      {"ouster",
-       "ouster-ros",
-       {{"x", F32{}, "xyz", 0, same},
-        {"y", F32{}, "xyz", 1, same},
-        {"z", F32{}, "xyz", 2, same},
-        {"intensity", F32{}, "intensity", 0, same},
-        {"t", U32{}, "time", 0, same},
-        {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
-        {"ring", U16{}, "ring", 0, same},
-        {"ambient", U16{}, "", 0, nullptr},
-        {"range", U32{}, "range", 0, millimetres}}},
-      {"ouster-2022",
-       "ouster_example before 2023, LIO-SAM",
-       {{"x", F32{}, "xyz", 0, same},
-        {"y", F32{}, "xyz", 1, same},
-        {"z", F32{}, "xyz", 2, same},
-        {"intensity", F32{}, "intensity", 0, same},
-        {"t", U32{}, "time", 0, same},
-        {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
-        {"ring", U8{}, "ring", 0, same},
-        {"noise", U16{}, "", 0, nullptr},
-        {"range", U32{}, "range", 0, millimetres}}},
+      {"ouster", "ouster-ros", ouster_fields({"ring", U16{}, "ring", 0, same}, "ambient")},
+      {"ouster-2022", "ouster_example before 2023, LIO-SAM",
+       ouster_fields({"ring", U8{}, "ring", 0, same}, "noise")},
       {"livox",
        "livox_ros_driver2",
        {{"x", F32{}, "xyz", 0, same},

@@ -6,6 +6,7 @@
 #include <glidar/io/packets/packet_bytes.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace glidar {
@@ -34,7 +35,7 @@ std::int64_t stamp_of(std::uint64_t ticks, std::uint64_t ticks_per_s) {
   if (seconds > kMaxSeconds) return INT64_MAX;
   const double rest = static_cast<double>(ticks % ticks_per_s) / static_cast<double>(ticks_per_s);
   return static_cast<std::int64_t>(seconds * kNanoseconds) +
-         static_cast<std::int64_t>(rest * static_cast<double>(kNanoseconds) + 0.5);
+         std::llround(rest * static_cast<double>(kNanoseconds));
 }
 
 }  // namespace

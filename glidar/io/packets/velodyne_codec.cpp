@@ -38,6 +38,17 @@ void put(const PacketReturn& found, const VelodyneSlot& slot, double unit_m,
   block.reflectivity[slot.point] = block.distance[slot.point] > 0 ? found.reflectivity : 0;
 }
 
+/// Both returns of a laser, in two blocks with the azimuth of the first.
+void put_both(const VelodyneLayout& layout, std::size_t sequence, std::size_t laser,
+              const LastAndStrongest& found, VelodynePacket& packet) {
+  const VelodyneSlot slot = velodyne_slot(layout, sequence, laser, false);
+  const VelodyneSlot other = velodyne_slot(layout, sequence, laser, true);
+  packet.blocks[other.block].azimuth = packet.blocks[slot.block].azimuth;
+  packet.blocks[other.block].flag = packet.blocks[slot.block].flag;
+  put(found.strongest, slot, layout.model.unit_m, packet);
+  put(found.last, other, layout.model.unit_m, packet);
+}
+
 VelodynePacket make_packet(const VelodyneLayout& layout, std::span<const FiringSequence> firings) {
   VelodynePacket packet;
   const std::size_t lasers = layout.model.lasers;
@@ -47,16 +58,10 @@ VelodynePacket make_packet(const VelodyneLayout& layout, std::span<const FiringS
       VelodynePacket::Block& block = packet.blocks[slot.block];
       if (slot.point == 0) block.azimuth = azimuth_cdeg(firings[s].azimuth_rad);
       block.flag = kBankFlags[velodyne_bank(layout, slot.block)];
-      if (!layout.is_dual()) {
+      if (layout.is_dual())
+        put_both(layout, s, laser, last_and_strongest(firings[s], lasers, laser), packet);
+      else
         put(firings[s].returns[laser], slot, layout.model.unit_m, packet);
-        continue;
-      }
-      const VelodyneSlot other = velodyne_slot(layout, s, laser, true);
-      packet.blocks[other.block].azimuth = block.azimuth;
-      packet.blocks[other.block].flag = block.flag;
-      const LastAndStrongest found = last_and_strongest(firings[s], lasers, laser);
-      put(found.strongest, slot, layout.model.unit_m, packet);
-      put(found.last, other, layout.model.unit_m, packet);
     }
   }
   packet.hour_us = hour_us(firings.front().stamp_ns + std::llround(layout.model.stamp_offset_ns));

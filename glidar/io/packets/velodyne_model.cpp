@@ -21,7 +21,8 @@ double vlp16_time_ns(std::size_t laser, bool /*is_dual*/) {
 
 // VLP-32C User Manual 63-9325: two lasers at once.
 double vlp32_time_ns(std::size_t laser, bool /*is_dual*/) {
-  return 2304.0 * static_cast<double>(laser / 2);
+  const std::size_t pair = laser / 2;
+  return 2304.0 * static_cast<double>(pair);
 }
 
 // HDL-32E Application Note 63-9277: 1.152 us from laser to laser.
@@ -33,13 +34,15 @@ double hdl32_time_ns(std::size_t laser, bool /*is_dual*/) {
 double hdl64_time_ns(std::size_t laser, bool is_dual) {
   constexpr std::array<double, 4> kSingle_ns = {0.0, 1260.0, 2460.0, 3660.0};
   constexpr std::array<double, 4> kDual_ns = {0.0, 1300.0, 2500.0, 3700.0};
-  const auto group = static_cast<double>(laser % 32 / 4);
-  return is_dual ? 7200.0 * group + kDual_ns[laser % 4] : 6000.0 * group + kSingle_ns[laser % 4];
+  const std::size_t group = laser % 32 / 4;
+  const auto groups = static_cast<double>(group);
+  return is_dual ? 7200.0 * groups + kDual_ns[laser % 4] : 6000.0 * groups + kSingle_ns[laser % 4];
 }
 
 // VLS-128 User Manual 63-9483, 9.3.1: eight lasers at once, an empty slot after the eighth group.
 double vls128_time_ns(std::size_t laser, bool /*is_dual*/) {
-  return 2665.0 * static_cast<double>(laser / 8 + laser / 64);
+  const std::size_t slot = laser / 8 + laser / 64;
+  return 2665.0 * static_cast<double>(slot);
 }
 
 // Factory bytes: VLP-16 User Manual 63-9243, 9.3.1.7, and those of the other models. HDL-64E: its

@@ -106,6 +106,7 @@ void copy_numbers(const FieldView& view, Number* to, std::size_t stride) {
     for (std::uint32_t col = 0; col < message.width; ++col) {
       for (std::size_t i = 0; i < view.count; ++i)
         to[i] = static_cast<Number>(
+            // int8 holds numbers here, not characters. NOLINTNEXTLINE(bugprone-signed-char-misuse)
             load_number<Stored>(from + i * sizeof(Stored), message.is_bigendian));
       from += message.point_step;
       to += stride;
