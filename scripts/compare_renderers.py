@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks that the renderers are bit-identical on all models below folders.
 
-usage: PYTHONPATH=build/dev/python build/venv/bin/python scripts/compare_renderers.py [OPTION...] FOLDER...
+usage: PYTHONPATH=build/dev/python build/venv/bin/python scripts/compare_renderers.py FOLDER... [OPTION...]
 
 Each model is seen from around it, from places in its box and from some of its vertices: by a pinhole camera, or by
 the presets of --sensors (cameras with lenses, scanners). Footprints and noise are included unless `raster` is among

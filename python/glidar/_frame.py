@@ -231,7 +231,7 @@ class Frame(Immutable):
         view_target: npt.ArrayLike | None = None,
     ) -> None:
         """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv
-        .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .png .bev.png
+        .las .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .png .bev.png
         .view.png .transform.
 
         Args:

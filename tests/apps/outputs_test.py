@@ -54,6 +54,15 @@ class Rigs(CliTest):
         self.assertEqual(done.stdout.count("\n"), 40 * 30 + 1)
 
 
+class LasFiles(CliTest):
+    def test_they_have_the_columns_that_the_format_needs_beside_the_requested_ones(self):
+        self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "3,0,0", "-o", "a.las", "-o", "a.csv",
+                     "--columns", "xyz,ring")  # fmt: skip
+        columns = {column["name"] for column in json.loads(self.bytes_of("a.las.json"))["cloud"]["columns"]}
+        self.assertEqual(columns, {"xyz", "ring", "range", "row", "col"})
+        self.assertEqual(self.bytes_of("a.csv").splitlines()[0], b"x,y,z,ring")
+
+
 class Folders(CliTest):
     def test_every_frame_of_a_folder_has_its_own_information(self):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--duration", "0.2",

@@ -129,7 +129,7 @@ class Refusals(CliTest):
             self.assertIn("both are given; give one of them", error)
         error = self.refused("render", "nofile.ply", "-o", "x.png", "-o", "x.bin", "--layout", "ouster")
         self.assertIn("no output takes a layout", error)
-        self.assertIn(".pcd .ply .npz .csv", error)
+        self.assertIn(".pcd .ply .npz .csv .las", error)
 
     def test_options_are_checked_before_anything_is_loaded(self):
         for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: auto, rays"),

@@ -74,7 +74,7 @@ std::vector<std::string> columns_of(const FileFormat& format,
                                     const std::vector<std::string>& requested) {
   if (!format.takes_more) return needed_columns(format);
   std::vector<std::string> columns = requested;
-  for (const std::string& name : format.columns) add_missing(name, columns);
+  for (const std::string& name : needed_columns(format)) add_missing(name, columns);
   return columns;
 }
 

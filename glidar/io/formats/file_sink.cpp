@@ -156,6 +156,7 @@ class FormatSink : public FileSink {
 
   void stage_points(const PointCloud& cloud, const Frame& frame) {
     const bool drops_invalid = format_.content == Content::kitti ||
+                               format_.content == Content::hits ||
                                (format_.content == Content::points && options_.drop_invalid);
     if (drops_invalid) remove_invalid_points(cloud, hits_);
     const PointCloud& points = drops_invalid ? hits_ : cloud;
@@ -167,7 +168,8 @@ class FormatSink : public FileSink {
   }
 
   void deliver(const PointCloud& cloud, const Frame& frame) {
-    if (options_.layout.empty() || !format_.info.takes_more) {
+    // formats of hits have point records of their own
+    if (options_.layout.empty() || !format_.info.takes_more || format_.content != Content::points) {
       const std::vector<PointField> fields = fields_of(cloud);
       store({cloud, frame, options_, context_, fields, {}, format_.pixels});
       warn_rounding(

@@ -93,7 +93,7 @@ const FileFormat& format_for(const std::filesystem::path& path);
 /// The suffixes of all formats, with spaces between.
 std::string all_suffixes();
 
-/// The suffixes of formats that store any column: ".pcd .ply .npz .csv".
+/// The suffixes of formats that store any column: ".pcd .ply .npz .csv .las".
 std::string suffixes_with_columns();
 
 /// All columns that a format may read.

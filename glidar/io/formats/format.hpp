@@ -16,7 +16,8 @@ namespace glidar {
 /// Whether misses are stored, and whether the file has a sidecar.
 enum class Content : std::uint8_t {
   points,    ///< a cloud: organised, or without misses by option
-  kitti,     ///< a cloud: always without misses, with KITTI's intensity
+  hits,      ///< a cloud: always without misses
+  kitti,     ///< the same with KITTI's intensity
   image,     ///< always the whole frame, with a sidecar
   per_beam,  ///< a preview or a pose: always the whole frame, no sidecar
 };

@@ -11,6 +11,7 @@
 #include <glidar/io/formats/depth_tiff_file.hpp>
 #include <glidar/io/formats/kitti_file.hpp>
 #include <glidar/io/formats/kitti_folder.hpp>
+#include <glidar/io/formats/las_file.hpp>
 #include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/formats/npz_file.hpp>
 #include <glidar/io/formats/pcd_file.hpp>
@@ -33,6 +34,7 @@ const std::vector<Format>& formats() {
       ply_format(),
       npz_format(),
       csv_format(),
+      las_format(),
       kitti_format(),
       kitti_folder_format(),
       npy_format(),

@@ -38,7 +38,8 @@ TEST(FileFormats, AnUnknownSuffixIsReportedWithAllSuffixesAndTheNearest) {
       text,
       AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
             HasSubstr(
-                ".pcd .ply .npz .csv .bin .kitti .npy .depth.png .framebuffer.png .png .transform "
+                ".pcd .ply .npz .csv .las .bin .kitti .npy .depth.png .framebuffer.png .png "
+                ".transform "
                 ".bev.png .view.png .depth.tiff .rgb.png .normal.png .instance.png .class.png")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));

@@ -1,0 +1,369 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/las_file.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/point_rows.hpp>
+
+#include <fmt/format.h>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+// Sizes and offsets: LAS Specification 1.4 R15, tables 3 (header), 15 (format 6) and 24 (extra
+// bytes). All numbers are little-endian.
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 375;
+constexpr std::size_t kExtraFieldBytes = 192;
+constexpr std::uint8_t kPointFormat = 6;
+constexpr std::size_t kMaxReturns = 15;  // 4 bits
+constexpr std::size_t kMaxNameBytes = 31;
+constexpr std::uint16_t kStandardTime = 0x01;  // bits of the global encoding
+constexpr std::uint16_t kWellKnownText = 0x10;
+
+/// Columns that have a place of their own in a point record.
+constexpr std::array<const char*, 4> kOwnPlaces = {"xyz", "intensity", "class", "stamp"};
+
+bool has_own_place(const Column& column) {
+  return std::find(kOwnPlaces.begin(), kOwnPlaces.end(), column.name) != kOwnPlaces.end();
+}
+
+/// The columns that follow as extra bytes, with their own types.
+std::vector<PointField> extra_fields(const PointCloud& cloud) {
+  std::vector<PointField> fields;
+  for (const Column& column : cloud.columns) {
+    if (!has_own_place(column)) append_fields(column, fields);
+  }
+  return fields;
+}
+
+template <class T>
+const std::vector<T>* values_of(const PointCloud& cloud, const char* name) {
+  const Column* column = find_column(cloud, name);
+  return column != nullptr ? std::get_if<std::vector<T>>(&column->values) : nullptr;
+}
+
+/// Stored coordinates: whole multiples of `scale_m` from `offset_m`, per axis.
+struct Grid {
+  double scale_m = 0.0;
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  std::array<std::vector<std::uint32_t>, 3> counts;  ///< int32 in two's complement
+  Eigen::Vector3d min_m = Eigen::Vector3d::Zero();   ///< of the stored coordinates
+  Eigen::Vector3d max_m = Eigen::Vector3d::Zero();
+};
+
+using Coordinates = Eigen::Map<const Eigen::Matrix3Xd>;
+
+/// A tenth of a millimetre, or the least power of ten with which all points fit 32 bits.
+double scale_for(double half_extent_m) {
+  constexpr double kMaxCount = std::numeric_limits<std::int32_t>::max();
+  double scale_m = kFinePosition_m;
+  while (half_extent_m / scale_m + 1.0 > kMaxCount) scale_m *= 10.0;
+  return scale_m;
+}
+
+Grid make_grid(const std::vector<double>& xyz) {
+  Grid grid;
+  grid.scale_m = kFinePosition_m;
+  if (xyz.empty()) return grid;
+  const Coordinates points(xyz.data(), 3, static_cast<Eigen::Index>(xyz.size() / 3));
+  const Eigen::Vector3d low = points.rowwise().minCoeff();
+  const Eigen::Vector3d high = points.rowwise().maxCoeff();
+  constexpr double kNear_m = 1e5;  // of the origin: no offset, so that numbers are easy to read
+  if (points.cwiseAbs().maxCoeff() > kNear_m) grid.offset_m = (0.5 * (low + high)).array().round();
+  const double extent_m =
+      std::max((high - grid.offset_m).maxCoeff(), (grid.offset_m - low).maxCoeff());
+  grid.scale_m = scale_for(extent_m);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<std::uint32_t>& counts = grid.counts[static_cast<std::size_t>(axis)];
+    const auto count_of = [&](double x_m) {
+      return static_cast<std::int32_t>(std::llround((x_m - grid.offset_m[axis]) / grid.scale_m));
+    };
+    for (const double x_m : points.row(axis))
+      counts.push_back(static_cast<std::uint32_t>(count_of(x_m)));
+    grid.min_m[axis] = count_of(low[axis]) * grid.scale_m + grid.offset_m[axis];
+    grid.max_m[axis] = count_of(high[axis]) * grid.scale_m + grid.offset_m[axis];
+  }
+  return grid;
+}
+
+/// Number of a return within its pulse, counted from 1 by range, and the number of these returns.
+struct PulseReturns {
+  std::vector<std::uint8_t> number;
+  std::vector<std::uint8_t> total;
+};
+
+/// The pulse of every point. Beams are repeated once per return, see Beams::returns.
+std::vector<std::uint64_t> pulses_of(const CloudFile& job) {
+  const auto* rows = values_of<std::uint32_t>(job.cloud, "row");
+  const auto* cols = values_of<std::uint32_t>(job.cloud, "col");
+  std::vector<std::uint64_t> pulses(job.cloud.size());
+  if (rows == nullptr || cols == nullptr) {
+    std::iota(pulses.begin(), pulses.end(), std::uint64_t{0});  // a pulse of its own for each
+    return pulses;
+  }
+  const Beams& beams = job.context.beams;
+  const std::uint64_t firings = std::max<std::uint64_t>(1, beams.firings());
+  for (std::size_t i = 0; i < pulses.size(); ++i)
+    pulses[i] = (std::uint64_t{(*rows)[i]} * beams.cols + (*cols)[i]) % firings;
+  return pulses;
+}
+
+PulseReturns returns_of(const CloudFile& job) {
+  const std::vector<std::uint64_t> pulses = pulses_of(job);
+  const auto* ranges_m = values_of<double>(job.cloud, "range");
+  std::vector<std::size_t> order(pulses.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (pulses[a] != pulses[b] || ranges_m == nullptr) return pulses[a] < pulses[b];
+    return (*ranges_m)[a] < (*ranges_m)[b];
+  });
+  PulseReturns returns{std::vector<std::uint8_t>(order.size(), 1),
+                       std::vector<std::uint8_t>(order.size(), 1)};
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t end = first + 1;
+    while (end < order.size() && pulses[order[end]] == pulses[order[first]]) ++end;
+    for (std::size_t k = first; k < end; ++k) {
+      returns.number[order[k]] = static_cast<std::uint8_t>(std::min(k - first + 1, kMaxReturns));
+      returns.total[order[k]] = static_cast<std::uint8_t>(std::min(end - first, kMaxReturns));
+    }
+    first = end;
+  }
+  return returns;
+}
+
+// Stamps from the start of GPS time on, 1980-01-06, are dates; smaller ones are times of a
+// simulation that starts at 0.
+constexpr std::int64_t kNanoseconds = 1'000'000'000;
+constexpr std::int64_t kGpsEpoch_ns = 315'964'800 * kNanoseconds;
+constexpr std::int64_t kLeapSeconds = 18;  // GPS time minus UTC since 2017-01-01
+
+bool is_date(std::int64_t stamp_ns) {
+  return stamp_ns >= kGpsEpoch_ns;
+}
+
+/// Adjusted standard GPS time (less 1e9 s) of a date; else the seconds of the simulation.
+double gps_time_s(std::int64_t stamp_ns, bool dates) {
+  const std::int64_t shift_ns =
+      dates ? (kLeapSeconds - 1'000'000'000) * kNanoseconds - kGpsEpoch_ns : 0;
+  return static_cast<double>(stamp_ns + shift_ns) * 1e-9;
+}
+
+std::vector<double> gps_times(const CloudFile& job) {
+  std::vector<double> times(job.cloud.size(),
+                            gps_time_s(job.frame.stamp_ns, is_date(job.frame.stamp_ns)));
+  if (const auto* stamps = values_of<std::int64_t>(job.cloud, "stamp")) {
+    std::transform(stamps->begin(), stamps->end(), times.begin(), [&](std::int64_t stamp_ns) {
+      return gps_time_s(stamp_ns, is_date(job.frame.stamp_ns));
+    });
+  }
+  return times;
+}
+
+std::vector<std::uint16_t> las_intensities(const CloudFile& job) {
+  std::vector<std::uint16_t> stored(job.cloud.size(), 0);
+  if (find_column(job.cloud, "intensity") == nullptr) return stored;
+  const std::vector<float> unit =
+      unit_intensities(job.cloud, job.context.sensor, job.context.beams);
+  std::transform(unit.begin(), unit.end(), stored.begin(), [](float part) {
+    return static_cast<std::uint16_t>(std::lround(part * 65535.0F));
+  });
+  return stored;
+}
+
+/// Class ids; 0 where nothing is known.
+std::vector<std::uint8_t> las_classes(const CloudFile& job, const AtomicFile& file) {
+  constexpr std::uint32_t kMaxClass = std::numeric_limits<std::uint8_t>::max();
+  std::vector<std::uint8_t> stored(job.cloud.size(), 0);
+  const auto* classes = values_of<std::uint32_t>(job.cloud, "class");
+  for (std::size_t i = 0; classes != nullptr && i < stored.size(); ++i) {
+    const std::uint32_t id = (*classes)[i];
+    if (id == kInvalidId) continue;
+    if (id > kMaxClass) {
+      throw Error({file.path().string(), fmt::format("the class id {} does not fit 8 bits", id),
+                   "ids up to 255", "write .ply or .npz with the column class"});
+    }
+    stored[i] = static_cast<std::uint8_t>(id);
+  }
+  return stored;
+}
+
+/// The point records as a cloud whose columns are their fields.
+PointCloud las_records(const CloudFile& job, Grid& grid, const PulseReturns& returns,
+                       const AtomicFile& file) {
+  const std::size_t size = job.cloud.size();
+  PointCloud records{job.cloud.rows, job.cloud.cols, job.cloud.frame_id, Pose::Identity(), {}};
+  const auto add = [&](const char* name, auto values) {
+    records.columns.push_back({name, {name}, std::move(values)});
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    add(std::array{"X", "Y", "Z"}[axis], std::move(grid.counts[axis]));
+  add("intensity", las_intensities(job));
+  std::vector<std::uint8_t> bits(size);
+  for (std::size_t i = 0; i < size; ++i)
+    bits[i] = static_cast<std::uint8_t>(returns.number[i] | returns.total[i] << 4U);
+  add("returns", std::move(bits));
+  add("flags", std::vector<std::uint8_t>(size, 0));
+  add("classification", las_classes(job, file));
+  add("user_data", std::vector<std::uint8_t>(size, 0));
+  add("scan_angle", std::vector<std::uint16_t>(size, 0));
+  add("point_source", std::vector<std::uint16_t>(size, 0));
+  add("gps_time", gps_times(job));
+  return records;
+}
+
+/// Appends numbers and texts of fixed size.
+class Bytes {
+ public:
+  template <class T>
+  void put(T value) {
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof(T));
+    text_.append(bytes.data(), bytes.size());
+  }
+  void put_text(std::string_view text, std::size_t size) {
+    text_ += text.substr(0, size);
+    text_.append(size - std::min(size, text.size()), '\0');
+  }
+  void put_zeros(std::size_t count) { text_.append(count, '\0'); }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// Type numbers of the extra bytes, table 25.
+std::uint8_t extra_type(Stored stored) {
+  switch (stored) {
+    case Stored::u8:
+      return 1;
+    case Stored::u16:
+      return 3;
+    case Stored::u32:
+      return 5;
+    case Stored::i64:
+      return 8;
+    case Stored::f32:
+      return 9;
+    default:
+      return 10;
+  }
+}
+
+void put_vlr_header(Bytes& to, const char* user, std::uint16_t record, std::size_t size,
+                    const char* description) {
+  to.put(std::uint16_t{0});
+  to.put_text(user, 16);
+  to.put(record);
+  to.put(static_cast<std::uint16_t>(size));
+  to.put_text(description, 32);
+}
+
+/// The records between header and points: the coordinate system, and the list of extra fields.
+std::string variable_records(const CloudFile& job, std::span<const PointField> extra) {
+  std::string frame = one_line(job.cloud.frame_id);
+  std::erase(frame, '"');
+  const std::string system = fmt::format("LOCAL_CS[\"{}\",UNIT[\"metre\",1]]", frame);
+  Bytes to;
+  put_vlr_header(to, "LASF_Projection", 2112, system.size() + 1, "coordinate system (WKT)");
+  to.put_text(system, system.size() + 1);
+  if (extra.empty()) return to.text();
+  put_vlr_header(to, "LASF_Spec", 4, extra.size() * kExtraFieldBytes, "extra bytes");
+  for (const PointField& field : extra) {
+    to.put(std::uint16_t{0});
+    to.put(extra_type(field.stored));
+    to.put(std::uint8_t{0});
+    to.put_text(std::string_view(field.name).substr(0, kMaxNameBytes), 32);
+    to.put_zeros(kExtraFieldBytes - 36);
+  }
+  return to.text();
+}
+
+std::uint16_t global_encoding(const CloudFile& job) {
+  return kWellKnownText | (is_date(job.frame.stamp_ns) ? kStandardTime : 0);
+}
+
+/// The header, without a date, so that the same cloud has the same bytes.
+std::string las_header(const CloudFile& job, const Grid& grid, const PulseReturns& returns,
+                       std::size_t record_bytes, std::span<const PointField> extra,
+                       std::size_t vlr_bytes) {
+  Bytes to;
+  to.put_text("LASF", 4);
+  to.put(std::uint16_t{0});  // file source
+  to.put(global_encoding(job));
+  to.put_zeros(16);  // GUID
+  to.put(std::uint8_t{1});
+  to.put(std::uint8_t{4});
+  to.put_text("GLIDAR", 32);
+  to.put_text(fmt::format("glidar {}", version()), 32);
+  to.put_zeros(4);  // day and year
+  to.put(static_cast<std::uint16_t>(kHeaderBytes));
+  to.put(static_cast<std::uint32_t>(kHeaderBytes + vlr_bytes));
+  to.put(std::uint32_t{extra.empty() ? 1U : 2U});
+  to.put(kPointFormat);
+  to.put(static_cast<std::uint16_t>(record_bytes));
+  to.put_zeros(24);  // counts of earlier versions
+  for (int axis = 0; axis < 3; ++axis) to.put(grid.scale_m);
+  for (int axis = 0; axis < 3; ++axis) to.put(grid.offset_m[axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    to.put(grid.max_m[axis]);
+    to.put(grid.min_m[axis]);
+  }
+  to.put_zeros(20);  // no waveforms, no extended records
+  to.put(static_cast<std::uint64_t>(job.cloud.size()));
+  std::array<std::uint64_t, kMaxReturns> counts{};
+  for (const std::uint8_t number : returns.number) ++counts[number - 1U];
+  for (const std::uint64_t count : counts) to.put(count);
+  return to.text();
+}
+
+void write_las(const CloudFile& job, AtomicFile& file) {
+  const auto* xyz = values_of<double>(job.cloud, "xyz");
+  Grid grid = make_grid(*xyz);
+  const PulseReturns returns = returns_of(job);
+  const std::vector<PointField> extra = extra_fields(job.cloud);
+  const std::string variable = variable_records(job, extra);
+  const PointCloud records = las_records(job, grid, returns, file);
+  std::vector<PointField> fields = native_fields(records);
+  fields.insert(fields.end(), extra.begin(), extra.end());
+  file.write(las_header(job, grid, returns, row_bytes(fields), extra, variable.size()));
+  file.write(variable);
+  write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
+}
+
+/// As readers return them: coordinates, then the extra fields.
+std::vector<PointField> las_fields(const PointCloud& cloud) {
+  std::vector<PointField> fields;
+  append_fields(*find_column(cloud, "xyz"), fields);
+  const std::vector<PointField> extra = extra_fields(cloud);
+  fields.insert(fields.end(), extra.begin(), extra.end());
+  return fields;
+}
+
+}  // namespace
+
+Format las_format() {
+  return {.info = {.suffix = ".las",
+                   .description = "LAS 1.4, hits only",
+                   .columns = {"xyz", "intensity"},
+                   .takes_more = true,
+                   .optional_columns = {"range", "row", "col", "stamp", "class"}},
+          .content = Content::hits,
+          .fields = las_fields,
+          .write = write_las};
+}
+
+}  // namespace glidar
