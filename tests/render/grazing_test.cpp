@@ -35,6 +35,8 @@ TEST_P(GrazingBeams, ATriangleWithoutWidthBetweenOthersLeavesNoHoles) {
 TEST_P(GrazingBeams, RangesArePositiveCloseToASurface) {
   const Scene scene = builtin_scene("asteroid");
   const Mesh& mesh = scene.meshes[0];
+  const std::unique_ptr<Renderer> renderer = GrazingBeams::renderer(scene);
+  const Beams beams = camera_beams(16, 16, 8.0);
   Draws draws(21);
   for (int i = 0; i < 60; ++i) {
     const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(
@@ -44,8 +46,12 @@ TEST_P(GrazingBeams, RangesArePositiveCloseToASurface) {
         (mesh.positions_m[a] + mesh.positions_m[b] + mesh.positions_m[c]).cast<double>() / 3.0;
     const Eigen::Vector3d eye =
         middle + std::pow(10.0, -18.0 + 9.0 * draws.next()) * draws.direction();
-    const Hits hits = cast(scene, camera_beams(16, 16, 8.0),
-                           look_at(eye, eye + draws.direction(), Eigen::Vector3d::UnitZ()));
+    Hits hits;
+    renderer->cast(
+        {.beams = beams,
+         .world_from_sensor = look_at(eye, eye + draws.direction(), Eigen::Vector3d::UnitZ()),
+         .hit_columns = kAllHitColumns},
+        hits);
     for (const double range_m : hits.range_m) EXPECT_FALSE(range_m <= 0.0) << range_m;
   }
 }

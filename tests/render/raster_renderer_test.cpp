@@ -182,6 +182,7 @@ TEST(RasterRenderer, CreasesSmallerThanAPixelEqualBruteForce) {
   }
   const Scene scene = scene_of_mesh(std::move(positions), grid(kSide));
   const Beams beams = camera_beams(70, 70, 100.0);
+  const testing::BruteForce brute_force(scene);
   std::size_t compared = 0;
   for (const double distance : {1.0, 2.0, 4.0}) {
     const Pose pose =
@@ -190,7 +191,7 @@ TEST(RasterRenderer, CreasesSmallerThanAPixelEqualBruteForce) {
     const Hits drawn = cast_by("raster", scene, beams, pose);
     for (std::size_t i = 0; i < beams.size(); ++i) {
       const testing::Judged truth =
-          testing::judge(scene, pose.translation(), pose.linear() * beams.directions[i]);
+          brute_force.judge(pose.translation(), pose.linear() * beams.directions[i]);
       constexpr double kRounding_m = 1e-9;
       if (truth.border_m < kRounding_m) continue;
       ++compared;

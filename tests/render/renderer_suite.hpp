@@ -90,13 +90,16 @@ inline Scene builtin_scene(const char* name) {
 }
 
 /// Why OpenGL is not available; empty if it is.
-inline std::string missing_opengl() {
-  try {
-    const opengl::EglContext context({});
-    return "";
-  } catch (const Error& error) {
-    return error.what();
-  }
+inline const std::string& missing_opengl() {
+  static const std::string kReason = [] {
+    try {
+      const opengl::EglContext context({});
+      return std::string();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  }();
+  return kReason;
 }
 
 /// Skips the test on a machine without OpenGL, with the reason.

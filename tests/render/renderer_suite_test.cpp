@@ -43,12 +43,13 @@ std::size_t expect_hits_of_rule(const Scene& scene, const Beams& beams,
   const double focal_px = beams.pinhole ? beams.pinhole->fx : 1.0;
   const double farthest_m =
       (bounds(scene).center() - world_from_sensor.translation()).norm() + size;
+  const testing::BruteForce brute_force(scene);
   std::size_t compared = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const Eigen::Vector3d offset =
         beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[i];
     const Eigen::Vector3d direction = world_from_sensor.linear() * beams.directions[i];
-    const Judged truth = testing::judge(scene, world_from_sensor * offset, direction);
+    const Judged truth = brute_force.judge(world_from_sensor * offset, direction);
     const double range_m = truth.instance == kInvalidId ? farthest_m : truth.range_m;
     if (truth.border_m < std::max(kBorder * size, band_px / focal_px * range_m)) continue;
     ++compared;

@@ -70,10 +70,11 @@ class Silhouettes : public testing::RendererSuite {
   static void expect_brute_force(const Scene& scene, const Beams& beams, const Pose& pose,
                                  std::size_t least_compared) {
     const Hits hits = cast(scene, beams, pose);
+    const testing::BruteForce brute_force(scene);
     std::size_t compared = 0;
     for (std::size_t i = 0; i < beams.size(); ++i) {
       const Judged truth =
-          testing::judge(scene, pose.translation(), pose.linear() * beams.directions[i]);
+          brute_force.judge(pose.translation(), pose.linear() * beams.directions[i]);
       if (truth.border_m < room_m(scene)) continue;
       ++compared;
       ASSERT_EQ(hits.instance[i], truth.instance) << "beam " << i;

@@ -21,12 +21,12 @@ TEST_P(StretchedSuite, HitsAndNormalsAreThoseOfTheEllipsoid) {
   const Beams beams = camera_beams(48, 40, 50.0);
   const Hits hits = cast(scene, beams, Pose::Identity());
   const Pose object_from_world = scene.instances[0].world_from_object.inverse();
+  const testing::BruteForce brute_force(scene);
   std::size_t on_object = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (hits.instance[i] == kInvalidId) continue;
     ++on_object;
-    const testing::Judged truth =
-        testing::judge(scene, Eigen::Vector3d::Zero(), beams.directions[i]);
+    const testing::Judged truth = brute_force.judge(Eigen::Vector3d::Zero(), beams.directions[i]);
     constexpr double kBorder_m = 0.01;  // nearer to an edge the renderer may report the neighbour
     if (truth.border_m > kBorder_m) {
       EXPECT_EQ(hits.primitive[i], truth.primitive) << i;

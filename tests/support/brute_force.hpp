@@ -8,8 +8,10 @@
 #include <glidar/math/constants.hpp>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace glidar::testing {
 
@@ -25,45 +27,78 @@ struct Judged {
   double border_m = std::numeric_limits<double>::infinity();
 };
 
-/// Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997), both sides.
-inline Judged judge(const Scene& scene, const Eigen::Vector3d& origin,
-                    const Eigen::Vector3d& direction) {
-  Judged best;
-  double best_range = std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      Eigen::Vector3d corner[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        corner[k] =
-            instance.world_from_object * (instance.scale * vertex_m(mesh, mesh.triangles[t][k]));
-      }
-      const Eigen::Vector3d e1 = corner[1] - corner[0];
-      const Eigen::Vector3d e2 = corner[2] - corner[0];
-      const Eigen::Vector3d p = direction.cross(e2);
-      const double determinant = e1.dot(p);
+/// Tests beams with all triangles of a scene, in its frame.
+class BruteForce {
+ public:
+  explicit BruteForce(const Scene& scene) {
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) add(scene, i);
+  }
+
+  /// Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997), both sides.
+  [[nodiscard]] Judged judge(const Eigen::Vector3d& origin,
+                             const Eigen::Vector3d& direction) const {
+    Judged best;
+    double best_range = std::numeric_limits<double>::infinity();
+    for (const Facet& facet : facets_) {
+      if (facet.is_far_from(origin, direction)) continue;
+      const Eigen::Vector3d p = direction.cross(facet.e2);
+      const double determinant = facet.e1.dot(p);
       if (determinant == 0.0) continue;
-      const Eigen::Vector3d s = origin - corner[0];
+      const Eigen::Vector3d s = origin - facet.corner;
       const double u = s.dot(p) / determinant;
-      const Eigen::Vector3d q = s.cross(e1);
+      const Eigen::Vector3d q = s.cross(facet.e1);
       const double v = direction.dot(q) / determinant;
-      const double range = e2.dot(q) / determinant;
+      const double range = facet.e2.dot(q) / determinant;
       if (!(range > 0.0)) continue;
       const double twice_area_seen = std::abs(determinant);
-      const double longest = std::max({e1.norm(), e2.norm(), (e2 - e1).norm()});
-      const double border = std::abs(std::min({u, v, 1.0 - u - v})) * twice_area_seen / longest;
+      const double border =
+          std::abs(std::min({u, v, 1.0 - u - v})) * twice_area_seen / facet.longest;
       const bool around = u > -0.01 && v > -0.01 && u + v < 1.01;
       if (around && range < best_range * 1.001) best.border_m = std::min(best.border_m, border);
       if (u < 0.0 || v < 0.0 || u + v > 1.0 || range >= best_range) continue;
       best_range = range;
-      best.instance = i;
-      best.primitive = t;
+      best.instance = facet.instance;
+      best.primitive = facet.primitive;
       best.range_m = range;
-      best.normal = e1.cross(e2).normalized();
+      best.normal = facet.e1.cross(facet.e2).normalized();
+    }
+    return best;
+  }
+
+ private:
+  struct Facet {
+    Eigen::Vector3d corner;
+    Eigen::Vector3d e1;
+    Eigen::Vector3d e2;
+    std::uint32_t instance;
+    std::uint32_t primitive;
+    double longest = std::max({e1.norm(), e2.norm(), (e2 - e1).norm()});
+    double radius = 1.1 * std::max(e1.norm(), e2.norm());  ///< around the corner
+
+    /// True where a beam's line is clearly outside of a sphere around the triangle and the points
+    /// near its edges that judge() looks at; saves most of the time.
+    [[nodiscard]] bool is_far_from(const Eigen::Vector3d& origin,
+                                   const Eigen::Vector3d& direction) const {
+      const Eigen::Vector3d s = corner - origin;
+      const double reach = radius + 1e-9 * (std::abs(s.x()) + std::abs(s.y()) + std::abs(s.z()));
+      return s.cross(direction).squaredNorm() > reach * reach;
+    }
+  };
+
+  void add(const Scene& scene, std::uint32_t number) {
+    const Instance& instance = scene.instances[number];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const auto corner = [&](std::uint32_t vertex) -> Eigen::Vector3d {
+      return instance.world_from_object * (instance.scale * vertex_m(mesh, vertex));
+    };
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      const Eigen::Vector3d first = corner(a);
+      facets_.push_back({first, corner(b) - first, corner(c) - first, number, t});
     }
   }
-  return best;
-}
+
+  std::vector<Facet> facets_;
+};
 
 }  // namespace glidar::testing

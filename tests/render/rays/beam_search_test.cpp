@@ -55,7 +55,8 @@ class Stage {
   std::vector<PrimitiveRef> search_by_rule() {
     prepare();
     std::vector<PrimitiveRef> found(beams.size());
-    for (std::size_t i = 0; i < beams.size(); ++i) found[i] = nearest_of_all(i);
+    const std::vector<Sphere> spheres = spheres_around();
+    for (std::size_t i = 0; i < beams.size(); ++i) found[i] = nearest_of_all(i, spheres);
     return found;
   }
 
@@ -101,10 +102,42 @@ class Stage {
     double distance_m;
   };
 
-  [[nodiscard]] PrimitiveRef nearest_of_all(std::size_t beam) const {
+  /// A sphere in the world around an instance.
+  struct Sphere {
+    Eigen::Vector3d centre_m;
+    double radius_m;
+  };
+
+  /// Spheres around all instances, larger than those by more than any rounding.
+  [[nodiscard]] std::vector<Sphere> spheres_around() const {
+    std::vector<Sphere> spheres;
+    for (const Instance& instance : scene.instances) {
+      const Mesh& mesh = scene.meshes[instance.mesh];
+      const Eigen::Vector3d at_m = instance.world_from_object.translation();
+      double radius_m = 1e-12 * (at_m.norm() + world_from_sensor.translation().norm());
+      for (std::uint32_t i = 0; i < mesh.positions_m.size(); ++i) {
+        radius_m = std::max(radius_m, 1.01 * (instance.scale * vertex_m(mesh, i)).norm());
+      }
+      spheres.push_back({at_m, radius_m});
+    }
+    return spheres;
+  }
+
+  /// False where the rule cannot find a hit, so that most triangles need no test.
+  [[nodiscard]] bool may_hit(std::size_t beam, const Sphere& sphere) const {
+    const Eigen::Vector3d start_m =
+        world_from_sensor *
+        (beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[beam]);
+    const Eigen::Vector3d direction = world_from_sensor.linear() * beams.directions[beam];
+    return !((sphere.centre_m - start_m).cross(direction).norm() > sphere.radius_m);
+  }
+
+  [[nodiscard]] PrimitiveRef nearest_of_all(std::size_t beam,
+                                            const std::vector<Sphere>& spheres) const {
     const rays::CastView cast{search_.trees(), resolver_, *request_};
     std::vector<Candidate> all;
     for (const std::uint32_t instance : search_.trees().instances()) {
+      if (!may_hit(beam, spheres[instance])) continue;
       const Mesh& mesh = resolver_.mesh(instance);
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         const double distance_m = rays::hit_distance_m(cast, beam, {instance, t});

@@ -10,11 +10,11 @@ namespace {
 
 using testing::builtin_scene;
 using testing::Draws;
-using testing::expect_same_as_rays;
 using testing::lens_beams;
 using testing::make_room;
 using testing::make_soup;
 using testing::preset_beams;
+using testing::RasterAndRays;
 using testing::turned;
 
 /// A pinhole without stored intrinsics.
@@ -45,21 +45,23 @@ TEST(CameraRaster, EqualsRaysInsideAndOutsideOfASphere) {
   const std::vector<Beams> all = cameras();
   for (const char* model : {"asteroid", "torus", "sphere", "box"}) {
     const Scene scene = builtin_scene(model);
+    const RasterAndRays casters(scene);
     for (const Beams& beams : all) {
-      expect_same_as_rays(scene, beams, Pose::Identity());
-      expect_same_as_rays(scene, beams, turned(1.0, {1.0, 2.0, 3.0}, {0.6, 0.05, 0.02}));
+      casters.expect_same(beams, Pose::Identity());
+      casters.expect_same(beams, turned(1.0, {1.0, 2.0, 3.0}, {0.6, 0.05, 0.02}));
       const Pose outside = look_at({2.0, 1.0, 0.9}, {0.6, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-      EXPECT_GT(expect_same_as_rays(scene, beams, outside), 0U);
+      EXPECT_GT(casters.expect_same(beams, outside), 0U);
     }
   }
 }
 
 TEST(CameraRaster, EqualsRaysForAllDistortingPresets) {
   const Scene room = make_room();
+  const RasterAndRays casters(room);
   for (const char* name : {"Azure-Kinect-NFOV", "Azure-Kinect-NFOV-2x2", "Azure-Kinect-WFOV",
                            "Azure-Kinect-WFOV-2x2", "Kinect-v2"}) {
     const Beams beams = preset_beams(name);
-    EXPECT_GT(expect_same_as_rays(room, beams, turned(0.7, {1.0, 1.0, 0.3}, {-0.5, 0.3, 0.4})),
+    EXPECT_GT(casters.expect_same(beams, turned(0.7, {1.0, 1.0, 0.3}, {-0.5, 0.3, 0.4})),
               beams.size() / 2)
         << name;
   }
@@ -71,25 +73,28 @@ TEST(CameraRaster, EqualsRaysForTrianglesAcrossItsPlane) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     const double size_m = std::pow(10.0, 4.0 * draws.next() - 2.0);
     const Scene scene = make_soup(seed, 400, size_m);
+    const RasterAndRays casters(scene);
     for (const Beams& beams : all) {
       const Eigen::Vector3d origin = size_m * draws.direction() * draws.next();
-      expect_same_as_rays(scene, beams, turned(6.0 * draws.next(), draws.direction(), origin));
+      casters.expect_same(beams, turned(6.0 * draws.next(), draws.direction(), origin));
     }
   }
 }
 
 TEST(CameraRaster, IsExactFarFromTheObject) {
   const Scene scene = builtin_scene("asteroid");
+  const RasterAndRays casters(scene);
   for (const double distance_m : {1e3, 1e4, 4e4}) {
     const RadialTangential lens{.k1 = 0.04 * distance_m * distance_m};
     const Pose pose = look_at({distance_m, 0.0, 0.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
     const Beams narrow = lens_beams(48, 40, 15.0 * distance_m, lens);
-    EXPECT_GT(expect_same_as_rays(scene, narrow, pose), 0U);
+    EXPECT_GT(casters.expect_same(narrow, pose), 0U);
   }
 }
 
 TEST(CameraRaster, MissesPixelsWithoutABeam) {
   const Scene room = make_room();
+  const RasterAndRays casters(room);
   Draws draws(8);
   for (Beams beams : cameras()) {
     for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -97,15 +102,16 @@ TEST(CameraRaster, MissesPixelsWithoutABeam) {
       if (draws.next() > 0.3 && !is_corner) continue;
       beams.directions[i].setConstant(kNaN);
     }
-    EXPECT_GT(expect_same_as_rays(room, beams, turned(0.4, {1.0, 0.3, 0.2}, {0.0, 0.0, 0.2})), 0U);
+    EXPECT_GT(casters.expect_same(beams, turned(0.4, {1.0, 0.3, 0.2}, {0.0, 0.0, 0.2})), 0U);
   }
   Beams none = plain_beams(64, 48, 50.0);
   for (Eigen::Vector3d& d : none.directions) d.setConstant(kNaN);
-  EXPECT_EQ(expect_same_as_rays(room, none, Pose::Identity()), 0U);
+  EXPECT_EQ(casters.expect_same(none, Pose::Identity()), 0U);
 }
 
 TEST(CameraRaster, EqualsRaysForDirectionsWithRandomErrors) {
   const Scene room = make_room();
+  const RasterAndRays casters(room);
   Draws draws(9);
   for (const double error_px : {0.2, 1.0, 3.0}) {
     Beams beams = plain_beams(200, 150, 100.0);
@@ -115,7 +121,7 @@ TEST(CameraRaster, EqualsRaysForDirectionsWithRandomErrors) {
     // Here half of the image has random directions.
     for (std::size_t i = 0; i < beams.size() / 3; ++i) beams.directions[i] = draws.direction();
     if (error_px < 2.0) {
-      EXPECT_GT(expect_same_as_rays(room, beams, Pose::Identity()), 0U);
+      EXPECT_GT(casters.expect_same(beams, Pose::Identity()), 0U);
     }
   }
 }

@@ -18,6 +18,7 @@ using testing::expect_same_hits;
 using testing::lens_beams;
 using testing::make_room;
 using testing::make_soup;
+using testing::RasterAndRays;
 using testing::scanner_beams;
 using testing::turned;
 
@@ -39,7 +40,15 @@ class GridRaster : public ::testing::TestWithParam<GridCase> {
     pose.translation().x() = x_m;
     return pose;
   }
-  const Scene room_ = make_room();
+  /// The room, and its renderers.
+  static const Scene& room() {
+    static const Scene kRoom = make_room();
+    return kRoom;
+  }
+  static const RasterAndRays& room_casters() {
+    static const RasterAndRays kCasters(room());
+    return kCasters;
+  }
 };
 
 TEST_P(GridRaster, EqualsRaysInTriangleSoups) {
@@ -53,18 +62,19 @@ TEST_P(GridRaster, EqualsRaysInTriangleSoups) {
 }
 
 TEST_P(GridRaster, EqualsRaysFromVerticesAndInPlanesOfTriangles) {
-  for (const Instance& instance : room_.instances) {
-    const Mesh& mesh = room_.meshes[instance.mesh];
+  for (const Instance& instance : room().instances) {
+    const Mesh& mesh = room().meshes[instance.mesh];
     for (const std::size_t k : {std::size_t{0}, mesh.positions_m.size() / 2}) {
       const Eigen::Vector3d vertex =
           instance.world_from_object * (instance.scale * mesh.positions_m[k].cast<double>());
-      expect_same_as_rays(room_, beams(), turned(0.0, {0.0, 0.0, 1.0}, vertex));
-      expect_same_as_rays(room_, beams(), turned(1.0, {1.0, 0.0, 1.0}, vertex));
+      room_casters().expect_same(beams(), turned(0.0, {0.0, 0.0, 1.0}, vertex));
+      room_casters().expect_same(beams(), turned(1.0, {1.0, 0.0, 1.0}, vertex));
     }
   }
-  const Scene box = builtin_scene("box");  // beams run in the planes of its sides
-  expect_same_as_rays(box, beams(), turned(0.0, {0.0, 0.0, 1.0}, {1.0, 0.2, -3.0}));
-  expect_same_as_rays(box, beams(), turned(0.0, {0.0, 0.0, 1.0}, {-3.0, 0.2, 1.0}));
+  const Scene scene = builtin_scene("box");
+  const RasterAndRays box(scene);  // beams run in the planes of its sides
+  box.expect_same(beams(), turned(0.0, {0.0, 0.0, 1.0}, {1.0, 0.2, -3.0}));
+  box.expect_same(beams(), turned(0.0, {0.0, 0.0, 1.0}, {-3.0, 0.2, 1.0}));
 }
 
 TEST_P(GridRaster, FindsTheLowestOfCoincidentSurfacesOfManyInstances) {
@@ -75,8 +85,9 @@ TEST_P(GridRaster, FindsTheLowestOfCoincidentSurfacesOfManyInstances) {
     scene.instances.back().world_from_object = i % 3 == 0 ? Pose::Identity() : pose;
     scene.instances.back().scale = i % 3 == 1 ? 1.0 + 1e-15 : 1.0;
   }
+  const RasterAndRays casters(scene);
   for (const double x_m : {-1.0, -3.0}) {
-    EXPECT_GT(expect_same_as_rays(scene, beams(), on_x_axis(x_m)), 0U);
+    EXPECT_GT(casters.expect_same(beams(), on_x_axis(x_m)), 0U);
   }
 }
 
@@ -96,13 +107,13 @@ TEST_P(GridRaster, IsExactFarFromTheWorldsOriginAndForAllScales) {
 TEST_P(GridRaster, CullsBackFacesAndAppliesAlphaMasks) {
   std::size_t hits = 0;
   for (const Pose& pose : {kInRoom, on_x_axis(0.0), on_x_axis(-3.0)}) {
-    hits += expect_same_as_rays(room_, {.beams = beams(),
+    hits += room_casters().expect_same({.beams = beams(),
                                         .world_from_sensor = pose,
                                         .hit_columns = kAllHitColumns,
                                         .cull_back_faces = true});
   }
   EXPECT_GT(hits, 0U);
-  Scene masked = room_;
+  Scene masked = room();
   for (Material& material : masked.materials) material.alpha_cutoff = 0.5F;
   expect_same_as_rays(masked, beams(), kInRoom);
 }
@@ -115,7 +126,7 @@ TEST_P(GridRaster, EqualsRaysForRepeatedRows) {
   }
   twice.rows *= 2;
   twice.returns = 2;
-  EXPECT_GT(expect_same_as_rays(room_, twice, kInRoom), 0U);
+  EXPECT_GT(room_casters().expect_same(twice, kInRoom), 0U);
 }
 
 TEST_P(GridRaster, ReportsEveryBeamOnceAndAllProgress) {
@@ -125,7 +136,7 @@ TEST_P(GridRaster, ReportsEveryBeamOnceAndAllProgress) {
     for (std::size_t i = range.begin; i < range.end; ++i) ++reported[i];
   };
   Hits hits;
-  make_renderer(room_, {.kind = "raster", .threads = 1})
+  make_renderer(room(), {.kind = "raster", .threads = 1})
       ->cast({.beams = beams(),
               .world_from_sensor = kInRoom,
               .on_tile_done = FunctionRef<void(BeamRange)>(count),
@@ -137,13 +148,13 @@ TEST_P(GridRaster, ReportsEveryBeamOnceAndAllProgress) {
 
 TEST_P(GridRaster, DetectsBeamsThatChangedInPlace) {
   Beams changing = beams();
-  const auto raster = make_renderer(room_, {.kind = "raster", .threads = 2});
+  const auto raster = make_renderer(room(), {.kind = "raster", .threads = 2});
   for (int k = 0; k < 3; ++k) {
     const CastRequest request{
         .beams = changing, .world_from_sensor = kInRoom, .hit_columns = kAllHitColumns};
     Hits hits;
     raster->cast(request, hits);
-    EXPECT_GT(expect_same_hits(hits, cast_with("rays", room_, request)), 0U);
+    EXPECT_GT(expect_same_hits(hits, cast_with("rays", room(), request)), 0U);
     const Eigen::Matrix3d turn = turned(0.1, {0.1, 0.0, 1.0}, {0.0, 0.0, 0.0}).linear();
     for (Eigen::Vector3d& direction : changing.directions) {
       direction = (turn * direction).normalized();
@@ -154,10 +165,10 @@ TEST_P(GridRaster, DetectsBeamsThatChangedInPlace) {
 TEST_P(GridRaster, HasTheSameBitsWithEveryInstructionSet) {
   const CastRequest request{
       .beams = beams(), .world_from_sensor = kInRoom, .hit_columns = kAllHitColumns};
-  const Hits expected = cast_with("rays", room_, request);
+  const Hits expected = cast_with("rays", room(), request);
   for (const rays::Kernel* kernel : rays::usable_kernels()) {
     setenv("GLIDAR_ISA", kernel->name, 1);
-    expect_same_hits(cast_with("raster", room_, request), expected);
+    expect_same_hits(cast_with("raster", room(), request), expected);
   }
   unsetenv("GLIDAR_ISA");
 }

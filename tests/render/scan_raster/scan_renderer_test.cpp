@@ -16,6 +16,7 @@ using testing::Draws;
 using testing::expect_same_as_rays;
 using testing::make_room;
 using testing::make_soup;
+using testing::RasterAndRays;
 using testing::Scanner;
 using testing::scanner_beams;
 using testing::turned;
@@ -46,11 +47,12 @@ TEST(ScanRenderer, HasTheKernelsOfTheRayCaster) {
 TEST(ScanRenderer, EqualsRaysInsideAndOutsideOfASphere) {
   for (const char* model : {"asteroid", "torus", "sphere", "box"}) {
     const Scene scene = builtin_scene(model);
+    const RasterAndRays casters(scene);
     const Beams beams = scanner_beams({});
-    EXPECT_GT(expect_same_as_rays(scene, beams, Pose::Identity()), beams.size() / 4);
-    EXPECT_GT(expect_same_as_rays(scene, beams, turned(1.0, {1.0, 2.0, 3.0}, {0.6, 0.05, 0.02})),
+    EXPECT_GT(casters.expect_same(beams, Pose::Identity()), beams.size() / 4);
+    EXPECT_GT(casters.expect_same(beams, turned(1.0, {1.0, 2.0, 3.0}, {0.6, 0.05, 0.02})),
               beams.size() / 20);
-    EXPECT_GT(expect_same_as_rays(scene, beams, turned(2.0, {1.0, -2.0, 3.0}, {2.0, 1.0, 0.3})),
+    EXPECT_GT(casters.expect_same(beams, turned(2.0, {1.0, -2.0, 3.0}, {2.0, 1.0, 0.3})),
               beams.size() / 100);
   }
 }
@@ -58,11 +60,13 @@ TEST(ScanRenderer, EqualsRaysInsideAndOutsideOfASphere) {
 TEST(ScanRenderer, EqualsRaysForGridsOfAllKinds) {
   const Scene room = make_room();
   const Scene soup = make_soup(3, 500, 4.0);
+  const RasterAndRays room_casters(room);
+  const RasterAndRays soup_casters(soup);
   for (const Scanner& scanner : scanners()) {
     const Beams beams = scanner_beams(scanner);
-    EXPECT_GT(expect_same_as_rays(room, beams, at(0.3, 0.1, 0.0)), 0U);
-    EXPECT_GT(expect_same_as_rays(room, beams, turned(0.7, {1.0, 1.0, 0.3}, {-0.5, 0.3, 0.4})), 0U);
-    expect_same_as_rays(soup, beams, at(0.1, 0.2, 0.3));
+    EXPECT_GT(room_casters.expect_same(beams, at(0.3, 0.1, 0.0)), 0U);
+    EXPECT_GT(room_casters.expect_same(beams, turned(0.7, {1.0, 1.0, 0.3}, {-0.5, 0.3, 0.4})), 0U);
+    soup_casters.expect_same(beams, at(0.1, 0.2, 0.3));
   }
 }
 
@@ -80,6 +84,7 @@ TEST(ScanRenderer, IsExactFarFromTheObject) {
 
 TEST(ScanRenderer, SkipsDisabledInstancesAndMovesTheOthers) {
   const Scene room = make_room();
+  const RasterAndRays casters(room);
   const Beams beams = scanner_beams({.rows = 16, .cols = 300});
   std::vector<std::uint8_t> present(room.instances.size(), 1);
   present[0] = 0;
@@ -92,9 +97,9 @@ TEST(ScanRenderer, SkipsDisabledInstancesAndMovesTheOthers) {
                       .world_from_instance = poses,
                       .hit_columns = kAllHitColumns,
                       .instance_enabled = present};
-  EXPECT_GT(expect_same_as_rays(room, request), 0U);
+  EXPECT_GT(casters.expect_same(request), 0U);
   std::fill(present.begin(), present.end(), std::uint8_t{0});
-  EXPECT_EQ(expect_same_as_rays(room, request), 0U);
+  EXPECT_EQ(casters.expect_same(request), 0U);
 }
 
 TEST(ScanRenderer, CellsWithoutABeamAreMisses) {
@@ -113,14 +118,15 @@ TEST(ScanRenderer, CellsWithoutABeamAreMisses) {
 TEST(ScanRenderer, EqualsRaysForBeamsWithSeparateOrigins) {
   const Scene room = make_room();
   const Scene soup = make_soup(9, 500, 4.0);
+  const RasterAndRays room_casters(room);
+  const RasterAndRays soup_casters(soup);
   for (const double origin_m : {1e-9, 0.05, 3.0}) {
     for (Scanner scanner : scanners()) {
       scanner.origin_m = origin_m;
       if (origin_m > 1.0) scanner.rows = std::min(scanner.rows, 4U);
       const Beams beams = scanner_beams(scanner);
-      EXPECT_GT(expect_same_as_rays(room, beams, turned(0.3, {0.2, 1.0, 0.1}, {0.3, 0.1, 0.0})),
-                0U);
-      expect_same_as_rays(soup, beams, at(0.1, 0.2, 0.3));
+      EXPECT_GT(room_casters.expect_same(beams, turned(0.3, {0.2, 1.0, 0.1}, {0.3, 0.1, 0.0})), 0U);
+      soup_casters.expect_same(beams, at(0.1, 0.2, 0.3));
     }
   }
 }

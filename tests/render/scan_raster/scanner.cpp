@@ -64,15 +64,30 @@ std::size_t expect_same_hits(const Hits& found, const Hits& expected) {
   return hits;
 }
 
+RasterAndRays::RasterAndRays(const Scene& scene)
+    : raster_(make_renderer(scene, {.kind = "raster", .threads = 2})),
+      rays_(make_renderer(scene, {.kind = "rays", .threads = 2})) {}
+
+std::size_t RasterAndRays::expect_same(const CastRequest& request) const {
+  Hits found;
+  Hits expected;
+  raster_->cast(request, found);
+  rays_->cast(request, expected);
+  return expect_same_hits(found, expected);
+}
+
+std::size_t RasterAndRays::expect_same(const Beams& beams, const Pose& world_from_sensor) const {
+  return expect_same(
+      {.beams = beams, .world_from_sensor = world_from_sensor, .hit_columns = kAllHitColumns});
+}
+
 std::size_t expect_same_as_rays(const Scene& scene, const CastRequest& request) {
-  return expect_same_hits(cast_with("raster", scene, request), cast_with("rays", scene, request));
+  return RasterAndRays(scene).expect_same(request);
 }
 
 std::size_t expect_same_as_rays(const Scene& scene, const Beams& beams,
                                 const Pose& world_from_sensor) {
-  return expect_same_as_rays(
-      scene,
-      {.beams = beams, .world_from_sensor = world_from_sensor, .hit_columns = kAllHitColumns});
+  return RasterAndRays(scene).expect_same(beams, world_from_sensor);
 }
 
 }  // namespace glidar::testing

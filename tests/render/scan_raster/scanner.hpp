@@ -64,7 +64,21 @@ inline Hits cast_with(const char* kind, const Scene& scene, const CastRequest& r
 /// Expects the same bits of every column; returns how many beams hit.
 std::size_t expect_same_hits(const Hits& found, const Hits& expected);
 
-/// The same for casts by the raster and by rays.
+/// The raster and the rays of a scene, made once for many casts.
+class RasterAndRays {
+ public:
+  explicit RasterAndRays(const Scene& scene);
+
+  /// Expects the same bits from both; returns how many beams hit.
+  std::size_t expect_same(const CastRequest& request) const;
+  std::size_t expect_same(const Beams& beams, const Pose& world_from_sensor) const;
+
+ private:
+  std::unique_ptr<Renderer> raster_;
+  std::unique_ptr<Renderer> rays_;
+};
+
+/// The same for a single cast.
 std::size_t expect_same_as_rays(const Scene& scene, const CastRequest& request);
 std::size_t expect_same_as_rays(const Scene& scene, const Beams& beams,
                                 const Pose& world_from_sensor);
