@@ -16,7 +16,7 @@ folder=$(realpath "$folder")
 # the drivers of graphics are those of the machine that runs it
 drivers=(libGL.so.1 libEGL.so.1 libOpenGL.so.0 libGLX.so.0 libGLdispatch.so.0)
 
-cmake --install "$build" --prefix "$folder/prefix" >"$folder/install.log"
+cmake --install "$build" --prefix "$folder/prefix" --strip >"$folder/install.log"
 # only the bindings are compiled; the library is the installed one
 "$venv/pip" wheel --disable-pip-version-check --no-deps --no-build-isolation -w "$folder/raw" \
   --config-settings=cmake.source-dir=python --config-settings=cmake.define.glidar_ROOT="$folder/prefix" \

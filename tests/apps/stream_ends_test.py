@@ -118,7 +118,7 @@ class Ends(StreamTest):
         handshake is answered, as a busy machine may need long between the two."""
         simulator = self.simulator()
         program = self.publish("--pose-source", tcp(self.physics), "--pose-queue", "10", "--subscribers", "0",
-                               "--rate", "0.15", "--pose-timeout", "5", "--frames", "2")
+                               "--rate", "0.45", "--pose-timeout", "2", "--frames", "2")
         simulator.shake(before_answer=[pose_message(stamp) for stamp in range(2)])
         self.finished(program, 0)
         self.assertEqual(self.stats()["ending"], "all frames are done")

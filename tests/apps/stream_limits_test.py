@@ -112,7 +112,7 @@ class Lockstep(LimitsTest):
         program = self.listen("--limit", "request-mib=1")
         for socket_type in (b"REQ", b"DEALER"):
             with Peer(self.lockstep_port, socket_type, MAX_WAIT_S) as peer:
-                self.is_cut_off(peer, part(b"", more=True) * 1000)
+                self.is_cut_off(peer, part(b"", more=True) * 100_000)
         self.assertTrue(self.is_answered(self.client()))
         self.assertIn("without a complete message", self.stop(program))
         self.assertGreaterEqual(self.stats()["errors"]["peer cut off"], 1)

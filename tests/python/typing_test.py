@@ -32,22 +32,28 @@ except glidar.Error as error:
 '''
 
 
-def check(path, *arguments):
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    """What mypy remembers of packages, once for all programs."""
+    return tmp_path_factory.mktemp("mypy")
+
+
+def check(cache, path, *arguments):
     pytest.importorskip("mypy")
     package = str(Path(glidar.__file__).parent.parent)
     return subprocess.run(
         [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", *arguments, str(path)],
-        env={"MYPYPATH": package, "PATH": "/usr/bin:/bin", "MYPY_CACHE_DIR": str(Path(path).parent / "mypy")},
+        env={"MYPYPATH": package, "PATH": "/usr/bin:/bin", "MYPY_CACHE_DIR": str(cache)},
         capture_output=True,
         text=True,
         check=False,
     )
 
 
-def test_mypy_accepts_a_typed_program(tmp_path):
+def test_mypy_accepts_a_typed_program(cache, tmp_path):
     path = tmp_path / "program.py"
     path.write_text(PROGRAM)
-    done = check(path)
+    done = check(cache, path)
     assert done.returncode == 0, done.stdout + done.stderr
     exec(compile(PROGRAM, "program", "exec"), {})
 
@@ -65,18 +71,18 @@ if __name__ == "__main__":
 '''
 
 
-def test_mypy_accepts_a_program_that_runs_campaigns(tmp_path):
+def test_mypy_accepts_a_program_that_runs_campaigns(cache, tmp_path):
     path = tmp_path / "program.py"
     path.write_text(CAMPAIGN)
-    done = check(path, "--follow-imports=silent")
+    done = check(cache, path, "--follow-imports=silent")
     assert done.returncode == 0, done.stdout + done.stderr
     path.write_text(CAMPAIGN.replace('ShardSubset(0, 2)', '"0/2"').replace("outcome.error", "outcome.errors"))
-    done = check(path, "--follow-imports=silent")
+    done = check(cache, path, "--follow-imports=silent")
     assert done.stdout.count("error:") == 2, done.stdout
 
 
-def test_mypy_rejects_a_program_with_type_errors(tmp_path):
+def test_mypy_rejects_a_program_with_type_errors(cache, tmp_path):
     path = tmp_path / "program.py"
     path.write_text("import glidar\n\nglidar.camera(width='wide')\nglidar.Scene().nothing\n")
-    done = check(path)
+    done = check(cache, path)
     assert done.stdout.count("error:") == 2, done.stdout

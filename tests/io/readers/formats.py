@@ -25,8 +25,8 @@ def lzf_decompress(data, size):
             i += 1
         start = len(out) - ((control & 31) << 8) - data[i] - 1
         i += 1
-        for k in range(length + 2):
-            out.append(out[start + k])
+        run = out[start : start + length + 2]  # shorter where the copy overlaps itself, and then repeated
+        out += (run * ((length + 1) // len(run) + 1))[: length + 2]
     assert len(out) == size, (len(out), size)
     return bytes(out)
 
@@ -68,12 +68,10 @@ def read_pcd(path):
 
 def text_table(lines, dtype, separator):
     points = np.empty(len(lines), dtype)
-    for i, line in enumerate(lines):
-        words = line.split(separator)
-        assert len(words) == len(dtype), line
-        points[i] = tuple(
-            float(w) if dtype[k].kind == "f" else int(w) for k, w in enumerate(words)
-        )
+    rows = [line.split(separator) for line in lines]
+    assert all(len(words) == len(dtype) for words in rows)
+    for name, words in zip(dtype.names, zip(*rows)):
+        points[name] = list(map(float if dtype[name].kind == "f" else int, words))
     return points
 
 
