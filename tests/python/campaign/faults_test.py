@@ -5,10 +5,12 @@ the same bytes."""
 
 import functools
 import json
+import os
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -29,10 +31,18 @@ FAULTS = [(RUN, "open", "ENOSPC"), (RUN, "write", "EIO"), (RUN, "write", "ENOSPC
           (MERGE, "rename", "EIO"), (MERGE, "close", "EIO")]
 
 
+MEMORY = Path("/dev/shm")  # thousands of folders are made and removed, which takes long on a disk
+
+
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made():
     """A campaign with all outputs, its parts, and the files of the complete campaign."""
-    campaign = Campaign(tmp_path_factory.mktemp("fault_injection"))
+    with tempfile.TemporaryDirectory(dir=MEMORY if os.access(MEMORY, os.W_OK) else None) as folder:
+        yield make_campaign(Path(folder))
+
+
+def make_campaign(folder):
+    campaign = Campaign(folder)
     text = (campaign.folder / "campaign.yaml").read_text()
     campaign.write("campaign.yaml", text.replace("trials: 40", "trials: 2").replace("shard_trials: 4", "shard_trials: 1")
                    + "outputs: {npz: true, pcd: true, kitti: true, tum: true, bop: {images: [depth]}}\n")

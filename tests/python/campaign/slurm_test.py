@@ -41,6 +41,7 @@ TaskPlugin=task/none
 JobAcctGatherType=jobacct_gather/none
 MpiDefault=none
 SelectType=select/cons_tres
+SchedulerParameters=batch_sched_delay=0,sched_interval=1,bf_interval=1
 ReturnToService=2
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} State=UNKNOWN
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
@@ -63,11 +64,17 @@ def is_idle():
     return printed.stdout.strip() == "idle"
 
 
-@pytest.fixture
-def slurm(tmp_path_factory, monkeypatch):
+@pytest.fixture(scope="module")
+def slurm(tmp_path_factory):
     folder = tmp_path_factory.mktemp("slurm")
-    monkeypatch.setenv("PATH", os.environ["PATH"] + ":/usr/sbin")
-    monkeypatch.setenv("SLURM_CONF", str(folder / "slurm.conf"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PATH", os.environ["PATH"] + ":/usr/sbin")
+        patch.setenv("SLURM_CONF", str(folder / "slurm.conf"))
+        yield from run_slurm(folder)
+
+
+def run_slurm(folder):
+    """Runs the daemons until the generator is resumed."""
     host = socket.gethostname().split(".")[0]
     (folder / "slurm.conf").write_text(CONF.format(
         host=host, folder=folder, port=free_port(), node_port=free_port(), cpus=os.cpu_count()))
@@ -120,7 +127,7 @@ def test_shard_cannot_be_combined_with_a_job_array(campaign, slurm):
     assert "--shard" in printed
 
 
-def test_a_missing_sbatch_is_reported_with_a_remedy(campaign, monkeypatch, slurm):
+def test_a_missing_sbatch_is_reported_with_a_remedy(campaign, slurm):
     campaign.environment["PATH"] = "/nonexistent"
     printed = campaign.run("out", "--executor", "slurm", code=2)
     assert "program sbatch is missing" in printed and "--shard i/N" in printed
