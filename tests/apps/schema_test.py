@@ -64,7 +64,7 @@ class Schema(unittest.TestCase):
     def test_an_unknown_kind_is_an_error_with_the_nearest(self):
         result = run("sensors")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("'sensors' has no schema; allowed: sensor, scene, pose, motion, materials, surfaces; "
+        self.assertIn("'sensors' has no schema; allowed: sensor, imu, scene, pose, motion, materials, surfaces; "
                       "did you mean 'sensor'?", result.stderr)
 
 

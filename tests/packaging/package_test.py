@@ -106,7 +106,7 @@ class Packages(unittest.TestCase):
             owner = run("dpkg", "-S", f"{folder}/{module}.pc").split(":")[0]
             self.assertIn(owner, self.development.needs())
         for name in re.findall(r"find_dependency\((\w+)", config):
-            known = {"PNG": "libpng-dev", "PkgConfig": "pkg-config"}
+            known = {"PNG": "libpng-dev", "PkgConfig": "pkg-config", "ZLIB": "zlib1g-dev"}
             package = known.get(name, f"lib{name.lower().removesuffix('3')}")
             self.assertTrue(any(entry.startswith(package) for entry in self.development.needs()), name)
 

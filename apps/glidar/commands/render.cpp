@@ -31,14 +31,14 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd
-  glidar render builtin:box --sensor VLP-16 --imu BMI088 --trajectory walk.tum
-      --trajectory-interpolation spline --duration 5 -o scan.pcd -o walk.imu.csv
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --duration 1 -o scans.mcap -o scans.pcap
   glidar render builtin:box -o - --format csv
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --legacy-output view
 With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
   glidar render scene.yaml --sensor camera.yaml --frame ros -o cloud.npz
+  glidar render builtin:box --sensor VLP-16 --imu BMI088 --trajectory walk.tum
+      --trajectory-interpolation spline --duration 5 -o scan.pcd -o walk.imu.csv
 
 Woods 2016 compatibility: quaternions are attitudes, which rotate inertial vectors into the body.
 The object is at the inertial origin, the sensor at (0, 0, -D), and

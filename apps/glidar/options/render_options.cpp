@@ -59,7 +59,7 @@ void add_render_options(CLI::App& command, RenderFlags& flags) {
       .add("--sensor-name", "NAME", "Measure with this sensor of the scene file's rig [all]",
            flags.sensor_name);
   OptionGroup(command, "Sensor")
-      .add("--imu", "NAME", "IMU at the sensor: a preset or an IMU file [those of the scene file]",
+      .add("--imu", "NAME", "IMU at the sensor: a preset or a file [those of the scene file]",
            flags.imu);
   add_pose_options(command, flags.pose);
   add_motion_options(command, flags.motion);
