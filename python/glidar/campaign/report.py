@@ -293,8 +293,8 @@ def _require_foreign(root, path):
 
 
 def _write_whole(path, text):
-    """Writes a regular file atomically, and others, such as a pipe, directly."""
-    if path.exists() and not path.is_file():
+    """Writes a regular file atomically, and others, such as a pipe, directly. So are links, which stay: /dev/stdout is one."""
+    if path.is_symlink() or path.exists() and not path.is_file():
         path.write_text(text, encoding="utf-8")
         return
     part = path.with_name(f".{path.name}.{os.getpid()}")

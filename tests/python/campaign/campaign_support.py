@@ -36,6 +36,11 @@ pose:
 """
 
 
+def memory_folder():
+    """A folder in memory, for tests that make and remove thousands of folders, which takes long on a disk; None: none."""
+    return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+
+
 def contents_of(root):
     """Hash of every file that is the same in every run: all but the logs."""
     return {str(path.relative_to(root)): hashlib.sha256(path.read_bytes()).hexdigest()
@@ -78,10 +83,10 @@ class Campaign:
         return subprocess.Popen(self.command(*arguments), cwd=self.folder, env=self.environment,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
 
-    def call(self, *arguments, code=0, **more):
-        """Runs to the end; gives standard output and error. It runs in a process of its own only with `more`, or if the
-        environment was changed, because starting one takes longer than most campaigns here."""
-        if more or self.environment != self._own_environment:
+    def call(self, *arguments, code=0, apart=False, **more):
+        """Runs to the end; gives standard output and error. It runs in a process of its own only with `apart` or `more`, or
+        if the environment was changed, because starting one takes longer than most campaigns here."""
+        if apart or more or self.environment != self._own_environment:
             process = self.start(*arguments, **more)
             text = "".join(process.communicate(timeout=MAX_WAIT_S))
             result = process.returncode

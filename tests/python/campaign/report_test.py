@@ -131,7 +131,16 @@ def test_a_report_is_written_atomically(campaign):
     reported = campaign.call("report", "out", "-o", "own/report.html", code=2, preexec_fn=limit)
     assert "cannot be written" in reported
     assert [p.read_text() for p in (campaign.folder / "own").iterdir()] == ["before"]
-    assert "<!doctype html>" in campaign.call("report", "out", "-o", "/dev/stdout")
+    assert "<!doctype html>" in campaign.call("report", "out", "-o", "/dev/stdout", apart=True)
+
+
+def test_a_link_is_written_through_and_stays(campaign):
+    campaign.run("out")
+    link, page = campaign.folder / "link.html", campaign.folder / "page.html"
+    page.write_text("before")
+    link.symlink_to(page)
+    campaign.call("report", "out", "-o", "link.html")
+    assert link.is_symlink() and page.read_text().startswith("<!doctype html>")
 
 
 def test_speed_excludes_pauses_between_runs(campaign):
