@@ -6,6 +6,7 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/render/rays/exact_test.hpp>
+#include <render/rays/instance_spheres.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <gmock/gmock.h>
@@ -20,6 +21,7 @@ using testing::builtin_scene;
 using testing::camera_beams;
 using testing::Draws;
 using testing::loose_beams;
+using testing::Sphere;
 using testing::turned;
 
 /// A scene, a cast and its search.
@@ -55,7 +57,7 @@ class Stage {
   std::vector<PrimitiveRef> search_by_rule() {
     prepare();
     std::vector<PrimitiveRef> found(beams.size());
-    const std::vector<Sphere> spheres = spheres_around();
+    const std::vector<Sphere> spheres = testing::spheres_around(scene, world_from_sensor);
     for (std::size_t i = 0; i < beams.size(); ++i) found[i] = nearest_of_all(i, spheres);
     return found;
   }
@@ -102,42 +104,16 @@ class Stage {
     double distance_m;
   };
 
-  /// A sphere in the world around an instance.
-  struct Sphere {
-    Eigen::Vector3d centre_m;
-    double radius_m;
-  };
-
-  /// Spheres around all instances, larger than those by more than any rounding.
-  [[nodiscard]] std::vector<Sphere> spheres_around() const {
-    std::vector<Sphere> spheres;
-    for (const Instance& instance : scene.instances) {
-      const Mesh& mesh = scene.meshes[instance.mesh];
-      const Eigen::Vector3d at_m = instance.world_from_object.translation();
-      double radius_m = 1e-12 * (at_m.norm() + world_from_sensor.translation().norm());
-      for (std::uint32_t i = 0; i < mesh.positions_m.size(); ++i) {
-        radius_m = std::max(radius_m, 1.01 * (instance.scale * vertex_m(mesh, i)).norm());
-      }
-      spheres.push_back({at_m, radius_m});
-    }
-    return spheres;
-  }
-
-  /// False where the rule cannot find a hit, so that most triangles need no test.
-  [[nodiscard]] bool may_hit(std::size_t beam, const Sphere& sphere) const {
+  [[nodiscard]] PrimitiveRef nearest_of_all(std::size_t beam,
+                                            const std::vector<Sphere>& spheres) const {
+    const rays::CastView cast{search_.trees(), resolver_, *request_};
     const Eigen::Vector3d start_m =
         world_from_sensor *
         (beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[beam]);
     const Eigen::Vector3d direction = world_from_sensor.linear() * beams.directions[beam];
-    return !((sphere.centre_m - start_m).cross(direction).norm() > sphere.radius_m);
-  }
-
-  [[nodiscard]] PrimitiveRef nearest_of_all(std::size_t beam,
-                                            const std::vector<Sphere>& spheres) const {
-    const rays::CastView cast{search_.trees(), resolver_, *request_};
     std::vector<Candidate> all;
     for (const std::uint32_t instance : search_.trees().instances()) {
-      if (!may_hit(beam, spheres[instance])) continue;
+      if (is_beside(spheres[instance], start_m, direction)) continue;
       const Mesh& mesh = resolver_.mesh(instance);
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         const double distance_m = rays::hit_distance_m(cast, beam, {instance, t});
