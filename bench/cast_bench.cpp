@@ -48,21 +48,7 @@ class RawEmbree {
       : stage_(stage),
         arena_(threads),
         device_(rtcNewDevice(nullptr)),
-        scene_(rtcNewScene(device_)) {
-    const Mesh& mesh = stage.scene.meshes[0];
-    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(Eigen::Vector3f), mesh.positions_m.size());
-    std::copy(mesh.positions_m.begin(), mesh.positions_m.end(),
-              static_cast<Eigen::Vector3f*>(vertices));
-    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                              sizeof(Triangle), mesh.triangles.size());
-    std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<Triangle*>(triangles));
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
+        scene_(make_embree_scene(device_, stage.scene.meshes[0])) {
     range_.resize(std::size_t{kSide} * kSide);
     normal_.resize(range_.size());
     instance_.resize(range_.size());

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "raw_rays.hpp"
 
-#include <algorithm>
-
 namespace glidar::bench {
 namespace {
 
@@ -40,24 +38,6 @@ void store_lane(const Packet& packet, unsigned lane, std::size_t index, HitList&
   hits.primitive[index] = packet.hit.primID[lane];
 }
 
-RTCScene make_scene(RTCDevice device, const Mesh& mesh) {
-  const RTCScene scene = rtcNewScene(device);
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(Eigen::Vector3f), mesh.positions_m.size());
-  std::copy(mesh.positions_m.begin(), mesh.positions_m.end(),
-            static_cast<Eigen::Vector3f*>(vertices));
-  void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            sizeof(Triangle), mesh.triangles.size());
-  std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<Triangle*>(triangles));
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
-  return scene;
-}
-
 }  // namespace
 
 void HitList::resize(std::size_t count) {
@@ -72,7 +52,7 @@ RawRays::RawRays(const Mesh& mesh, const RayList& list, unsigned packet_size,
     : list_(list),
       packet_size_(packet_size),
       device_(rtcNewDevice(isa.empty() ? nullptr : ("isa=" + isa).c_str())),
-      scene_(make_scene(device_, mesh)) {
+      scene_(make_embree_scene(device_, mesh)) {
   hits_.resize(list.rays.size());
 }
 

@@ -9,24 +9,19 @@ usage: plot_echoes.py GLIDAR_PROGRAM PICTURE.png
 
 import math
 import subprocess
-import sys
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Callable
 
 import numpy as np
-from PIL import Image, ImageDraw
 
-from plot_noise import COLUMNS, PANEL, Panel
+from plot_noise import COLOURS, PANEL, Panel, deviation_percent, plot
 
 SIGMA_M = 299792458.0 / 2 * 5e-9 / 2.3548200450309493  # of a pulse of 5 ns, along the range
 REACH_M = 200  # of planes, to either side
 APART_M = 2 * SIGMA_M  # c FWHM / 2.355
 STRONG = "{reference_reflectance: 1, reference_range_m: 1e5}"  # far above the threshold
 LINE = "{width: 1, height: 1, fx: 1e6, fy: 1e6}"
-COLOURS = [(200, 60, 40), (30, 70, 160), (60, 130, 60), (150, 90, 170), (130, 110, 30)]
 
 
 class Stage:
@@ -258,45 +253,23 @@ CASES = [
 ]
 
 
-def draw_case(draw, corner, case, points):
+def draw_case(stage, draw, corner, case):
     """All series of a case on the axes that hold them."""
-    curves = [Panel(draw, corner, SimpleNamespace(**{**case.__dict__, "law": series.law}), measured)
-              for series, measured in zip(case.series, points)]
+    curves = []
+    for series in case.series:
+        points = [(x, series.measure(stage, x)) for x in case.places]
+        print(f"{case.title}, {series.name}: within {deviation_percent(case, series.law, points):.2f} % of the law's "
+              "largest value")
+        curves.append(Panel(draw, corner, SimpleNamespace(**{**case.__dict__, "law": series.law}), points))
     low, high = min(c.y0 for c in curves), max(c.y1 for c in curves)
     for k, (curve, series) in enumerate(zip(curves, case.series)):
         curve.y0, curve.y1 = low, high
         if k == 0:
-            curve.text(curve.left - 40, curve.top - 32, case.title)
-            curve.text(curve.left - 40, curve.top - 19, case.what, fill=(110, 110, 110))
-            curve.axes()
-        draw.line([curve.place(x, y) for x, y in curve.line], fill=COLOURS[k])
-        for x, y in curve.points:
-            x, y = curve.place(x, y)
-            draw.ellipse([x - 3, y - 3, x + 3, y + 3], outline=COLOURS[k])
+            curve.frame()
+        curve.curve(COLOURS[k], COLOURS[k])
         draw.text((corner[0] + PANEL[0] - 8 - 6 * len(series.name), corner[1] + 4 + 11 * k),
                   series.name, fill=COLOURS[k])
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    program = str(Path(sys.argv[1]).resolve())
-    rows = math.ceil(len(CASES) / COLUMNS)
-    picture = Image.new("RGB", (COLUMNS * PANEL[0], rows * PANEL[1]), "white")
-    draw = ImageDraw.Draw(picture)
-    with tempfile.TemporaryDirectory() as name:
-        stage = Stage(program, Path(name))
-        for k, case in enumerate(CASES):
-            points = []
-            for series in case.series:
-                points.append([(x, series.measure(stage, x)) for x in case.places])
-                worst = max(abs(y - series.law(x)) for x, y in points[-1])
-                scale = max(abs(series.law(x)) for x in case.places) or 1.0
-                print(f"{case.title}, {series.name}: within {100 * worst / scale:.2f} % of the law's "
-                      "largest value")
-            draw_case(draw, (k % COLUMNS * PANEL[0], k // COLUMNS * PANEL[1]), case, points)
-    picture.convert("P", palette=Image.ADAPTIVE, colors=16).save(sys.argv[2], optimize=True)
-
-
 if __name__ == "__main__":
-    main()
+    plot(__doc__, Stage, CASES, draw_case)

@@ -22,6 +22,7 @@ from PIL import Image, ImageDraw
 PANEL = (300, 190)
 MARGIN = (46, 36, 14, 20)  # left, top, right, bottom
 COLUMNS = 4
+COLOURS = [(200, 60, 40), (30, 70, 160), (60, 130, 60), (150, 90, 170), (130, 110, 30)]
 HALF_LIGHT = 299792458.0 / 2
 DEPTHS_M = [0.6, 0.9, 1.3, 1.8, 2.4, 3.1, 3.9, 4.8]
 SIGNALS = [0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0]
@@ -324,35 +325,48 @@ class Panel:
             self.draw.line([(x - 3, y), (x, y)], fill="black")
             self.text(x - 6 - 6 * len(text), y - 5, text)
 
-    def show(self):
+    def frame(self):
+        """Draws the titles and the axes."""
         self.text(self.left - 40, self.top - 32, self.case.title)
         self.text(self.left - 40, self.top - 19, self.case.what, fill=(110, 110, 110))
         self.axes()
-        inside = [self.place(x, y) for x, y in self.line if y <= self.y1]
-        self.draw.line(inside, fill=(200, 60, 40))
+
+    def curve(self, colour, point_colour):
+        """Draws the law and the measured points."""
+        self.draw.line([self.place(x, y) for x, y in self.line if y <= self.y1], fill=colour)
         for x, y in self.points:
             x, y = self.place(x, y)
-            self.draw.ellipse([x - 3, y - 3, x + 3, y + 3], outline=(30, 70, 160))
+            self.draw.ellipse([x - 3, y - 3, x + 3, y + 3], outline=point_colour)
 
 
-def main():
+def deviation_percent(case, law, points):
+    """The largest difference from the law, of its largest value."""
+    scale = max(abs(law(x)) for x in case.places) or 1.0
+    return 100 * max(abs(y - law(x)) for x, y in points) / scale
+
+
+def draw_noise(stage, draw, corner, case):
+    points = [(x, case.measure(stage, x)) for x in case.places]
+    print(f"{case.title}: within {deviation_percent(case, case.law, points):.1f} % of the law's largest value")
+    panel = Panel(draw, corner, case, points)
+    panel.frame()
+    panel.curve(COLOURS[0], COLOURS[1])
+
+
+def plot(usage, stage_type, cases, draw_case):
+    """Draws a picture with a panel for each case, by the program and into the file that the command line names."""
     if len(sys.argv) != 3:
-        sys.exit(__doc__)
+        sys.exit(usage)
     program = str(Path(sys.argv[1]).resolve())
-    rows = math.ceil(len(CASES) / COLUMNS)
+    rows = math.ceil(len(cases) / COLUMNS)
     picture = Image.new("RGB", (COLUMNS * PANEL[0], rows * PANEL[1]), "white")
     draw = ImageDraw.Draw(picture)
     with tempfile.TemporaryDirectory() as name:
-        stage = Stage(program, Path(name))
-        for k, case in enumerate(CASES):
-            points = [(x, case.measure(stage, x)) for x in case.places]
-            worst = max(abs(y - case.law(x)) for x, y in points)
-            scale = max(abs(case.law(x)) for x in case.places)
-            print(f"{case.title}: within {100 * worst / scale:.1f} % of the law's largest value")
-            corner = (k % COLUMNS * PANEL[0], k // COLUMNS * PANEL[1])
-            Panel(draw, corner, case, points).show()
+        stage = stage_type(program, Path(name))
+        for k, case in enumerate(cases):
+            draw_case(stage, draw, (k % COLUMNS * PANEL[0], k // COLUMNS * PANEL[1]), case)
     picture.convert("P", palette=Image.ADAPTIVE, colors=16).save(sys.argv[2], optimize=True)
 
 
 if __name__ == "__main__":
-    main()
+    plot(__doc__, Stage, CASES, draw_noise)

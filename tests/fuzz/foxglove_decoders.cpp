@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "foxglove_decoders.hpp"
 
+#include "demand.hpp"
+
 #include <glidar/core/error.hpp>
 #include <glidar/link/foxglove/http_routes.hpp>
 #include <glidar/link/foxglove/messages.hpp>
 
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 #include <variant>
 
@@ -15,12 +15,6 @@ namespace glidar::testing {
 namespace {
 
 using foxglove::HttpReply;
-
-void demand(bool holds, const char* promise) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", promise);
-  std::abort();
-}
 
 void try_routes(std::string_view text) {
   constexpr std::string_view kHost = "localhost:1";

@@ -2,20 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lockstep_decoders.hpp"
 
+#include "demand.hpp"
+
 #include <glidar/core/error.hpp>
 #include <glidar/link/lockstep/messages.hpp>
 
-#include <cstdio>
-#include <cstdlib>
-
 namespace glidar::testing {
 namespace {
-
-void demand(bool holds, const char* promise) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", promise);
-  std::abort();
-}
 
 void check(const lockstep::Body& body) {
   demand(is_rigid(body.world_from_body), "poses are rigid");

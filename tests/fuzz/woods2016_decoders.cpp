@@ -2,22 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "woods2016_decoders.hpp"
 
+#include "demand.hpp"
+
 #include <glidar/core/error.hpp>
 #include <glidar/woods2016/message_codec.hpp>
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 namespace glidar::testing {
 namespace {
-
-void demand(bool holds, const char* promise) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", promise);
-  std::abort();
-}
 
 bool try_placement(std::span<const std::byte> bytes) {
   try {

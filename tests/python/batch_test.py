@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 import pytest
-from conftest import poses_around, same
+from conftest import poses_around, same, two_spheres
 from waiting import wait_until
 
 import glidar
@@ -41,12 +41,7 @@ def test_results_do_not_depend_on_the_number_of_threads(asteroid, noisy):
 
 
 def test_objects_can_have_different_poses_in_every_frame(camera):
-    scene = glidar.Scene()
-    scene.add_model("builtin:sphere", name="a")
-    scene.add_instance(scene["a"], name="b")
-    left, right = glidar.pose([-1, 0, 0]), glidar.pose([1, 0, 0])
-    objects = np.stack([[left, right], [right, left], [left, left]])
-    poses = np.repeat(glidar.look_at([0, -8, 0], [0, 0, 0])[None], 3, 0)
+    scene, objects, poses = two_spheres()
     frames = glidar.simulate_batch(scene, camera, poses, objects=objects)
     first, second, third = (f.ground_truth.instance for f in frames)
     assert np.array_equal(np.where(first < 2, 1 - first, first), second)

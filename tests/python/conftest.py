@@ -72,6 +72,16 @@ def poses_around(count, distance=6.0):
     return np.stack([glidar.look_at([distance * np.cos(a), distance * np.sin(a), 1.0], [0, 0, 0]) for a in angles])
 
 
+def two_spheres():
+    """A scene of two spheres, their poses in three frames, and the sensor's."""
+    scene = glidar.Scene()
+    scene.add_model("builtin:sphere", name="a")
+    scene.add_instance(scene["a"], name="b")
+    left, right = glidar.pose([-1, 0, 0]), glidar.pose([1, 0, 0])
+    objects = np.stack([[left, right], [right, left], [left, left]])
+    return scene, objects, np.repeat(glidar.look_at([0, -8, 0], [0, 0, 0])[None], 3, 0)
+
+
 def same(one, other):
     """Whether two frames are bit-identical."""
     names = ("range_m", "intensity", "status", "sigma_m")

@@ -8,7 +8,7 @@ from itertools import count, islice
 
 import numpy as np
 import pytest
-from conftest import poses_around, same
+from conftest import poses_around, same, two_spheres
 
 import glidar
 
@@ -43,12 +43,8 @@ def test_noise_differs_between_frames_without_seeds(asteroid, noisy):
 
 
 def test_poses_of_objects_are_common_or_per_frame(camera):
-    scene = glidar.Scene()
-    scene.add_model("builtin:sphere", name="a")
-    scene.add_instance(scene["a"], name="b")
-    left, right = glidar.pose([-1, 0, 0]), glidar.pose([1, 0, 0])
-    objects = np.stack([[left, right], [right, left], [left, left]])
-    poses = np.repeat(glidar.look_at([0, -8, 0], [0, 0, 0])[None], 3, 0)
+    scene, objects, poses = two_spheres()
+    left, right = objects[0]
     expected = glidar.simulate_batch(scene, camera, poses, objects=objects)
     assert list(glidar.simulate_iter(scene, camera, poses, objects=objects)) == expected
     assert list(glidar.simulate_iter(scene, camera, poses, objects=iter(objects))) == expected

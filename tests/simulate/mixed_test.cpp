@@ -90,15 +90,7 @@ Mesh terrain(int cells, double side_m, const std::function<double(double, double
 
 Scene scene_of(const std::vector<Mesh>& meshes) {
   Scene scene;
-  for (const Mesh& mesh : meshes) {
-    const auto index = static_cast<std::uint32_t>(scene.meshes.size());
-    scene.meshes.push_back(mesh);
-    scene.sources.emplace_back();
-    scene.materials.emplace_back();
-    Instance& instance = scene.instances.emplace_back();
-    instance.mesh = index;
-    instance.materials = {index};
-  }
+  for (const Mesh& mesh : meshes) testing::add_mesh(scene, mesh);
   return scene;
 }
 

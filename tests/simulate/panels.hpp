@@ -4,7 +4,21 @@
 
 #include <glidar/core/scene.hpp>
 
+#include <utility>
+
 namespace glidar::testing {
+
+/// Adds an instance of a mesh; returns its material.
+inline Material& add_mesh(Scene& scene, Mesh mesh) {
+  const auto index = static_cast<std::uint32_t>(scene.meshes.size());
+  scene.meshes.push_back(std::move(mesh));
+  scene.sources.emplace_back();
+  scene.materials.emplace_back();
+  Instance& instance = scene.instances.emplace_back();
+  instance.mesh = index;
+  instance.materials = {index};
+  return scene.materials.back();
+}
 
 /// Panels in front of a camera at the origin with boresight z.
 struct PanelScene {
@@ -18,14 +32,7 @@ struct PanelScene {
     mesh.positions_m = {Eigen::Vector3f::Zero(), u.cast<float>(), (u + v).cast<float>(),
                         v.cast<float>()};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    const auto index = static_cast<std::uint32_t>(scene.meshes.size());
-    scene.meshes.push_back(mesh);
-    scene.sources.emplace_back();
-    scene.materials.emplace_back();
-    Instance& instance = scene.instances.emplace_back();
-    instance.mesh = index;
-    instance.materials = {index};
-    return scene.materials.back();
+    return add_mesh(scene, std::move(mesh));
   }
 
   /// Adds a wall perpendicular to z at a range, from x0 to x1.

@@ -94,15 +94,10 @@ void write_compressed(std::span<const PointField> fields, std::size_t count, Ato
 std::vector<PointField> pcd_fields(const PointCloud& cloud) {
   std::vector<PointField> fields;
   for (const Column& column : cloud.columns) {
-    if (is_colour(column)) {
-      fields.push_back({"rgb", &column, 0, Stored::packed_rgb});
-      continue;
-    }
-    const std::size_t first = fields.size();
-    append_fields(column, fields);
     // PCL's own points are float, and Open3D reads wider numbers as 0.
-    if (native_type(column) != Stored::f64) continue;
-    for (std::size_t f = first; f < fields.size(); ++f) fields[f].stored = Stored::f32;
+    for (PointField& field : append_pcl_fields(column, fields)) {
+      if (field.stored == Stored::f64) field.stored = Stored::f32;
+    }
   }
   return fields;
 }

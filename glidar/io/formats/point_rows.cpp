@@ -207,6 +207,16 @@ void append_fields(const Column& column, std::vector<PointField>& fields) {
     fields.push_back({column.components[c], &column, c, native_type(column)});
 }
 
+std::span<PointField> append_pcl_fields(const Column& column, std::vector<PointField>& fields) {
+  const std::size_t first = fields.size();
+  if (is_colour(column)) {
+    fields.push_back({"rgb", &column, 0, Stored::packed_rgb});
+  } else {
+    append_fields(column, fields);
+  }
+  return std::span(fields).subspan(first);
+}
+
 std::vector<PointField> native_fields(const PointCloud& cloud) {
   std::vector<PointField> fields;
   for (const Column& column : cloud.columns) append_fields(column, fields);

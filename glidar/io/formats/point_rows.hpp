@@ -53,6 +53,9 @@ bool is_colour(const Column& column);
 /// Appends a field per component, with the column's own names and type.
 void append_fields(const Column& column, std::vector<PointField>& fields);
 
+/// The same as PCL's point types have it, with colour packed into `rgb`; returns the new fields.
+std::span<PointField> append_pcl_fields(const Column& column, std::vector<PointField>& fields);
+
 /// A field per component of every column, with their own names and types.
 std::vector<PointField> native_fields(const PointCloud& cloud);
 

@@ -95,15 +95,9 @@ PointCloud chosen_cloud(const PointCloud& cloud, const CloudSource& source,
 std::vector<glidar::PointField> message_fields(const PointCloud& cloud) {
   std::vector<glidar::PointField> fields;
   for (const Column& column : cloud.columns) {
-    if (is_colour(column)) {
-      fields.push_back({"rgb", &column, 0, Stored::packed_rgb});
-      continue;
-    }
-    const std::size_t first = fields.size();
-    append_fields(column, fields);
-    for (std::size_t f = first; f < fields.size(); ++f) {
-      if (column.name == "xyz") fields[f].stored = Stored::f32;
-      if (fields[f].stored == Stored::i64) fields[f].stored = Stored::f64;
+    for (glidar::PointField& field : append_pcl_fields(column, fields)) {
+      if (column.name == "xyz") field.stored = Stored::f32;
+      if (field.stored == Stored::i64) field.stored = Stored::f64;
     }
   }
   return fields;

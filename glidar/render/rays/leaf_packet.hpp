@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/render/rays/block_rows.hpp>
 #include <glidar/render/rays/leaf_test.hpp>
 
 // Tests many rays of a packet with the triangles of a cluster: first eight triangles at once with
@@ -29,33 +30,6 @@ GLIDAR_INLINE Float8 edge_function_bound(const DirectionBox& box, const Vector<F
                                          const Vector<Float8>& q2, const Vector<Float8>& n) {
   return min(min(box.max_dot(q1), box.max_dot(q2)), box.max_dot(n - q1 - q2));
 }
-
-/// Values of eight triangles, to be read one triangle at a time.
-template <unsigned kRows>
-struct Rows {
-  alignas(32) float at[kRows][kBlockSize];
-
-  GLIDAR_INLINE void set(unsigned row, Float8 x) { store(at[row], x); }
-  GLIDAR_INLINE void set(unsigned row, const Vector<Float8>& v) {
-    set(row, v.x);
-    set(row + 1, v.y);
-    set(row + 2, v.z);
-  }
-  [[nodiscard]] GLIDAR_INLINE LaneFloat all(unsigned row, unsigned i) const {
-    return LaneFloat::all(at[row][i]);
-  }
-  [[nodiscard]] GLIDAR_INLINE Vector<LaneFloat> all3(unsigned row, unsigned i) const {
-    return {all(row, i), all(row + 1, i), all(row + 2, i)};
-  }
-  [[nodiscard]] GLIDAR_INLINE ErrorBounds<LaneFloat> bounds(unsigned row, unsigned i) const {
-    return {all(row, i), all(row + 1, i), all(row + 2, i)};
-  }
-  GLIDAR_INLINE void set(unsigned row, const ErrorBounds<Float8>& b) {
-    set(row, b.edge);
-    set(row + 1, b.det);
-    set(row + 2, b.den);
-  }
-};
 
 /// Rays [first, first + LaneFloat::kWidth) of three rows.
 GLIDAR_INLINE Vector<LaneFloat> lanes_of(const float (&rows)[3][kPacketSize], unsigned first) {
@@ -95,7 +69,7 @@ GLIDAR_INLINE void update_nearest(const TreeView& tree, RayPacket& p, const Lane
 /// Tests rays with a common origin with one triangle. Rows: q1, q2, n, det, bounds, all turned so
 /// that det is positive; then the edge functions of a hit are not negative.
 GLIDAR_INLINE void test_common_triangle(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
-                                        const Rows<13>& rows, std::uint32_t slot) {
+                                        const BlockRows<LaneFloat, 13>& rows, std::uint32_t slot) {
   const unsigned i = slot % kBlockSize;
   const Vector<LaneFloat> q1 = rows.all3(0, i);
   const Vector<LaneFloat> q2 = rows.all3(3, i);
@@ -126,7 +100,7 @@ inline void test_common(const TreeView& tree, const TriangleCluster& cluster, Ra
     const Mask8 outside = edge_function_bound(box, q1, q2, n) < s.bounds.edge * Float8::all(-2.0F);
     const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
     if (left == 0) continue;
-    Rows<13> rows;
+    BlockRows<LaneFloat, 13> rows;
     rows.set(0, q1);
     rows.set(3, q2);
     rows.set(6, n);
@@ -145,7 +119,7 @@ inline void test_common(const TreeView& tree, const TriangleCluster& cluster, Ra
 /// of the origins; e1, e2, bounds. From an origin s beside the middle, the edge functions of a
 /// direction d are d.q1 - e1.(d x s) and d.q2 + e2.(d x s), and det is less by s.n.
 GLIDAR_INLINE void test_spread_triangle(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
-                                        const Rows<19>& rows, std::uint32_t slot) {
+                                        const BlockRows<LaneFloat, 19>& rows, std::uint32_t slot) {
   const unsigned i = slot % kBlockSize;
   const Vector<LaneFloat> q1 = rows.all3(0, i);
   const Vector<LaneFloat> q2 = rows.all3(3, i);
@@ -186,7 +160,7 @@ inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, Ra
     const Mask8 outside = bound < s.bounds.edge * edge_margin;
     const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
     if (left == 0) continue;
-    Rows<19> rows;
+    BlockRows<LaneFloat, 19> rows;
     rows.set(0, s.q1);
     rows.set(3, s.q2);
     rows.set(6, s.n);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/render/rays/block_rows.hpp>
 #include <glidar/render/scan_raster/cell_rect.hpp>
 
 // Tests one triangle with the beams of eight adjacent cells.
@@ -41,34 +42,20 @@ GLIDAR_INLINE const FrameTransform& slopes_frame(const DrawContext& context) {
 /// rays/triangle_filter.hpp, whose bounds are 24 u L s; and 4 u s1 s2 to 8.2 u s1 s2 (10).
 inline constexpr float kTransformMargin = 1.5F;
 
-/// Values of eight triangles, to be read one triangle at a time. Distances det / den are in metres.
-struct TriangleRows {
+/// Values of eight triangles. Distances det / den are in metres.
+struct TriangleRows : BlockRows<Float8, 19> {
   static constexpr unsigned kQ1 = 0;
   static constexpr unsigned kQ2 = 3;
   static constexpr unsigned kN = 6;
   static constexpr unsigned kDet = 9;
-  static constexpr unsigned kEdgeBound = 10;
+  static constexpr unsigned kEdgeBound = 10;  ///< of ErrorBounds
   static constexpr unsigned kDetBound = 11;
   static constexpr unsigned kDenBound = 12;
   static constexpr unsigned kE1 = 13;  ///< only for beams with origins of their own
   static constexpr unsigned kE2 = 16;
-  static constexpr unsigned kCount = 19;
-  alignas(32) float at[kCount][kBlockSize];
 
-  GLIDAR_INLINE void set(unsigned row, Float8 x) { store(at[row], x); }
-  GLIDAR_INLINE void set(unsigned row, const Vector<Float8>& v) {
-    set(row, v.x);
-    set(row + 1, v.y);
-    set(row + 2, v.z);
-  }
-  [[nodiscard]] GLIDAR_INLINE Float8 all(unsigned row, unsigned i) const {
-    return Float8::all(at[row][i]);
-  }
-  [[nodiscard]] GLIDAR_INLINE Vector<Float8> all3(unsigned row, unsigned i) const {
-    return {all(row, i), all(row + 1, i), all(row + 2, i)};
-  }
-  [[nodiscard]] GLIDAR_INLINE ErrorBounds<Float8> bounds(unsigned i) const {
-    return {all(kEdgeBound, i), all(kDetBound, i), all(kDenBound, i)};
+  [[nodiscard]] GLIDAR_INLINE ErrorBounds<Float8> error_bounds(unsigned i) const {
+    return bounds(kEdgeBound, i);
   }
 };
 
@@ -103,7 +90,7 @@ GLIDAR_INLINE void keep_nearer(const DrawContext& context, const RowTriangle& tr
   const Interval<Float8> best = {Float8::load_unaligned(buffer.low + cell),
                                  Float8::load_unaligned(buffer.high + cell), zero, zero};
   const FilterResult<Float8> result =
-      classify(edges, candidates, det, triangle.rows.bounds(triangle.index), best);
+      classify(edges, candidates, det, triangle.rows.error_bounds(triangle.index), best);
   std::uint32_t uncertain = bits(result.uncertain);
   const std::uint32_t accepted = bits(result.accepted);
   if (placement.always_retests) {

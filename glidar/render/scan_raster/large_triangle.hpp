@@ -59,7 +59,7 @@ GLIDAR_INLINE TileTest test_tiles(const DrawContext& context, const RowTriangle&
   const Vector<Float8> q1 = t.rows.all3(TriangleRows::kQ1, t.index);
   const Vector<Float8> q2 = t.rows.all3(TriangleRows::kQ2, t.index);
   const Vector<Float8> n = t.rows.all3(TriangleRows::kN, t.index);
-  const ErrorBounds<Float8> bounds = t.rows.bounds(t.index);
+  const ErrorBounds<Float8> bounds = t.rows.error_bounds(t.index);
   const TileProducts v(context.sector, tile, q1);
   const TileProducts u(context.sector, tile, q2);
   const TileProducts w(context.sector, tile, n - q1 - q2);

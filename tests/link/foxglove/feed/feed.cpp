@@ -4,10 +4,10 @@
 //   glidar_foxglove_feed [SENSOR [PORT [FRAMES]]]
 // Prints the address, and one line per command of the page. Ends at the end of its input.
 #include <glidar/core/error.hpp>
+#include <glidar/io/ros/message_types.hpp>
 #include <glidar/link/foxglove/server.hpp>
 
 #include "ros_bytes.hpp"
-#include "ros_schemas.hpp"
 #include "street_drive.hpp"
 
 #include <poll.h>
@@ -69,17 +69,19 @@ std::string tiny_png() {
 }
 
 Channels add_channels(foxglove::FoxgloveServer& server) {
-  const auto add = [&](const char* topic, const char* name, std::string_view schema,
-                       std::size_t depth = 1) {
-    return server.add_channel(
-        {.topic = topic, .schema_name = name, .schema = std::string(schema), .depth = depth});
+  const auto add = [&](const char* topic, const ros::MessageType& type, std::size_t depth = 1) {
+    return server.add_channel({.topic = topic,
+                               .schema_name = std::string(type.name),
+                               .schema = ros::definition_text(type, ros::Wire::cdr),
+                               .depth = depth});
   };
-  return {.cloud = add("/points", "sensor_msgs/msg/PointCloud2", kPointCloud2),
-          .depth = add("/camera/depth", "sensor_msgs/msg/Image", kImage),
-          .picture = add("/camera/compressed", "sensor_msgs/msg/CompressedImage", kCompressedImage),
-          .tf = add("/tf", "tf2_msgs/msg/TFMessage", kTfMessage, 100),
-          .tf_static = add("/tf_static", "tf2_msgs/msg/TFMessage", kTfMessage),
-          .odometry = add("/odom", "nav_msgs/msg/Odometry", kOdometry, 100)};
+  const ros::MessageType& transforms = ros::message_type<ros::TFMessage>();
+  return {.cloud = add("/points", ros::message_type<ros::PointCloud2>()),
+          .depth = add("/camera/depth", ros::message_type<ros::Image>()),
+          .picture = add("/camera/compressed", ros::message_type<ros::CompressedImage>()),
+          .tf = add("/tf", transforms, 100),
+          .tf_static = add("/tf_static", transforms),
+          .odometry = add("/odom", ros::message_type<ros::Odometry>(), 100)};
 }
 
 /// Forward and back again.
