@@ -29,7 +29,7 @@ class MortonCurve {
     std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
       code |=
-          spread_bits(static_cast<std::uint64_t>(std::min(std::max(0.0F, step[axis]), kOrderSteps)))
+          expand_bits(static_cast<std::uint64_t>(std::min(std::max(0.0F, step[axis]), kOrderSteps)))
           << axis;
     }
     return code;

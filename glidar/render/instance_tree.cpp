@@ -20,8 +20,8 @@ Box box_in(const Eigen::Matrix3d& tree_from_sensor, const InstanceView& view, co
   return {middle - half, middle + half};
 }
 
-std::uint64_t spread_step(double step) {
-  return spread_bits(static_cast<std::uint64_t>(step));
+std::uint64_t expand_step(double step) {
+  return expand_bits(static_cast<std::uint64_t>(step));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void InstanceTree::sort_instances() {
   if (!(size_m > 0.0)) return;
   for (auto& [code, i] : order_) {
     const Eigen::Vector3d step = kMortonSteps / size_m * (boxes_[i].center() - middles.min());
-    code = spread_step(step.x()) | (spread_step(step.y()) << 1U) | (spread_step(step.z()) << 2U);
+    code = expand_step(step.x()) | (expand_step(step.y()) << 1U) | (expand_step(step.z()) << 2U);
   }
   std::sort(order_.begin(), order_.end());
 }

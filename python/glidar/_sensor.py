@@ -134,7 +134,7 @@ class Sensor(Immutable):
         if columns_per_turn is not None:
             options.columns_per_turn = _columns(columns_per_turn)
         if returns is not None:
-            options.set_returns(_return_words(returns))
+            options.set_returns(_return_names(returns))
         return Sensor(self._core.changed(options))
 
     def __eq__(self, other: object) -> bool:
@@ -273,7 +273,7 @@ def _columns(value: object) -> int:
     raise Error("columns_per_turn", shown(value), "a whole number from 1 to 1048576")
 
 
-def _return_words(returns: object) -> list[str]:
+def _return_names(returns: object) -> list[str]:
     """Names of returns, or a number as a single string."""
     if isinstance(returns, str):
         return text_of(returns, "returns").split(",")

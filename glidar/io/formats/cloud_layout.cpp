@@ -95,54 +95,47 @@ double return_type(double status) {
   return status == static_cast<double>(Status::hit) ? 1.0 : 0.0;
 }
 
+/// x, y and z, and these fields after them.
+std::vector<LayoutField> with_xyz(std::vector<LayoutField> fields) {
+  const std::vector<LayoutField> xyz = {
+      {"x", F32{}, "xyz", 0, same}, {"y", F32{}, "xyz", 1, same}, {"z", F32{}, "xyz", 2, same}};
+  fields.insert(fields.begin(), xyz.begin(), xyz.end());
+  return fields;
+}
+
 /// The fields of rslidar_sdk and HesaiLidar_ROS_2.0, which are equal.
 std::vector<LayoutField> absolute_time_fields() {
-  return {{"x", F32{}, "xyz", 0, same},     {"y", F32{}, "xyz", 1, same},
-          {"z", F32{}, "xyz", 2, same},     {"intensity", F32{}, kReflectivity, 0, percent_byte},
-          {"ring", U16{}, "ring", 0, same}, {"timestamp", F64{}, "stamp", 0, seconds}};
+  return with_xyz({{"intensity", F32{}, kReflectivity, 0, percent_byte},
+                   {"ring", U16{}, "ring", 0, same},
+                   {"timestamp", F64{}, "stamp", 0, seconds}});
 }
 
 /// The fields of both drivers of Ouster; `unused` is always zero.
 std::vector<LayoutField> ouster_fields(const LayoutField& ring, const std::string& unused) {
-  return {{"x", F32{}, "xyz", 0, same},
-          {"y", F32{}, "xyz", 1, same},
-          {"z", F32{}, "xyz", 2, same},
-          {"intensity", F32{}, "intensity", 0, same},
-          {"t", U32{}, "time", 0, same},
-          {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
-          ring,
-          {unused, U16{}, "", 0, nullptr},
-          {"range", U32{}, "range", 0, millimetres}};
+  return with_xyz({{"intensity", F32{}, "intensity", 0, same},
+                   {"t", U32{}, "time", 0, same},
+                   {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
+                   ring,
+                   {unused, U16{}, "", 0, nullptr},
+                   {"range", U32{}, "range", 0, millimetres}});
 }
 
 /// The sources of each layout are in docs/files/layouts.md.
 const std::vector<Layout>& layouts() {
   static const std::vector<Layout> kLayouts = {
-      {"minimal",
-       "coordinates",
-       {{"x", F32{}, "xyz", 0, same},  //
-        {"y", F32{}, "xyz", 1, same},
-        {"z", F32{}, "xyz", 2, same}}},
-      {"velodyne",
-       "velodyne_pointcloud",
-       {{"x", F32{}, "xyz", 0, same},
-        {"y", F32{}, "xyz", 1, same},
-        {"z", F32{}, "xyz", 2, same},
-        {"intensity", F32{}, kReflectivity, 0, percent_byte},
-        {"ring", U16{}, "ring", 0, same},
-        {"time", F32{}, "time", 0, seconds}}},
+      {"minimal", "coordinates", with_xyz({})},
+      {"velodyne", "velodyne_pointcloud",
+       with_xyz({{"intensity", F32{}, kReflectivity, 0, percent_byte},
+                 {"ring", U16{}, "ring", 0, same},
+                 {"time", F32{}, "time", 0, seconds}})},
       {"ouster", "ouster-ros", ouster_fields({"ring", U16{}, "ring", 0, same}, "ambient")},
       {"ouster-2022", "ouster_example before 2023, LIO-SAM",
        ouster_fields({"ring", U8{}, "ring", 0, same}, "noise")},
-      {"livox",
-       "livox_ros_driver2",
-       {{"x", F32{}, "xyz", 0, same},
-        {"y", F32{}, "xyz", 1, same},
-        {"z", F32{}, "xyz", 2, same},
-        {"intensity", F32{}, kReflectivity, 0, livox_byte},
-        {"tag", U8{}, "return", 0, livox_tag},
-        {"line", U8{}, "ring", 0, same},
-        {"timestamp", F64{}, "stamp", 0, same}}},
+      {"livox", "livox_ros_driver2",
+       with_xyz({{"intensity", F32{}, kReflectivity, 0, livox_byte},
+                 {"tag", U8{}, "return", 0, livox_tag},
+                 {"line", U8{}, "ring", 0, same},
+                 {"timestamp", F64{}, "stamp", 0, same}})},
       {"livox-custom",
        "livox_ros_driver2, CustomMsg",
        {{"offset_time", U32{}, "time", 0, same},
@@ -154,18 +147,14 @@ const std::vector<Layout>& layouts() {
         {"line", U8{}, "ring", 0, same}}},
       {"robosense", "rslidar_sdk", absolute_time_fields()},
       {"hesai", "HesaiLidar_ROS_2.0", absolute_time_fields()},
-      {"autoware",
-       "Autoware",
-       {{"x", F32{}, "xyz", 0, same},
-        {"y", F32{}, "xyz", 1, same},
-        {"z", F32{}, "xyz", 2, same},
-        {"intensity", U8{}, kReflectivity, 0, percent_byte},
-        {"return_type", U8{}, "status", 0, return_type},
-        {"channel", U16{}, "ring", 0, same},
-        {"azimuth", F32{}, "azimuth", 0, whole_turn},
-        {"elevation", F32{}, "elevation", 0, same},
-        {"distance", F32{}, "range", 0, same},
-        {"time_stamp", U32{}, "time", 0, same}}},
+      {"autoware", "Autoware",
+       with_xyz({{"intensity", U8{}, kReflectivity, 0, percent_byte},
+                 {"return_type", U8{}, "status", 0, return_type},
+                 {"channel", U16{}, "ring", 0, same},
+                 {"azimuth", F32{}, "azimuth", 0, whole_turn},
+                 {"elevation", F32{}, "elevation", 0, same},
+                 {"distance", F32{}, "range", 0, same},
+                 {"time_stamp", U32{}, "time", 0, same}})},
   };
   return kLayouts;
 }
@@ -317,12 +306,12 @@ std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& senso
 }
 
 std::span<const PointFieldLayout> cloud_layouts() {
-  static const std::vector<PointFieldLayout> kTold = [] {
+  static const std::vector<PointFieldLayout> kLayouts = [] {
     std::vector<PointFieldLayout> all;
     for (const Layout& layout : layouts()) all.push_back(public_layout(layout));
     return all;
   }();
-  return kTold;
+  return kLayouts;
 }
 
 const PointFieldLayout& find_layout(std::string_view name) {

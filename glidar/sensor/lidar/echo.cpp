@@ -248,7 +248,7 @@ void visit_returns(FieldVisitor& visitor, std::vector<Return>& returns) {
   std::uint32_t count = visitor.is_document() && are_nearest(returns) ? size : 0;
   visitor.words_or_count(
       {"returns", "reported returns, or N for the N nearest echoes; `--returns` overrides it"},
-      return_words(), max_size, names, count);
+      known_return_names(), max_size, names, count);
   if (!visitor.is_reading()) return;
   if (count > 0) {
     returns = nearest_returns(count);

@@ -97,7 +97,7 @@ FogProfile fog_profile(const LidarEquation& light, double backscatter_per_m_sr, 
   const double backscatter = std::numbers::pi * backscatter_per_m_sr;
   const auto at = [&](double place) {
     const double range_m = start_m + place * profile.step_m;
-    const double w = air_signal(light, backscatter, range_m);
+    const double w = weather_signal(light, backscatter, range_m);
     const SineCosine angle = sincos_turns(range_m * profile.turns_per_m);
     return Sums{w, w * angle.cosine, w * angle.sine};
   };

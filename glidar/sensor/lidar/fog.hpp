@@ -38,7 +38,7 @@ struct FogReturn {
 };
 
 /// A layer dr of fog returns the signal of a surface with the reflectance pi backscatter dr:
-/// w(r) = air_signal(pi backscatter, r).
+/// w(r) = weather_signal(pi backscatter, r).
 FogProfile fog_profile(const LidarEquation& light, double backscatter_per_m_sr,
                        double pulse_fwhm_s);
 

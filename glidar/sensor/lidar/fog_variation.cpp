@@ -26,11 +26,11 @@ double farthest_m(const LidarEquation& light, double step_m) {
   double brightest = 0.0;
   for (double range_m = min_visible_range_m(light); range_m < bend_m(light) + step_m;
        range_m += step_m) {
-    brightest = std::max(brightest, air_signal(light, 1.0, range_m));
+    brightest = std::max(brightest, weather_signal(light, 1.0, range_m));
   }
   double range_m = bend_m(light);
   while (range_m < kFarthest * bend_m(light) &&
-         air_signal(light, 1.0, range_m) > kMinShare * brightest) {
+         weather_signal(light, 1.0, range_m) > kMinShare * brightest) {
     range_m *= kGrowth;
   }
   return range_m;

@@ -115,7 +115,7 @@ void find_crosses(const Beams& beams, BeamRange range, Crosses& crosses) {
 }
 
 /// Expands up to kAtOnce beams; their sub-rays begin at index `first`.
-void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range,
+void expand_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range,
                  std::size_t first, Beams& out) {
   Crosses crosses;
   Vectors start_m{};
@@ -225,7 +225,7 @@ void expand_beams(const std::vector<SubRay>& rays, const Beams& beams, BeamRange
                              for (std::size_t k = begin; k < end; k += kAtOnce) {
                                const std::size_t beam = range.begin + k;
                                const std::size_t some = std::min(kAtOnce, end - k);
-                               spread_some(rays, beams, {beam, beam + some}, k * rays.size(), out);
+                               expand_some(rays, beams, {beam, beam + some}, k * rays.size(), out);
                              }
                            });
 }

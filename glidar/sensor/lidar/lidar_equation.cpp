@@ -104,8 +104,8 @@ void collect_sent(const Scene& scene, double wavelength_m, const Hits& hits, Bea
 }
 
 /// received_signal() for the exponent 2 in clear air without overlap.
-GLIDAR_SIMD void spread_by_square(const LidarEquation& light, const double* range_m,
-                                  std::size_t count, double* signals) {
+GLIDAR_SIMD void apply_inverse_square_law(const LidarEquation& light, const double* range_m,
+                                          std::size_t count, double* signals) {
   for (std::size_t i = 0; i < count; ++i) {
     const double ratio = light.reference_range_m / range_m[i];
     const double signal = signals[i] / light.reference_reflectance * (ratio * ratio);
@@ -114,18 +114,18 @@ GLIDAR_SIMD void spread_by_square(const LidarEquation& light, const double* rang
 }
 
 /// received_signal() for any exponent in clear air without overlap.
-GLIDAR_SIMD void spread_by_power(const LidarEquation& light, const double* range_m,
+GLIDAR_SIMD void apply_power_law(const LidarEquation& light, const double* range_m,
                                  std::size_t count, double* signals) {
   for (std::size_t i = 0; i < count; ++i) {
     const double range = signals[i] > 0.0 ? range_m[i] : 1.0;  // a miss has no range
-    const double spread = portable_pow(light.reference_range_m / range, light.range_exponent);
-    const double signal = signals[i] / light.reference_reflectance * spread;
+    const double falloff = portable_pow(light.reference_range_m / range, light.range_exponent);
+    const double signal = signals[i] / light.reference_reflectance * falloff;
     signals[i] = signals[i] > 0.0 ? signal : 0.0;
   }
 }
 
 /// True if the signal depends on the range only by its power law.
-bool only_spreads(const LidarEquation& light) {
+bool is_power_law_only(const LidarEquation& light) {
   return light.overlap.empty() && light.extinction_per_m == 0.0 &&
          light.weather_extinction_per_m == 0.0;
 }
@@ -211,9 +211,9 @@ double relative_overlap(const LidarEquation& light, double range_m) {
 
 double received_signal(const LidarEquation& light, double backscatter, double range_m) {
   const double ratio = light.reference_range_m / range_m;
-  const double spread =
+  const double falloff =
       light.range_exponent == 2.0 ? ratio * ratio : portable_pow(ratio, light.range_exponent);
-  double signal = backscatter / light.reference_reflectance * spread;
+  double signal = backscatter / light.reference_reflectance * falloff;
   if (light.extinction_per_m > 0.0) {
     signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
   }
@@ -232,9 +232,9 @@ void received_signals(const LidarEquation& light, const Scene& scene, double wav
   collect_sent(scene, wavelength_m, hits, range, signals);
   const double* range_m = &hits.range_m[range.begin];
   const std::size_t count = range.end - range.begin;
-  if (only_spreads(light)) {
-    const auto spread = light.range_exponent == 2.0 ? spread_by_square : spread_by_power;
-    spread(light, range_m, count, signals.data());
+  if (is_power_law_only(light)) {
+    const auto apply_law = light.range_exponent == 2.0 ? apply_inverse_square_law : apply_power_law;
+    apply_law(light, range_m, count, signals.data());
     return;
   }
   for (std::size_t k = 0; k < count; ++k) {

@@ -91,7 +91,7 @@ double beam_volume_m3(const BeamShape& beam, double range_m) {
 double drop_signal(const LidarEquation& light, const DropField& field, double range_m,
                    double diameter_m) {
   const double ratio = diameter_m / beam_diameter_m(field.beam, range_m);
-  return air_signal(light, field.sizes.reflectance * std::min(1.0, ratio * ratio), range_m);
+  return weather_signal(light, field.sizes.reflectance * std::min(1.0, ratio * ratio), range_m);
 }
 
 DropField drop_field(const LidarEquation& light, const DropSizes& sizes, const BeamShape& beam,

@@ -10,9 +10,9 @@ namespace {
 
 using Order = Return::Order;
 
-constexpr std::array<const char*, 6> kReturnWords = {"first", "second",    "third",
+constexpr std::array<const char*, 6> kReturnNames = {"first", "second",    "third",
                                                      "last",  "strongest", "second_strongest"};
-constexpr std::array<Return, kReturnWords.size()> kReturns = {{{Order::nearest, 0},
+constexpr std::array<Return, kReturnNames.size()> kReturns = {{{Order::nearest, 0},
                                                                {Order::nearest, 1},
                                                                {Order::nearest, 2},
                                                                {Order::farthest, 0},
@@ -25,17 +25,17 @@ bool is_same(const Return& a, const Return& b) {
 
 }  // namespace
 
-std::span<const char* const> return_words() {
-  return kReturnWords;
+std::span<const char* const> known_return_names() {
+  return kReturnNames;
 }
 
 std::vector<std::string> return_names() {
-  return {kReturnWords.begin(), kReturnWords.end()};
+  return {kReturnNames.begin(), kReturnNames.end()};
 }
 
 Return return_named(std::string_view name) {
-  const auto at = std::find(kReturnWords.begin(), kReturnWords.end(), name);
-  return kReturns.at(static_cast<std::size_t>(at - kReturnWords.begin()));
+  const auto at = std::find(kReturnNames.begin(), kReturnNames.end(), name);
+  return kReturns.at(static_cast<std::size_t>(at - kReturnNames.begin()));
 }
 
 std::vector<Return> nearest_returns(std::uint32_t count) {
@@ -51,7 +51,7 @@ bool are_nearest(const std::vector<Return>& returns) {
 
 std::string return_name(const Return& one) {
   for (std::size_t i = 0; i < kReturns.size(); ++i) {
-    if (is_same(kReturns[i], one)) return kReturnWords[i];
+    if (is_same(kReturns[i], one)) return kReturnNames[i];
   }
   return "return " + std::to_string(one.rank + 1);  // of the nearest
 }

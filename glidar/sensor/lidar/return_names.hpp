@@ -12,7 +12,7 @@
 namespace glidar {
 
 /// The names of returns: "first", "second", "last", "strongest", ...
-std::span<const char* const> return_words();
+std::span<const char* const> known_return_names();
 std::vector<std::string> return_names();
 
 /// The return of one of these names.

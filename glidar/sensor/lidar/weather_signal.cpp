@@ -27,7 +27,7 @@ double crossover(const LidarEquation& light, double range_m) {
   return std::clamp((range_m - kBlindRange_m) / (kFullOverlap_m - kBlindRange_m), 0.0, 1.0);
 }
 
-double air_signal(const LidarEquation& light, double backscatter, double range_m) {
+double weather_signal(const LidarEquation& light, double backscatter, double range_m) {
   return received_signal(light, backscatter, range_m) * crossover(light, range_m);
 }
 

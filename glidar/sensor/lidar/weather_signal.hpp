@@ -19,6 +19,6 @@ double min_visible_range_m(const LidarEquation& light);
 double crossover(const LidarEquation& light, double range_m);
 
 /// S of backscatter from the air: received_signal() times the crossover.
-double air_signal(const LidarEquation& light, double backscatter, double range_m);
+double weather_signal(const LidarEquation& light, double backscatter, double range_m);
 
 }  // namespace glidar

@@ -68,7 +68,7 @@ GLIDAR_SIMD void quantise(double step_m, double offset_m, NoiseBatch& b) {
   }
 }
 
-GLIDAR_SIMD void spread_out(PairBatch& uniforms) {
+GLIDAR_SIMD void to_symmetric_uniforms(PairBatch& uniforms) {
   for (std::size_t i = 0; i < kSampleBatch; ++i) {
     uniforms.first[i] = 2.0 * uniforms.first[i] - 1.0;
     uniforms.second[i] = 2.0 * uniforms.second[i] - 1.0;
@@ -129,7 +129,7 @@ void apply(const RangeUniform& step, const NoiseView& /*view*/, NoiseBatch& batc
   sample_uniforms(batch.sampler.key, x);
   record_uniform(batch.sampler, kAdditive, x.first);
   record_uniform(batch.sampler, kMultiplicative, x.second);
-  spread_out(x);
+  to_symmetric_uniforms(x);
   add_uniform_model(step, x, 1.0 / 3.0, batch);  // variance of a uniform number in -1..1
 }
 
