@@ -163,12 +163,12 @@ Clip clip(const ClosedForm& form, const RealVector& origin, const RealVector& di
       c.outside = std::max(c.outside, -inside);
       continue;
     }
-    const Real t = inside / slope;
-    if (slope < 0.0L && t > c.enter) {
-      c.enter = t;
+    // Divisions take most of the time, and few sides need them: t = inside / slope.
+    if (slope < 0.0L && inside < c.enter * slope) {
+      c.enter = inside / slope;
       c.entry = i;
-    } else if (slope > 0.0L && t < c.leave) {
-      c.leave = t;
+    } else if (slope > 0.0L && inside < c.leave * slope) {
+      c.leave = inside / slope;
       c.exit = i;
     }
   }
