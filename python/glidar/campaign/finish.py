@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the files of a complete campaign: index, trajectories and manifest."""
 
+import functools
 import importlib.metadata
 import json
 import platform
@@ -14,6 +15,7 @@ MANIFEST_FILE = "manifest.json"
 PACKAGES = ["numpy", "scipy", "pyarrow", "pillow"]
 
 
+@functools.cache  # reading them takes as long as some trials
 def versions():
     found = {"python": platform.python_version()}
     for name in PACKAGES:

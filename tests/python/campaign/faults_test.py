@@ -5,7 +5,6 @@ the same bytes."""
 
 import functools
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -14,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from campaign_support import Campaign
+from campaign_support import Campaign, memory_folder
 from faults import ERRORS, NO_LIBRARY, Faults, library
 from waiting import MAX_WAIT_S
 
@@ -31,13 +30,10 @@ FAULTS = [(RUN, "open", "ENOSPC"), (RUN, "write", "EIO"), (RUN, "write", "ENOSPC
           (MERGE, "rename", "EIO"), (MERGE, "close", "EIO")]
 
 
-MEMORY = Path("/dev/shm")  # thousands of folders are made and removed, which takes long on a disk
-
-
 @pytest.fixture(scope="module")
 def made():
     """A campaign with all outputs, its parts, and the files of the complete campaign."""
-    with tempfile.TemporaryDirectory(dir=MEMORY if os.access(MEMORY, os.W_OK) else None) as folder:
+    with tempfile.TemporaryDirectory(dir=memory_folder()) as folder:
         yield make_campaign(Path(folder))
 
 
