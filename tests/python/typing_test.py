@@ -34,7 +34,7 @@ except glidar.Error as error:
 
 @pytest.fixture(scope="module")
 def cache(tmp_path_factory):
-    """What mypy remembers of packages, once for all programs."""
+    """What mypy remembers of packages, once for all programs and each set of options."""
     return tmp_path_factory.mktemp("mypy")
 
 
@@ -43,7 +43,7 @@ def check(cache, path, *arguments):
     package = str(Path(glidar.__file__).parent.parent)
     return subprocess.run(
         [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", *arguments, str(path)],
-        env={"MYPYPATH": package, "PATH": "/usr/bin:/bin", "MYPY_CACHE_DIR": str(cache)},
+        env={"MYPYPATH": package, "PATH": "/usr/bin:/bin", "MYPY_CACHE_DIR": str(cache / "_".join(arguments))},
         capture_output=True,
         text=True,
         check=False,
