@@ -14,7 +14,7 @@ namespace {
 
 link::CurveKeys make_file(const std::string& path, Console& console) {
   const link::CurveKeys keys = link::make_curve_keys();
-  AtomicFile file(path, AtomicFile::Readers::owner);
+  AtomicFile file(path, AtomicFile::Permissions::owner_only);
   file.write("public " + keys.public_key + "\nsecret " + keys.secret_key + "\n");
   file.commit();
   console.info("created new keys in " + path + "; clients need the public one: " + keys.public_key);

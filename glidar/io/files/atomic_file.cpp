@@ -76,7 +76,7 @@ Temporary open_temporary(const std::filesystem::path& folder, const std::filesys
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : path_(path) {
+AtomicFile::AtomicFile(const std::filesystem::path& path, Permissions permissions) : path_(path) {
   std::error_code ignored;  // an inaccessible path fails below with the reason
   if (std::filesystem::is_directory(path, ignored))
     throw Error({path.string(), "is a folder", "a file name"});
@@ -86,7 +86,8 @@ AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : pat
   buffer_.resize(kPieceBytes);
   constexpr mode_t kDefault = 0666;
   constexpr mode_t kOwner = 0600;
-  Temporary made = open_temporary(folder, path, readers == Readers::owner ? kOwner : kDefault);
+  Temporary made =
+      open_temporary(folder, path, permissions == Permissions::owner_only ? kOwner : kDefault);
   temporary_ = std::move(made.name);
   descriptor_ = made.descriptor;
   slot_ = made.slot;

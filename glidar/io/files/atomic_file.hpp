@@ -26,10 +26,11 @@ class ClosedPipe : public Error {
 class AtomicFile {
  public:
   /// Who may read the file: everyone whom the user's umask allows, or its owner only.
-  enum class Readers : std::uint8_t { by_default, owner };
+  enum class Permissions : std::uint8_t { by_umask, owner_only };
   /// Throws Error when `path` exists and is not a regular file (a folder, a device), or no file can
   /// be created in its folder.
-  explicit AtomicFile(const std::filesystem::path& path, Readers readers = Readers::by_default);
+  explicit AtomicFile(const std::filesystem::path& path,
+                      Permissions permissions = Permissions::by_umask);
   /// The same for an open file descriptor that stays open, such as standard output: commit()
   /// writes the bytes to it, in order. `name` appears in errors.
   AtomicFile(int target, const std::filesystem::path& name);

@@ -27,7 +27,7 @@ double scaled_intensity(const IntensityScale& step, double reflectance) {
   switch (step.kind) {
     case IntensityScale::Kind::vendor:
       return vendor_intensity(reflectance, step.max_reflectance);
-    case IntensityScale::Kind::plain:
+    case IntensityScale::Kind::linear:
       return reflectance;
     default:
       return std::clamp(reflectance, 0.0, 1.0);
@@ -71,7 +71,7 @@ void describe(IntensityGaussian& step, FieldVisitor& visitor) {
 void describe(IntensityScale& step, FieldVisitor& visitor) {
   using Kind = IntensityScale::Kind;
   constexpr std::array<Named<Kind>, 3> kNames = {
-      {{"unit", Kind::unit}, {"vendor", Kind::vendor}, {"plain", Kind::plain}}};
+      {{"unit", Kind::unit}, {"vendor", Kind::vendor}, {"linear", Kind::linear}}};
   constexpr NumberRule kAboveOne = {1.0, 1e300, true, "a finite number above 1"};
   visitor.number({"gain", "factor"}, kAboveZero, step.gain);
   visitor.number({"reference_m", "range of the range compensation; 0: none", kUnitMetre}, kFromZero,

@@ -22,17 +22,17 @@ struct IntensityGaussian {
 
 /// The scale of reported intensities. The apparent reflectance is gain I, or gain I (R /
 /// reference)^2 if the sensor compensates the range.
-///  plain: unchanged.
+///  linear: unchanged.
 ///  unit: clipped to 0..1.
 ///  vendor: an integer from 0 to 255: round(100 rho) up to 100 for diffuse surfaces;
 ///  101 + round(154 ln(rho) / ln(max_reflectance)), up to 255, for retro-reflectors.
 struct IntensityScale {
   static constexpr TypeInfo kType = {
       "intensity_scale",
-      "ρ = gain I, times (R/reference)² if set; `plain`: unchanged; `unit`: clipped to 0..1; "
+      "ρ = gain I, times (R/reference)² if set; `linear`: unchanged; `unit`: clipped to 0..1; "
       "`vendor`: round(100 ρ), for retro-reflectors 101 + round(154 ln ρ / ln max_reflectance)",
       "0-100 and 101-255 as Velodyne"};
-  enum class Kind : std::uint8_t { unit, vendor, plain };
+  enum class Kind : std::uint8_t { unit, vendor, linear };
   Kind kind = Kind::unit;
   double gain = 1.0;
   double reference_m = 0.0;        ///< 0: no range compensation

@@ -148,7 +148,7 @@ TEST(AtomicFile, DoesNotReplacePipesAndDevices) {
 
 TEST(AtomicFile, CanBePrivateToItsOwner) {
   const testing::TestFolder folder;
-  AtomicFile file(folder / "key", AtomicFile::Readers::owner);
+  AtomicFile file(folder / "key", AtomicFile::Permissions::owner_only);
   file.commit();
   struct stat about {};
   ASSERT_EQ(::stat((folder / "key").c_str(), &about), 0);

@@ -123,7 +123,7 @@ TEST(PointFieldLayout, ReflectivitiesOfCalibratedSensorsAreUnchanged) {
   CloudFixture made = points_with("intensity", std::vector<float>{0.0F, 20.0F, 100.0F, 200.0F});
   made.sensor.lidar_equation = LidarEquation{};
   const IntensityScale compensates{
-      .kind = IntensityScale::Kind::plain, .gain = 0.9, .reference_m = 100.0};
+      .kind = IntensityScale::Kind::linear, .gain = 0.9, .reference_m = 100.0};
   const IntensityScale spells{.kind = IntensityScale::Kind::vendor, .max_reflectance = 1000.0};
   made.sensor.noise = {compensates, RangeGaussian{.sigma_m = 0.01}, spells};
   EXPECT_THAT(field<float>(made, "velodyne", "intensity"),

@@ -141,7 +141,7 @@ TEST(IntensityScale, ReportsDiffuseAndRetroReflectorsOnTheVendorScale) {
   stage.apply({IntensityScale{}});
   EXPECT_EQ(stage.frame.intensity[0], 1.0F);
   stage.reset(20.0, 3.0);
-  stage.apply({IntensityScale{.kind = IntensityScale::Kind::plain, .gain = 0.5}});
+  stage.apply({IntensityScale{.kind = IntensityScale::Kind::linear, .gain = 0.5}});
   EXPECT_EQ(stage.frame.intensity[0], 1.5F);
 }
 
