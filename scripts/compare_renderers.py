@@ -62,6 +62,16 @@ def sensors_of(options):
     return sensors
 
 
+# From the optical frame (z ahead, y down) to that of scanners (x ahead, z up).
+OPTICAL_FROM_SCANNER = np.array([[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], dtype=float)
+
+
+def pose_of(sensor, eye, at):
+    """The sensor looks at a point."""
+    pose = np.asarray(glidar.look_at(eye, at))
+    return pose if sensor.boresight[2] == 1 else pose @ OPTICAL_FROM_SCANNER
+
+
 def truth_of(scene, sensor, pose, renderer):
     frame = scene.simulator(sensor, renderer=renderer).simulate(pose, columns="all")
     columns = {name: np.ascontiguousarray(getattr(frame.ground_truth, name)) for name in COLUMNS}
@@ -85,8 +95,8 @@ def compare(file, sensors, options, random, hits):
         at = target(scene, random)
         if np.allclose(eye, at):
             continue
-        pose = glidar.look_at(eye, at)
         for name, sensor in sensors.items():
+            pose = pose_of(sensor, eye, at)
             truths = {renderer: truth_of(scene, sensor, pose, renderer) for renderer in options.renderers}
             reference = options.renderers[0]
             hits[name] += np.isfinite(truths[reference]["range_m"]).sum()
