@@ -4,11 +4,12 @@
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/fisher_output.hpp>
+#include <apps/glidar/run/frame_order.hpp>
 #include <apps/glidar/run/imu_outputs.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
-#include <apps/glidar/run/recording_outputs.hpp>
+#include <apps/glidar/run/recording_sinks.hpp>
 #include <apps/glidar/run/rig_outputs.hpp>
 #include <glidar/core/error.hpp>
 
@@ -91,16 +92,17 @@ struct Job {
   const RenderFlags& flags;
   const CommandRecord& command;
   const PreparedScene& prepared;
-  std::vector<std::unique_ptr<RecordingOutput>> recordings = {};
-  std::vector<std::filesystem::path> written = {};  ///< so far
+  std::vector<OutputFlags> files = {};                      ///< of each sensor
+  std::vector<std::unique_ptr<FrameSink>> recordings = {};  ///< bags and packet captures
+  std::vector<std::filesystem::path> written = {};          ///< so far
 };
 
-HitColumnMask needed_hit_columns(const Job& job, const ActiveSensor& active,
+HitColumnMask needed_hit_columns(const Job& job, std::size_t sensor_index,
                                  const std::vector<Output>& outputs) {
   HitColumnMask hit_columns = hit_columns_for_outputs(outputs);
   hit_columns.normal = hit_columns.normal || job.flags.fisher.is_requested;
   for (const auto& recording : job.recordings) {
-    hit_columns = hit_columns | hit_columns_for(recording->columns(active));
+    hit_columns = hit_columns | hit_columns_for(recording->columns(sensor_index));
   }
   return hit_columns;
 }
@@ -132,10 +134,10 @@ std::vector<Output> plan_frame(const RenderFlags& flags, const OutputFlags& file
 }
 
 /// Appends a frame to the recordings.
-void record(const Job& job, const ActiveSensor& active, const View& view, Console& console) {
+void record(const Job& job, const MeasuredFrame& measured, Console& console) {
   if (job.recordings.empty()) return;
   const ProgressScope progress(console, "writing");
-  for (const auto& recording : job.recordings) recording->write(active, view.frame, view.beams);
+  for (const auto& recording : job.recordings) recording->write(measured);
 }
 
 /// Completes the recordings.
@@ -152,33 +154,50 @@ void finish_recordings(Job& job) {
   }
 }
 
-/// All frames of one sensor, each written to files of its own and to the recordings.
-void measure_all(Job& job, const OutputFlags& files, const ActiveSensor& active, Console& console) {
-  const RenderFlags& flags = job.flags;
-  const PreparedScene& prepared = job.prepared;
+/// The command that repeats the frames of one sensor.
+CommandRecord command_of(const Job& job, const ActiveSensor& active) {
   CommandRecord command = job.command;
-  if (!label_of(flags, active).empty()) {
+  if (!label_of(job.flags, active).empty()) {
     command.arguments.insert(command.arguments.end(), {"--sensor-name", active.name});
   }
-  Frame frame;
-  for (std::uint32_t k = 0; k < active.frames; ++k) {
-    const std::shared_ptr<const Beams> beams = active.simulator->beams(k);
-    const SidecarContext context{.scene = prepared.scene,
-                                 .sensor = active.sensor,
-                                 .beams = *beams,
-                                 .renderer = renderer_name(flags),
-                                 .command = command,
-                                 .inputs = prepared.files};
-    const View view{prepared.scene, active.sensor, *beams, frame};
-    const std::vector<Output> outputs =
-        plan_frame(flags, files_of(flags, files, active, k), context, console);
-    refuse_overwrite_of_inputs(prepared.files, outputs);
-    set_frame_header(flags, k, active, frame);
-    measure(active, needed_hit_columns(job, active, outputs), console, frame);
-    if (k == 0) print_advice(view_advice(view), console);
-    record(job, active, view, console);
-    if (!outputs.empty()) write(flags, view, outputs, console);
-    for (const Output& output : outputs) job.written.push_back(output.path);
+  return command;
+}
+
+/// Measures a frame and writes it to files of its own and to the recordings.
+void measure_and_write(Job& job, const SensorFrame& which, Console& console,
+                       MeasuredFrame& measured) {
+  const RenderFlags& flags = job.flags;
+  const PreparedScene& prepared = job.prepared;
+  const ActiveSensor& active = prepared.sensors[which.sensor_index];
+  measured.sensor_index = which.sensor_index;
+  measured.index = which.number;
+  measured.beams = active.simulator->beams(which.number);
+  const SidecarContext context{.scene = prepared.scene,
+                               .sensor = active.sensor,
+                               .beams = *measured.beams,
+                               .renderer = renderer_name(flags),
+                               .command = command_of(job, active),
+                               .inputs = prepared.files};
+  const View view{prepared.scene, active.sensor, *measured.beams, measured.frame};
+  const std::vector<Output> outputs =
+      plan_frame(flags, files_of(flags, job.files[which.sensor_index], active, which.number),
+                 context, console);
+  refuse_overwrite_of_inputs(prepared.files, outputs);
+  set_frame_header(flags, which.number, active, measured.frame);
+  measure(active, needed_hit_columns(job, which.sensor_index, outputs), console, measured.frame);
+  if (which.number == 0) print_advice(view_advice(view), console);
+  record(job, measured, console);
+  if (!outputs.empty()) write(flags, view, outputs, console);
+  for (const Output& output : outputs) job.written.push_back(output.path);
+}
+
+/// All frames of all sensors, in the order of time.
+void measure_all(Job& job, Console& console) {
+  std::vector<MeasuredFrame> frames(job.prepared.sensors.size());  // sensors have their own sizes
+  FrameOrder order(job.prepared.sensors);
+  while (const std::optional<SensorFrame> which = order.next()) {
+    const bool is_written = has_outputs(job.files[which->sensor_index]) || !job.recordings.empty();
+    if (is_written) measure_and_write(job, *which, console, frames[which->sensor_index]);
   }
 }
 
@@ -202,13 +221,10 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
   }
   prepare_scene(
       flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
-  const std::vector<OutputFlags> files = outputs_by_sensor(flags, prepared, console);
-  Job job{flags, command, prepared, make_recordings(flags, prepared)};
+  Job job{flags, command, prepared, outputs_by_sensor(flags, prepared, console),
+          make_recording_sinks(flags, prepared, prepared.files, PoseOrigin::motion)};
   try {
-    for (std::size_t i = 0; i < prepared.sensors.size(); ++i) {
-      if (!has_outputs(files[i]) && job.recordings.empty()) continue;
-      measure_all(job, files[i], prepared.sensors[i], console);
-    }
+    measure_all(job, console);
     finish_recordings(job);
     write_imu_outputs(flags, prepared, console, job.written);
   } catch (const Error& error) {

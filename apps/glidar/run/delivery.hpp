@@ -2,33 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/beams.hpp>
-#include <glidar/core/frame.hpp>
-#include <glidar/link/lockstep/messages.hpp>
+#include <apps/glidar/run/measured_frame.hpp>
 
 #include <array>
-#include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <thread>
 
 namespace glidar::app {
-
-/// A frame to be delivered.
-struct MeasuredFrame {
-  Frame frame;
-  std::shared_ptr<const Beams> beams;
-  std::uint64_t index = 0;                         ///< among its sensor's frames
-  std::size_t sensor_index = 0;                    ///< of its sensor among those of the scene
-  std::shared_ptr<const lockstep::Moment> placed;  ///< poses by a client; nullptr: by the command
-  std::string frame_hash;                          ///< expected frame_hash(); empty: unknown
-  std::chrono::steady_clock::time_point due;       ///< when its pose was known
-};
 
 /// Delivers frames in its own thread, while the next frame is measured. At most two frames are in
 /// progress: measuring waits for delivery.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace glidar::app {
 namespace {
@@ -52,12 +53,23 @@ void check_imu_outputs(const RenderFlags& flags) {
                "this output with --duration", "add --duration 1, for example"});
 }
 
-ImuSamples rig_imu_samples(const RenderFlags& flags, const PreparedScene& prepared, std::size_t imu,
-                           std::int64_t from_ns, std::int64_t until_ns) {
-  const RigImu& on_rig = prepared.imus.at(imu);
-  return simulate_imu(on_rig.imu,
-                      compose_extrinsic(prepared.motion.world_from_rig, on_rig.rig_from_imu),
-                      run_of(flags, prepared, imu), from_ns, until_ns);
+RigImuSampler imu_sampler(const RenderFlags& flags, const PreparedScene& prepared) {
+  struct MountedImu {
+    Imu imu;
+    Trajectory world_from_imu;
+    ImuRun run;
+  };
+  std::vector<MountedImu> imus;
+  for (std::size_t i = 0; i < prepared.imus.size(); ++i) {
+    const RigImu& on_rig = prepared.imus[i];
+    imus.push_back({on_rig.imu,
+                    compose_extrinsic(prepared.motion.world_from_rig, on_rig.rig_from_imu),
+                    run_of(flags, prepared, i)});
+  }
+  return [imus = std::move(imus)](std::size_t imu, std::int64_t from_ns, std::int64_t until_ns) {
+    const MountedImu& mounted = imus.at(imu);
+    return simulate_imu(mounted.imu, mounted.world_from_imu, mounted.run, from_ns, until_ns);
+  };
 }
 
 void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, Console& console,
@@ -70,9 +82,10 @@ void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, 
   const std::int64_t until_ns = end_ns(flags, prepared) + 1;
   warn_linear_interpolation(prepared.motion.world_from_rig, prepared.imus.front().name,
                             console.report());
+  const RigImuSampler sample = imu_sampler(flags, prepared);
   for (std::size_t i = 0; i < prepared.imus.size(); ++i) {
     const RigImu& on_rig = prepared.imus[i];
-    const ImuSamples samples = rig_imu_samples(flags, prepared, i, 0, until_ns);
+    const ImuSamples samples = sample(i, 0, until_ns);
     const ImuDescription description{.name = on_rig.name,
                                      .imu = on_rig.imu,
                                      .run = run_of(flags, prepared, i),

@@ -5,8 +5,10 @@
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/simulate/simulate_imu.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 namespace glidar::app {
@@ -14,10 +16,11 @@ namespace glidar::app {
 /// Throws Error if IMU samples are requested without a duration.
 void check_imu_outputs(const RenderFlags& flags);
 
-/// The samples of an IMU of the rig with from_ns <= t < until_ns. Sample 0 is at time 0, as frame 0
-/// of every sensor. The samples do not depend on how a time is divided.
-ImuSamples rig_imu_samples(const RenderFlags& flags, const PreparedScene& prepared, std::size_t imu,
-                           std::int64_t from_ns, std::int64_t until_ns);
+/// The samples of an IMU of the rig, by index, with from_ns <= t < until_ns. Sample 0 is at time 0,
+/// as frame 0 of every sensor. The samples do not depend on how a time is divided.
+using RigImuSampler =
+    std::function<ImuSamples(std::size_t imu, std::int64_t from_ns, std::int64_t until_ns)>;
+RigImuSampler imu_sampler(const RenderFlags& flags, const PreparedScene& prepared);
 
 /// Writes the samples of every IMU from time 0 to the end of the last frame of all sensors, both
 /// included: NAME_imu.imu.csv for NAME.imu.csv if there are several. Adds the files to `written`.

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/codec.hpp>
-#include <glidar/io/ros/message_types.hpp>
+#include <glidar/io/ros/message_sink.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -40,51 +39,14 @@ struct BagOptions {
   std::string library = "glidar";               ///< name of the writing program
 };
 
-/// A topic to be written.
-struct BagTopic {
-  std::string name;  ///< with a leading slash: /points
-  const ros::MessageType* type = nullptr;
-  ros::Qos qos;
-};
-
-template <class Message>
-BagTopic bag_topic(std::string name) {
-  const ros::MessageType& type = ros::message_type<Message>();
-  return {std::move(name), &type, type.qos};
-}
-
 /// Writes a bag, which appears under its name when finish() returns. Without finish() nothing
 /// remains, and an existing bag stays unchanged.
-class BagWriter {
- public:
-  BagWriter() = default;
-  BagWriter(const BagWriter&) = delete;
-  BagWriter& operator=(const BagWriter&) = delete;
-  virtual ~BagWriter() = default;
-
-  /// How messages must be serialized.
-  [[nodiscard]] virtual ros::Wire wire() const = 0;
-  /// The number of a new topic. Throws Error when its name is in use or no topic name.
-  virtual std::size_t add_topic(const BagTopic& topic) = 0;
-  /// Appends a serialized message. Times need not increase. Throws Error for times before 1970,
-  /// unknown topics and when the system refuses.
-  virtual void write(std::size_t topic, std::int64_t time_ns,
-                     std::span<const std::byte> message) = 0;
-  /// Completes the bag and gives it its name. Throws Error.
-  virtual void finish() = 0;
-};
+using BagWriter = ros::MessageSink;
 
 /// A new bag, in the format of the path's suffix. Throws Error when the suffix is unknown, an
 /// option does not fit the format, or nothing can be created in the folder.
 std::unique_ptr<BagWriter> create_bag(const std::filesystem::path& path,
                                       const BagOptions& options = {});
-
-/// Serializes and appends a message.
-template <class Message>
-void write_message(BagWriter& bag, std::size_t topic, std::int64_t time_ns,
-                   const Message& message) {
-  bag.write(topic, time_ns, ros::serialize(message, bag.wire()));
-}
 
 /// A topic of a bag that is read.
 struct StoredTopic {

@@ -44,7 +44,8 @@ void append_schema(Bytes& to, std::uint16_t number, const ros::MessageType& type
   end_record(to, begin);
 }
 
-void append_channel(Bytes& to, std::uint16_t number, std::uint16_t schema, const BagTopic& topic) {
+void append_channel(Bytes& to, std::uint16_t number, std::uint16_t schema,
+                    const ros::Topic& topic) {
   Bytes metadata;
   append_pair(metadata, "offered_qos_profiles", ros::qos_yaml(topic.qos));
   append_pair(metadata, "topic_type_hash", topic.type->type_hash);
@@ -81,7 +82,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const BagOptions& opti
   chunk_.reserve(kChunkBytes + kChunkBytes / 4);
 }
 
-std::size_t McapWriter::add_topic(const BagTopic& topic) {
+std::size_t McapWriter::add_topic(const ros::Topic& topic) {
   const std::size_t index = topics_.add(topic);
   bool is_new = false;
   const std::uint16_t schema = schema_number(schemas_, topic.type, is_new);

@@ -75,7 +75,7 @@ Rosbag1Writer::Rosbag1Writer(const std::filesystem::path& path, const BagOptions
   write_bag_header(0);
 }
 
-std::size_t Rosbag1Writer::add_topic(const BagTopic& topic) {
+std::size_t Rosbag1Writer::add_topic(const ros::Topic& topic) {
   return topics_.add(topic);
 }
 

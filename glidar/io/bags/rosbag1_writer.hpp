@@ -21,7 +21,7 @@ class Rosbag1Writer : public BagWriter {
   Rosbag1Writer(const std::filesystem::path& path, const BagOptions& options);
 
   [[nodiscard]] ros::Wire wire() const override { return ros::Wire::ros1; }
-  std::size_t add_topic(const BagTopic& topic) override;
+  std::size_t add_topic(const ros::Topic& topic) override;
   void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override;
   void finish() override;
 

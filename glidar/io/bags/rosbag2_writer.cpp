@@ -95,7 +95,7 @@ class Rosbag2Writer : public BagWriter {
 
   [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
 
-  std::size_t add_topic(const BagTopic& topic) override {
+  std::size_t add_topic(const ros::Topic& topic) override {
     topics_.add(topic);
     return storage_->add_topic(topic);
   }

@@ -38,7 +38,7 @@ SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& path)
   insert_message_.emplace(database_, "INSERT INTO messages(topic_id,timestamp,data) VALUES(?,?,?)");
 }
 
-std::size_t SqliteBagWriter::add_topic(const BagTopic& topic) {
+std::size_t SqliteBagWriter::add_topic(const ros::Topic& topic) {
   Statement insert(database_, "INSERT INTO topics VALUES(?,?,?,'cdr',?,?)");
   insert.bind(1, static_cast<std::int64_t>(topics_ + 1));
   insert.bind(2, topic.name);

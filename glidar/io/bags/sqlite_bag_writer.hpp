@@ -24,7 +24,7 @@ class SqliteBagWriter : public BagWriter {
   explicit SqliteBagWriter(const std::filesystem::path& path);
 
   [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
-  std::size_t add_topic(const BagTopic& topic) override;
+  std::size_t add_topic(const ros::Topic& topic) override;
   void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override;
   void finish() override;
   /// The content of metadata.yaml, which the database stores too; before finish().

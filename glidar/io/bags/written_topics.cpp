@@ -26,7 +26,7 @@ bool is_topic_name(const std::string& name) {
 
 }  // namespace
 
-std::size_t WrittenTopics::add(const BagTopic& topic) {
+std::size_t WrittenTopics::add(const ros::Topic& topic) {
   if (!is_topic_name(topic.name)) {
     throw Error({place_, "a topic '" + excerpt(topic.name) + "'",
                  "'/' and letters, digits, '_' and '/'", "name it /points, for example"});

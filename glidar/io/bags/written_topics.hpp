@@ -27,7 +27,7 @@ class WrittenTopics {
   explicit WrittenTopics(std::string place) : place_(std::move(place)) {}
 
   /// Throws Error for a name that is in use or none of a topic.
-  std::size_t add(const BagTopic& topic);
+  std::size_t add(const ros::Topic& topic);
   /// Counts a message. Throws Error for an unknown topic and a time before 1970.
   WrittenTopic& count(std::size_t topic, std::int64_t time_ns);
 

@@ -50,19 +50,6 @@ std::span<const std::uint32_t> times_of(const PointCloud& cloud, const Beams& be
   return *values;
 }
 
-std::vector<std::uint32_t> chosen_points(const PointCloud& cloud, const Beams& beams,
-                                         const CloudMessageOptions& options) {
-  std::vector<std::uint32_t> points(cloud.size());
-  std::iota(points.begin(), points.end(), 0U);
-  if (options.dense) {
-    const std::vector<double>& xyz = coordinates_of(cloud);
-    std::erase_if(points, [&](std::uint32_t i) { return std::isnan(xyz[3 * std::size_t{i}]); });
-  }
-  const auto times = options.firing_order ? times_of(cloud, beams) : std::span<std::uint32_t>{};
-  if (!times.empty()) sort_by_time(times, points);
-  return points;
-}
-
 /// Times since the first firing instead of the start of the frame.
 void count_from(std::uint32_t first_ns, Column& column) {
   if (first_ns == 0 || column.name != "time") return;
@@ -74,7 +61,7 @@ void count_from(std::uint32_t first_ns, Column& column) {
 PointCloud chosen_cloud(const PointCloud& cloud, const CloudSource& source,
                         const CloudMessageOptions& options) {
   const bool keeps_grid = !options.dense && !options.firing_order;
-  const std::vector<std::uint32_t> points = chosen_points(cloud, source.beams, options);
+  const std::vector<std::uint32_t> points = message_points(cloud, source.beams, options);
   PointCloud chosen{cloud.rows, cloud.cols, cloud.frame_id, cloud.world_from_cloud, {}};
   if (!keeps_grid) chosen.rows = 1;
   if (!keeps_grid) chosen.cols = static_cast<std::uint32_t>(points.size());
@@ -150,6 +137,19 @@ const std::vector<Number>& values_of(const PointCloud& cloud, const char* name) 
 
 std::int64_t first_firing_ns(const Frame& frame, const Beams& beams) {
   return frame.stamp_ns + first_time_ns(beams);
+}
+
+std::vector<std::uint32_t> message_points(const PointCloud& cloud, const Beams& beams,
+                                          const CloudMessageOptions& options) {
+  std::vector<std::uint32_t> points(cloud.size());
+  std::iota(points.begin(), points.end(), 0U);
+  if (options.dense) {
+    const std::vector<double>& xyz = coordinates_of(cloud);
+    std::erase_if(points, [&](std::uint32_t i) { return std::isnan(xyz[3 * std::size_t{i}]); });
+  }
+  const auto times = options.firing_order ? times_of(cloud, beams) : std::span<std::uint32_t>{};
+  if (!times.empty()) sort_by_time(times, points);
+  return points;
 }
 
 PointCloud2 to_point_cloud2(const PointCloud& cloud, const CloudSource& source,

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace glidar::ros {
 
@@ -31,6 +32,10 @@ inline constexpr std::string_view kCustomMsgLayout = "livox-custom";
 
 /// The time of the first firing of a frame, ns: the stamp of its messages.
 std::int64_t first_firing_ns(const Frame& frame, const Beams& beams);
+
+/// The points of the cloud that its message has, by index, in the order of the message.
+std::vector<std::uint32_t> message_points(const PointCloud& cloud, const Beams& beams,
+                                          const CloudMessageOptions& options = {});
 
 /// The points of a cloud of all beams (or with a column `time`) as a message, whose stamp is the
 /// time of the first firing; relative times count from it. Coordinates are float32; other columns

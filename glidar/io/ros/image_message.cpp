@@ -83,6 +83,16 @@ Image intensity_image(const CloudSource& source, IntensityEncoding encoding,
   return image;
 }
 
+Image range_image(const CloudSource& source, const std::string& frame_id) {
+  const auto range = [&](std::size_t beam) {
+    if (source.frame.status[beam] != Status::hit) return std::numeric_limits<float>::quiet_NaN();
+    return static_cast<float>(source.frame.range_m[beam] + source.beams.range_offset_m);
+  };
+  Image image = image_of<float>(source, "32FC1", range);
+  image.header = frame_header(source, frame_id);
+  return image;
+}
+
 CompressedImage png_image(const Image& image) {
   const bool is_wide = image.encoding == "16UC1";
   if (!is_wide && image.encoding != "mono8") {

@@ -28,6 +28,9 @@ enum class IntensityEncoding : std::uint8_t {
 Image intensity_image(const CloudSource& source, IntensityEncoding encoding,
                       const std::string& frame_id = {});
 
+/// Rows and columns of the first return: 32FC1, the reported range in metres, NaN without a return.
+Image range_image(const CloudSource& source, const std::string& frame_id = {});
+
 /// An image of encoding mono8 or 16UC1 as PNG, in the format of image_transport's plugin
 /// compressed_image_transport. Throws Error for other encodings.
 CompressedImage png_image(const Image& image);

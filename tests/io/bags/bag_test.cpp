@@ -55,13 +55,13 @@ const std::vector<Kind>& kinds() {
 /// Two topics of all kinds of bags; 20 messages, two of them late.
 void write_run(const std::filesystem::path& path, const BagOptions& options) {
   const auto bag = create_bag(path, options);
-  const std::size_t tf = bag->add_topic(bag_topic<ros::TFMessage>("/tf"));
-  const std::size_t clouds = bag->add_topic(bag_topic<ros::PointCloud2>("/points"));
+  const std::size_t tf = bag->add_topic(ros::make_topic<ros::TFMessage>("/tf"));
+  const std::size_t clouds = bag->add_topic(ros::make_topic<ros::PointCloud2>("/points"));
   for (std::uint32_t i = 0; i < 10; ++i) {
     const std::int64_t late_ns = i == 5 ? 25'000'000 : 0;
     const std::int64_t time_ns = kStart_ns + i * 10'000'000 - late_ns;
-    write_message(*bag, tf, time_ns, ros::sample<ros::TFMessage>(i));
-    write_message(*bag, clouds, time_ns, ros::sample<ros::PointCloud2>(i));
+    ros::write_message(*bag, tf, time_ns, ros::sample<ros::TFMessage>(i));
+    ros::write_message(*bag, clouds, time_ns, ros::sample<ros::PointCloud2>(i));
   }
   bag->finish();
 }
@@ -116,8 +116,8 @@ TEST_P(EveryBag, AppearsOnlyWhenItIsFinished) {
   const std::filesystem::path path = folder_ / GetParam().file;
   {
     const auto bag = create_bag(path, GetParam().options);
-    const std::size_t clock = bag->add_topic(bag_topic<ros::Clock>("/clock"));
-    write_message(*bag, clock, 5, ros::Clock{});
+    const std::size_t clock = bag->add_topic(ros::make_topic<ros::Clock>("/clock"));
+    ros::write_message(*bag, clock, 5, ros::Clock{});
     EXPECT_FALSE(std::filesystem::exists(path));
   }
   EXPECT_THAT(folder_.names(), ElementsAre());
@@ -159,8 +159,8 @@ TEST_P(EveryBag, LargeMessagesAndManyChunksReadBack) {
   for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<std::byte>(i * i >> 7U);
   const ros::CompressedImage image{ros::sample_header(1), "jpeg", ros::Payload(data)};
   const auto bag = create_bag(path, GetParam().options);
-  const std::size_t topic = bag->add_topic(bag_topic<ros::CompressedImage>("/image"));
-  for (int i = 0; i < 4; ++i) write_message(*bag, topic, 100 - i, image);
+  const std::size_t topic = bag->add_topic(ros::make_topic<ros::CompressedImage>("/image"));
+  for (int i = 0; i < 4; ++i) ros::write_message(*bag, topic, 100 - i, image);
   bag->finish();
   const auto reader = open_bag(path);
   BagMessage message;
@@ -176,17 +176,17 @@ TEST_P(EveryBag, LargeMessagesAndManyChunksReadBack) {
 
 TEST_P(EveryBag, BadTopicsAndTimesAreErrors) {
   const auto bag = create_bag(folder_ / GetParam().file, GetParam().options);
-  const std::size_t topic = bag->add_topic(bag_topic<ros::Clock>("/clock"));
-  EXPECT_THAT(error_text([&] { bag->add_topic(bag_topic<ros::Clock>("/clock")); }),
+  const std::size_t topic = bag->add_topic(ros::make_topic<ros::Clock>("/clock"));
+  EXPECT_THAT(error_text([&] { bag->add_topic(ros::make_topic<ros::Clock>("/clock")); }),
               HasSubstr("the topic /clock a second time"));
   for (const char* name : {"", "/", "clock", "/a//b", "/a/", "/a b", "/a\n"}) {
-    EXPECT_THAT(error_text([&] { bag->add_topic(bag_topic<ros::Clock>(name)); }),
+    EXPECT_THAT(error_text([&] { bag->add_topic(ros::make_topic<ros::Clock>(name)); }),
                 HasSubstr("a topic '"))
         << name;
   }
-  EXPECT_THAT(error_text([&] { write_message(*bag, topic, -1, ros::Clock{}); }),
+  EXPECT_THAT(error_text([&] { ros::write_message(*bag, topic, -1, ros::Clock{}); }),
               HasSubstr("times since 1970"));
-  EXPECT_THAT(error_text([&] { write_message(*bag, 7, 1, ros::Clock{}); }),
+  EXPECT_THAT(error_text([&] { ros::write_message(*bag, 7, 1, ros::Clock{}); }),
               HasSubstr("a message of topic 7"));
 }
 
@@ -320,16 +320,16 @@ TEST(BagOptions, ThatDoNotFitTheFormatAreErrors) {
 std::filesystem::path write_poses(const testing::TestFolder& folder) {
   const std::filesystem::path path = folder / "poses.mcap";
   const auto bag = create_bag(path);
-  const std::size_t tf = bag->add_topic(bag_topic<ros::TFMessage>("/tf"));
-  const std::size_t odom = bag->add_topic(bag_topic<ros::Odometry>("/odom"));
-  bag->add_topic(bag_topic<ros::Clock>("/clock"));
+  const std::size_t tf = bag->add_topic(ros::make_topic<ros::TFMessage>("/tf"));
+  const std::size_t odom = bag->add_topic(ros::make_topic<ros::Odometry>("/odom"));
+  bag->add_topic(ros::make_topic<ros::Clock>("/clock"));
   for (std::int32_t i = 0; i < 3; ++i) {
     ros::TransformStamped fixed{{0, {5, 0}, "/base"}, "lidar", {{0.5, 0.0, 0.0}, {}}};
     ros::TransformStamped moving{{0, {10 - i, 0}, "map"}, "base", {{1.0 * i, 0.0, 0.0}, {}}};
     moving.transform.rotation = {0.0, 0.0, 1.0, 0.0};  // half a turn
-    write_message(*bag, tf, i, ros::TFMessage{{fixed, moving, moving}});
+    ros::write_message(*bag, tf, i, ros::TFMessage{{fixed, moving, moving}});
     auto odometry = ros::sample<ros::Odometry>(static_cast<std::uint32_t>(i));
-    write_message(*bag, odom, i, odometry);
+    ros::write_message(*bag, odom, i, odometry);
   }
   bag->finish();
   return path;

@@ -35,7 +35,7 @@ void write_bag(const std::filesystem::path& path, const bags::BagOptions& option
   for (std::uint32_t i = 0; i < kMessages; ++i) {
     ros::for_all_messages(i, [&](const auto& message) {
       using Message = std::decay_t<decltype(message)>;
-      bags::write_message(*bag, topics.at(&ros::message_type<Message>()), kStart_ns + i, message);
+      ros::write_message(*bag, topics.at(&ros::message_type<Message>()), kStart_ns + i, message);
     });
   }
   bag->finish();

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/run/measured_frame.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glidar::app {
+
+/// A destination of all frames of a run, such as a bag or a viewer.
+class FrameSink {
+ public:
+  FrameSink() = default;
+  FrameSink(const FrameSink&) = delete;
+  FrameSink& operator=(const FrameSink&) = delete;
+  virtual ~FrameSink() = default;
+
+  /// The cloud columns that it reads of a sensor's frames.
+  [[nodiscard]] virtual std::vector<std::string> columns(std::size_t sensor_index) const = 0;
+  /// Takes a frame, in the order of time. Throws Error.
+  virtual void write(const MeasuredFrame& measured) = 0;
+  /// Called often, also between frames.
+  virtual void serve() {}
+  /// Call after the last frame: completes files, which appear under their names. Without it nothing
+  /// of them remains.
+  virtual void finish() = 0;
+  /// The files that finish() makes.
+  [[nodiscard]] virtual std::vector<std::filesystem::path> files() const { return {}; }
+};
+
+}  // namespace glidar::app

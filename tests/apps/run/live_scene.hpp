@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/run/measured_frame.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
+
+#include <memory>
+#include <string>
+
+namespace glidar::app {
+
+/// A box around a turning VLP-16 with an IMU at 100 Hz, and its frames.
+struct LiveScene {
+  explicit LiveScene(const std::string& sensor = "VLP-16") {
+    flags.input = "builtin:box:size=8,8,8";
+    flags.sensor.file = sensor;
+    flags.pose.eye_m = Eigen::Vector3d(0.5, 0.25, 0.125);
+    flags.motion.sensor_rate_rad_s = Eigen::Vector3d(0.0, 0.5, 0.0);
+    flags.duration_s = 0.2;
+    flags.quiet = true;
+    Console console(true);
+    prepare_scene(flags, {}, console, prepared);
+  }
+
+  MeasuredFrame measure(std::uint32_t number) {
+    const ActiveSensor& active = prepared.sensors.front();
+    MeasuredFrame measured;
+    measured.beams = active.simulator->beams(number);
+    measured.index = number;
+    measured.motion = std::make_shared<const Motion>(active.motion);
+    set_frame_header(flags, number, active, measured.frame);
+    HitColumnMask all = hit_columns_for(cloud_column_names());
+    active.simulator->simulate(*measured.motion, all, measured.frame);
+    return measured;
+  }
+
+  RenderFlags flags;
+  PreparedScene prepared;
+};
+
+}  // namespace glidar::app
