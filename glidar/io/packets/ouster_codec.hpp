@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/pose.hpp>
 #include <glidar/io/packets/ouster_packet.hpp>
 #include <glidar/io/packets/packet_codec.hpp>
 #include <glidar/sensor/sensor.hpp>
@@ -28,6 +29,7 @@ struct OusterIdentity {
 struct OusterOptions {
   std::optional<OusterProfile> profile;
   OusterIdentity identity;
+  Pose sensor_from_imu = Pose::Identity();  ///< for the metadata
 };
 
 /// True if the sensor is named after an Ouster model, such as "Ouster OS1-128".

@@ -127,6 +127,18 @@ Json info_of(const Sensor& sensor, const OusterIdentity& identity) {
           {"status", "RUNNING"}};
 }
 
+/// A homogeneous matrix, row by row, with the translation in mm.
+std::vector<double> matrix_mm(const Pose& pose) {
+  std::vector<double> numbers;
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    for (Eigen::Index col = 0; col < 4; ++col) {
+      const bool is_translation = row < 3 && col == 3;
+      numbers.push_back(pose.matrix()(row, col) / (is_translation ? kMillimetre_m : 1.0));
+    }
+  }
+  return numbers;
+}
+
 /// A value at the top (old layout) or in one of the sections; null if there is none.
 Json find_value(const Json& all, std::initializer_list<const char*> sections, const char* key) {
   if (all.contains(key)) return all[key];
@@ -191,9 +203,7 @@ std::string ouster_metadata(const Sensor& sensor, const OusterOptions& options) 
       {"calibration_status",
        {{"reflectivity", {{"timestamp", "2024-01-01T00:00:00"}, {"valid", true}}}}},
       {"config_params", config_of(sensor, format, options.identity)},
-      {"imu_intrinsics",
-       {{"imu_to_sensor_transform",
-         {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}}}},
+      {"imu_intrinsics", {{"imu_to_sensor_transform", matrix_mm(options.sensor_from_imu)}}},
       {"lidar_data_format", data_format_of(spinning, format)},
       {"lidar_intrinsics",
        {{"lidar_to_sensor_transform",

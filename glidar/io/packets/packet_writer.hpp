@@ -2,37 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/packets/ouster_codec.hpp>
-#include <glidar/io/packets/packet_codec.hpp>
 #include <glidar/io/packets/pcap_file.hpp>
-#include <glidar/io/packets/velodyne_codec.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace glidar {
 
-/// Options of packets that only some manufacturers have.
-struct PacketOptions {
-  std::optional<GeoPosition> position;  ///< Velodyne
-  OusterOptions ouster;
-};
-
 /// True for the names of packet captures: with the suffix .pcap.
 bool is_capture_name(const std::filesystem::path& path);
-
-/// The encoder of the sensor's manufacturer, by the sensor's name. Throws Error, naming the sensor,
-/// when it has none or its beams do not fit.
-std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,
-                                                   const PacketOptions& options = {});
-
-/// The decoder for the packets of make_packet_encoder(). Throws Error like make_packet_encoder.
-std::unique_ptr<PacketDecoder> make_packet_decoder(const Sensor& sensor,
-                                                   const PacketOptions& options = {});
 
 /// Writes the frames of a sensor, one after the other, as packets to a pcap file, and for Ouster
 /// the metadata beside it (scan.pcap: scan.json). The files appear together in finish().
@@ -40,7 +21,7 @@ class PacketWriter {
  public:
   /// Throws Error like make_packet_encoder and PcapWriter.
   PacketWriter(const std::filesystem::path& path, const Sensor& sensor,
-               const PacketOptions& options = {});
+               const PacketOptions& options = {}, PacketImuSampler imu_samples = {});
 
   /// Frames in the order of time. Throws Error when they are not of the sensor, or the disk is
   /// full.
@@ -55,7 +36,7 @@ class PacketWriter {
  private:
   void write_packets();
 
-  std::unique_ptr<PacketEncoder> encoder_;
+  SensorPackets packets_;
   PcapWriter pcap_;
   std::filesystem::path path_;
   std::string metadata_;  ///< empty: none

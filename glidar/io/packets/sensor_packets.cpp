@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/packets/sensor_packets.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/packets/hesai_codec.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+[[noreturn]] void fail_of_maker(const Sensor& sensor) {
+  throw Error({"packets of " + sensor.name, "no manufacturer's packets are known for this sensor",
+               "the presets of Velodyne, Ouster and Hesai sensors", "write clouds"});
+}
+
+std::array<float, 3> scaled(const Eigen::Vector3d& v, double scale) {
+  return {static_cast<float>(v.x() * scale), static_cast<float>(v.y() * scale),
+          static_cast<float>(v.z() * scale)};
+}
+
+bool is_earlier_packet(const UdpPacket& a, const UdpPacket& b) {
+  return a.stamp_ns < b.stamp_ns;
+}
+
+}  // namespace
+
+bool has_packets(const Sensor& sensor) {
+  return is_velodyne(sensor) || is_ouster(sensor) || is_hesai(sensor);
+}
+
+std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,
+                                                   const PacketOptions& options) {
+  if (is_velodyne(sensor)) return make_velodyne_encoder(sensor, options.position);
+  if (is_ouster(sensor)) return make_ouster_encoder(sensor, options.ouster);
+  if (is_hesai(sensor)) return make_hesai_encoder(sensor);
+  fail_of_maker(sensor);
+}
+
+std::unique_ptr<PacketDecoder> make_packet_decoder(const Sensor& sensor,
+                                                   const PacketOptions& options) {
+  if (is_velodyne(sensor)) return make_velodyne_decoder(sensor);
+  if (is_ouster(sensor)) return make_ouster_decoder(sensor, options.ouster);
+  if (is_hesai(sensor)) return make_hesai_decoder(sensor);
+  fail_of_maker(sensor);
+}
+
+SensorPackets::SensorPackets(const Sensor& sensor, const PacketOptions& options,
+                             PacketImuSampler imu_samples)
+    : sensor_(sensor),
+      encoder_(make_packet_encoder(sensor, options)),
+      imu_samples_(is_ouster(sensor) ? std::move(imu_samples) : PacketImuSampler()),
+      imu_port_(options.ouster.identity.imu_port) {}
+
+void SensorPackets::encode(const Frame& frame, const Beams& beams,
+                           std::vector<UdpPacket>& packets) {
+  const auto first = static_cast<std::ptrdiff_t>(packets.size());
+  encoder_->encode(frame, beams, packets);
+  if (!imu_samples_) return;
+  const auto middle = static_cast<std::ptrdiff_t>(packets.size());
+  const FrameInterval interval = frame_interval(sensor_, frame.number);
+  encode_imu(frame.stamp_ns + (interval.end_ns - interval.start_ns), packets);
+  std::inplace_merge(packets.begin() + first, packets.begin() + middle, packets.end(),
+                     is_earlier_packet);
+}
+
+void SensorPackets::finish(std::vector<UdpPacket>& packets) {
+  encoder_->finish(packets);
+}
+
+/// Firmware manual, "IMU Data Packet Format": one sample with the time of each of its parts.
+void SensorPackets::encode_imu(std::int64_t until_ns, std::vector<UdpPacket>& packets) {
+  if (until_ns <= imu_ns_) return;
+  const ImuSamples samples = imu_samples_(std::exchange(imu_ns_, until_ns), until_ns);
+  for (std::size_t i = 0; i < samples.t_ns.size(); ++i) {
+    const auto stamp_ns = static_cast<std::uint64_t>(samples.t_ns[i]);
+    const OusterImu imu{
+        .stamp_ns = stamp_ns,
+        .acceleration_stamp_ns = stamp_ns,
+        .rate_stamp_ns = stamp_ns,
+        .acceleration_g = scaled(samples.specific_force_m_s2[i], 1.0 / kStandardGravity_m_s2),
+        .rate_deg_s = scaled(samples.angular_velocity_rad_s[i], kDegreesPerRadian)};
+    packets.push_back({samples.t_ns[i], imu_port_, imu_port_, glidar::encode(imu)});
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/packets/ouster_codec.hpp>
+#include <glidar/io/packets/packet_codec.hpp>
+#include <glidar/io/packets/velodyne_codec.hpp>
+#include <glidar/sensor/imu/imu_samples.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace glidar {
+
+/// Options of packets that only some manufacturers have.
+struct PacketOptions {
+  std::optional<GeoPosition> position;  ///< Velodyne
+  OusterOptions ouster;
+};
+
+/// Whether the sensor is named after a model whose packets are known.
+bool has_packets(const Sensor& sensor);
+
+/// The encoder of the sensor's manufacturer, by the sensor's name. Throws Error, naming the sensor,
+/// when it has none or its beams do not fit.
+std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,
+                                                   const PacketOptions& options = {});
+
+/// The decoder for the packets of make_packet_encoder(). Throws Error like make_packet_encoder.
+std::unique_ptr<PacketDecoder> make_packet_decoder(const Sensor& sensor,
+                                                   const PacketOptions& options = {});
+
+/// The samples of a sensor's IMU with from_ns <= t < until_ns.
+using PacketImuSampler = std::function<ImuSamples(std::int64_t from_ns, std::int64_t until_ns)>;
+
+/// Everything that a sensor sends: the packets of its frames, and those of its IMU if its
+/// manufacturer has such (Ouster), in the order of their times.
+class SensorPackets {
+ public:
+  /// `imu_samples` empty: no packets of an IMU. Throws Error like make_packet_encoder.
+  explicit SensorPackets(const Sensor& sensor, const PacketOptions& options = {},
+                         PacketImuSampler imu_samples = {});
+
+  /// Appends the packets until the end of a frame. Frames are in the order of time. Throws Error
+  /// when they are not of the sensor.
+  void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets);
+  /// Appends the last packet, filled with firings without returns.
+  void finish(std::vector<UdpPacket>& packets);
+
+ private:
+  void encode_imu(std::int64_t until_ns, std::vector<UdpPacket>& packets);
+
+  Sensor sensor_;
+  std::unique_ptr<PacketEncoder> encoder_;
+  PacketImuSampler imu_samples_;
+  std::uint16_t imu_port_ = 0;
+  std::int64_t imu_ns_ = 0;  ///< time of the next sample or before
+};
+
+}  // namespace glidar

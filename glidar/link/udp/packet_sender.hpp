@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/packets/packet_codec.hpp>
+#include <glidar/link/error_log.hpp>
+#include <glidar/link/udp/udp_socket.hpp>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace glidar::link {
+
+/// Where packets are sent.
+struct PacketRoute {
+  std::string host;                              ///< address or name of the receiver
+  std::map<std::uint16_t, std::uint16_t> ports;  ///< by the packets' own port; others are kept
+};
+
+/// Sends a sensor's packets by UDP in a thread of its own, each at its time, as the sensor does. A
+/// receiver delays nothing; packets that it does not read are lost.
+class PacketSender {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// `speed`: how fast the packets' time passes; 0: packets are sent at once. Packets that cannot
+  /// be sent are reported to the log, which must outlive it. Throws Error when the address is not
+  /// valid.
+  PacketSender(const PacketRoute& route, double speed, ErrorLog& errors);
+  /// Sends no more packets.
+  ~PacketSender();
+  PacketSender(const PacketSender&) = delete;
+  PacketSender& operator=(const PacketSender&) = delete;
+
+  /// Queues packets in the order of their times, which pass from `start_ns` on, the start of their
+  /// frame: now, or when the packets before were sent. Waits while too many are queued.
+  void send(std::vector<UdpPacket> packets, std::int64_t start_ns);
+  /// Waits until all packets are sent: those that are due later than `at_most` from now are sent
+  /// then.
+  void finish(std::chrono::milliseconds at_most);
+  /// Packets that were sent.
+  [[nodiscard]] std::uint64_t sent() const;
+
+ private:
+  struct Timed {
+    Clock::time_point due;
+    UdpPacket packet;
+  };
+
+  [[nodiscard]] Clock::time_point due_time(std::int64_t t_ns) const;
+  void run();
+  void transmit(const UdpPacket& packet);
+
+  UdpSocket socket_;
+  std::map<std::uint16_t, std::uint16_t> ports_;
+  double speed_;
+  ErrorLog& errors_;
+
+  mutable std::mutex mutex_;  ///< of what follows
+  std::condition_variable changed_;
+  std::deque<Timed> queue_;
+  std::optional<Clock::time_point> anchor_;  ///< when the packets' time was anchor_ns_
+  std::int64_t anchor_ns_ = 0;
+  std::optional<Clock::time_point> last_due_;  ///< set by finish()
+  std::uint64_t sent_ = 0;
+  bool is_ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace glidar::link
