@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/dds/domain.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+
+#include <fmt/format.h>
+#include <net/if.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <string_view>
+
+namespace glidar::dds {
+namespace {
+
+constexpr std::uint32_t kMaxDomain = 232;
+constexpr const char* kDomainVariable = "ROS_DOMAIN_ID";
+
+[[noreturn]] void refuse_domain(const char* where, const std::string& found) {
+  throw Error({where, "'" + excerpt(found) + "'", "a whole number from 0 to 232",
+               "choose the domain of your ROS 2 nodes"});
+}
+
+/// The highest participant index whose ports exist: OMG DDSI-RTPS 2.5, 9.6.2.3, with the default
+/// port base 7400, 250 ports per domain and 2 per participant.
+std::uint32_t max_participant_index(std::uint32_t domain) {
+  constexpr std::uint32_t kMaxPort = 65535;
+  constexpr std::uint32_t kMaxIndex = 119;
+  return std::min(kMaxIndex, (kMaxPort - 7411 - 250 * domain) / 2);
+}
+
+std::string interface_names() {
+  const std::unique_ptr<struct if_nameindex, decltype(&if_freenameindex)> list(if_nameindex(),
+                                                                               if_freenameindex);
+  std::string names = kAnyInterface;
+  for (const struct if_nameindex* entry = list.get(); entry != nullptr && entry->if_name != nullptr;
+       ++entry) {
+    names += fmt::format(", {}", entry->if_name);
+  }
+  return names;
+}
+
+void require_interface(const std::string& name) {
+  // Linux allows quotes and angle brackets in names, the configuration does not.
+  const bool is_plain = name.find_first_of("<>&\"' \t\n") == std::string::npos;
+  if (is_plain && if_nametoindex(name.c_str()) != 0) return;
+  throw Error({"network interface of ROS 2", "'" + excerpt(name) + "'",
+               "one of this machine: " + interface_names(), ""});
+}
+
+/// Datagrams as large as IP allows: the loopback interface never divides them, so a cloud needs a
+/// tenth of the packets.
+constexpr std::string_view kLoopbackSizes =
+    "<MaxMessageSize>65000 B</MaxMessageSize><MaxRexmitMessageSize>65000 B</MaxRexmitMessageSize>"
+    "<FragmentSize>64000 B</FragmentSize>";
+
+}  // namespace
+
+std::uint32_t domain_id(const DomainOptions& options) {
+  if (options.id) {
+    if (*options.id > kMaxDomain) refuse_domain("ROS domain", std::to_string(*options.id));
+    return *options.id;
+  }
+  const char* variable = std::getenv(kDomainVariable);
+  if (variable == nullptr || *variable == '\0') return 0;
+  const std::string_view text = variable;
+  std::uint32_t id = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  if (error != std::errc() || stop != text.data() + text.size() || id > kMaxDomain) {
+    refuse_domain(kDomainVariable, std::string(text));
+  }
+  return id;
+}
+
+std::string domain_config(const DomainOptions& options) {
+  const bool is_any = options.interface_name == kAnyInterface;
+  const bool is_loopback = options.interface_name == kLoopbackInterface;
+  std::string general;
+  std::string discovery;
+  if (!is_any) {
+    require_interface(options.interface_name);
+    general = fmt::format(R"(<Interfaces><NetworkInterface name="{}"{}/></Interfaces>)",
+                          options.interface_name, is_loopback ? R"( multicast="true")" : "");
+  }
+  if (is_loopback) {
+    general += kLoopbackSizes;
+    // Nodes that use the loopback interface without multicast look at the ports of the first
+    // participants, and are found there.
+    discovery = fmt::format(
+        "<ParticipantIndex>auto</ParticipantIndex>"
+        "<MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>"
+        R"(<Peers><Peer address="127.0.0.1"/></Peers>)",
+        max_participant_index(domain_id(options)));
+  }
+  std::string config = fmt::format(
+      R"(<CycloneDDS><Domain Id="any"><General>{}</General><Discovery>{}</Discovery><Internal>)"
+      R"(<SocketReceiveBufferSize max="{} B"/><SocketSendBufferSize max="{} B"/>)"
+      "<MaxQueuedRexmitBytes>{} B</MaxQueuedRexmitBytes></Internal></Domain></CycloneDDS>",
+      general, discovery, kSocketBuffer_bytes, kSocketBuffer_bytes, 8 * kSocketBuffer_bytes);
+  const char* given = std::getenv("CYCLONEDDS_URI");
+  if (is_any && given != nullptr && *given != '\0') config += fmt::format(",{}", given);
+  return config;
+}
+
+std::string socket_buffer_advice(std::size_t limit_bytes) {
+  if (limit_bytes >= kSocketBuffer_bytes) return "";
+  return fmt::format(
+      "the system limits socket buffers to {} bytes, so large clouds may arrive late; raise the "
+      "limit with: sudo sysctl -w net.core.rmem_max={} net.core.wmem_max={}",
+      limit_bytes, kSocketBuffer_bytes, kSocketBuffer_bytes);
+}
+
+std::optional<std::size_t> socket_buffer_limit() {
+  std::ifstream file("/proc/sys/net/core/rmem_max");
+  std::size_t bytes = 0;
+  if (!(file >> bytes)) return std::nullopt;
+  return bytes;
+}
+
+}  // namespace glidar::dds

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace glidar::dds {
+
+/// Lets Cyclone DDS choose the network interfaces, by the variable CYCLONEDDS_URI if it is set.
+inline constexpr const char* kAnyInterface = "auto";
+
+/// The interface of this machine only.
+inline constexpr const char* kLoopbackInterface = "lo";
+
+/// Where a participant looks for others.
+struct DomainOptions {
+  std::optional<std::uint32_t> id = {};  ///< 0 to 232; empty: ROS_DOMAIN_ID, or 0
+  /// Network interface: the loopback interface by default, so that only programs on this machine
+  /// communicate.
+  std::string interface_name = kLoopbackInterface;
+};
+
+/// The domain of the options, or of ROS_DOMAIN_ID. Throws Error unless it is from 0 to 232.
+std::uint32_t domain_id(const DomainOptions& options);
+
+/// The configuration of Cyclone DDS for these options. Throws Error when there is no such network
+/// interface.
+std::string domain_config(const DomainOptions& options);
+
+/// Bytes requested for the socket buffers: a cloud of 128 channels fits.
+inline constexpr std::size_t kSocketBuffer_bytes = 10'000'000;
+
+/// A warning with the commands that raise the system's limit of socket buffers, in bytes, if it is
+/// less than requested; else empty.
+std::string socket_buffer_advice(std::size_t limit_bytes);
+
+/// That limit: net.core.rmem_max. Empty if it is unknown.
+std::optional<std::size_t> socket_buffer_limit();
+
+}  // namespace glidar::dds
