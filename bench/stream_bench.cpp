@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Rate of clouds published over a socket, relative to measurements without publishing.
+#include "model_view.hpp"
 #include "ratio_reporter.hpp"
 
 #include <apps/glidar/run/delivery.hpp>
-#include <glidar/io/model/model.hpp>
-#include <glidar/sensor/view_placement.hpp>
-#include <glidar/simulate/simulator.hpp>
 #include <glidar/woods2016/cloud_publisher.hpp>
 
 #include <atomic>
@@ -19,31 +17,11 @@
 namespace glidar::bench {
 namespace {
 
-constexpr std::uint32_t kPixels = 256;
 constexpr std::uint16_t kPort = 47155;
-
-/// A view of a model that fills the image.
-struct View {
-  Scene scene;
-  Beams beams;
-  Motion motion;
-  std::unique_ptr<Simulator> simulator;
-
-  View(const std::string& model, unsigned threads) {
-    add_model(scene, load_model(model, {}, {}));
-    Sensor sensor;
-    sensor.optics = pinhole_from_fov(kPixels, kPixels, 0.35);
-    beams = make_beams(sensor);
-    motion =
-        static_motion(scene, fit_camera_to_scene(beams, scene, {2.0, -3.0, 2.0}, {0.0, 0.0, 1.0}));
-    simulator = std::make_unique<Simulator>(scene, sensor, RendererOptions{.threads = threads});
-  }
-  void measure(Frame& frame) const { simulator->simulate(motion, {}, frame); }
-};
 
 const std::vector<std::string> kColumns = {"xyz", "intensity"};
 
-void measure_alone(benchmark::State& state, const View& view) {
+void measure_alone(benchmark::State& state, const ModelView& view) {
   Frame frame;
   for (auto _ : state) view.measure(frame);
   state.SetItemsProcessed(state.iterations());
@@ -81,7 +59,7 @@ class Reader {
   std::thread thread_;
 };
 
-void publish(benchmark::State& state, const View& view, bool is_read) {
+void publish(benchmark::State& state, const ModelView& view, bool is_read) {
   link::Context context;
   link::ErrorLog errors({});
   woods2016::CloudPublisher publisher(context, {.endpoint = {"127.0.0.1", kPort}}, errors);
@@ -109,7 +87,7 @@ void publish(benchmark::State& state, const View& view, bool is_read) {
 
 void add(const std::string& name, const std::string& model, unsigned threads,
          std::vector<Ratio>& ratios) {
-  const auto view = std::make_shared<const View>(model, threads);
+  const auto view = std::make_shared<const ModelView>(model, threads);
   const std::string end = ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
   const auto named = [&](const char* what) { return name + what + end; };
   const auto enter = [](const std::string& title, const auto& body) {

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/link/dds/participant.hpp>
+#include <glidar/link/dds/topic_writer.hpp>
+#include <glidar/link/payload.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glidar::dds {
+
+struct MessageSinkOptions {
+  std::string ros_namespace = {};  ///< of all topics but /tf, /tf_static and /clock
+  /// Topics that others publish, such as /clock: they are not created.
+  std::vector<std::string> omitted = {};
+};
+
+/// Publishes topics in a domain of DDS.
+class MessageSink final : public ros::MessageSink {
+ public:
+  /// The participant must outlive it. Throws Error when the namespace is not valid.
+  MessageSink(const Participant& participant, MessageSinkOptions options);
+
+  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
+  std::size_t add_topic(const ros::Topic& topic) override;
+  /// Whether a node reads the topic. The last message of a transient local topic is always wanted.
+  [[nodiscard]] bool is_wanted(std::size_t topic) const override;
+  /// Never blocks; copies the message once.
+  void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override;
+  /// Waits up to a second until reliable readers have acknowledged the messages.
+  void finish() override;
+  /// Messages published.
+  [[nodiscard]] std::uint64_t count() const;
+
+ private:
+  const Participant& participant_;
+  MessageSinkOptions options_;
+  std::vector<std::unique_ptr<TopicWriter>> writers_;  ///< per topic; nullptr: omitted
+  std::vector<bool> is_kept_;                          ///< per topic: transient local
+  link::PayloadPool memory_;
+};
+
+}  // namespace glidar::dds
