@@ -8,8 +8,11 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/files/atomic_file.hpp>
+#include <glidar/link/dds/participant.hpp>
+#include <glidar/link/foxglove/server.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -137,11 +140,20 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
   return kBadInput;  // unreachable: parse() requires a subcommand
 }
 
+/// The version, and the optional parts of this build.
+std::string version_text() {
+  std::vector<std::string> parts;
+  if (foxglove::has_foxglove_server()) parts.emplace_back("Foxglove server");
+  if (dds::has_dds()) parts.emplace_back("ROS 2 (DDS)");
+  if (parts.empty()) parts.emplace_back("none");
+  return fmt::format("glidar {}\noptional parts: {}", version(), fmt::join(parts, ", "));
+}
+
 int run(int argc, char** argv) {
   CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
                    "glidar");
   use_help_layout(program);
-  program.set_version_flag("--version", std::string("glidar ") + version(), "Print the version");
+  program.set_version_flag("--version", version_text(), "Print the version and the optional parts");
   program.require_subcommand(1);
   program.footer(kExamples);
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);

@@ -63,7 +63,7 @@ class Packages(unittest.TestCase):
         cls.program, cls.development = (
             Package(file, cls.work / name) for file, name in zip(made, names, strict=True)
         )
-        cls.version = run("glidar", "--version").split()[-1]
+        cls.version = run("glidar", "--version").split()[1]
         cls.architecture = run("dpkg", "--print-architecture").strip()
 
     def test_fields_describe_the_package(self):
