@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/link/dds/local_sockets.hpp>
 
 #include <fmt/format.h>
 #include <net/if.h>
@@ -14,6 +15,7 @@
 #include <fstream>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 namespace glidar::dds {
 namespace {
@@ -45,10 +47,13 @@ std::string interface_names() {
   return names;
 }
 
+/// Linux allows quotes and angle brackets in names, the configuration does not.
+bool is_plain(const std::string& name) {
+  return name.find_first_of("<>&\"' \t\n") == std::string::npos;
+}
+
 void require_interface(const std::string& name) {
-  // Linux allows quotes and angle brackets in names, the configuration does not.
-  const bool is_plain = name.find_first_of("<>&\"' \t\n") == std::string::npos;
-  if (is_plain && if_nametoindex(name.c_str()) != 0) return;
+  if (is_plain(name) && if_nametoindex(name.c_str()) != 0) return;
   throw Error({"network interface of ROS 2", "'" + excerpt(name) + "'",
                "one of this machine: " + interface_names(), ""});
 }
@@ -58,6 +63,24 @@ void require_interface(const std::string& name) {
 constexpr std::string_view kLoopbackSizes =
     "<MaxMessageSize>65000 B</MaxMessageSize><MaxRexmitMessageSize>65000 B</MaxRexmitMessageSize>"
     "<FragmentSize>64000 B</FragmentSize>";
+
+/// Nodes of ROS 2 use the interface to the network by default, also among themselves on a machine,
+/// and Cyclone DDS ignores addresses of interfaces that it does not use. Multicast with a time to
+/// live of 0 does not leave the machine.
+std::string local_interfaces() {
+  constexpr std::size_t kMax = 3;  // Cyclone DDS 0.10 has 4 in all
+  std::string text = R"(<Interfaces><NetworkInterface name="lo" multicast="true"/>)";
+  std::vector<std::string> names;
+  for (const LocalAddress& local : local_addresses()) {
+    const std::string& name = local.interface_name;
+    const bool is_known = std::ranges::find(names, name) != names.end();
+    if (local.is_loopback || !local.has_multicast || is_known || names.size() == kMax) continue;
+    if (!is_plain(name)) continue;
+    text += fmt::format(R"(<NetworkInterface name="{}"/>)", name);
+    names.push_back(name);
+  }
+  return text + "</Interfaces><MulticastTimeToLive>0</MulticastTimeToLive>";
+}
 
 }  // namespace
 
@@ -82,12 +105,13 @@ std::string domain_config(const DomainOptions& options) {
   const bool is_loopback = options.interface_name == kLoopbackInterface;
   std::string general;
   std::string discovery;
-  if (!is_any) {
-    require_interface(options.interface_name);
-    general = fmt::format(R"(<Interfaces><NetworkInterface name="{}"{}/></Interfaces>)",
-                          options.interface_name, is_loopback ? R"( multicast="true")" : "");
+  if (!is_any) require_interface(options.interface_name);
+  if (!is_any && !is_loopback) {
+    general = fmt::format(R"(<Interfaces><NetworkInterface name="{}"/></Interfaces>)",
+                          options.interface_name);
   }
   if (is_loopback) {
+    general = local_interfaces();
     general += kLoopbackSizes;
     // Nodes that use the loopback interface without multicast look at the ports of the first
     // participants, and are found there.

@@ -12,14 +12,15 @@ namespace glidar::dds {
 /// Lets Cyclone DDS choose the network interfaces, by the variable CYCLONEDDS_URI if it is set.
 inline constexpr const char* kAnyInterface = "auto";
 
-/// The interface of this machine only.
+/// Only programs of this machine.
 inline constexpr const char* kLoopbackInterface = "lo";
 
 /// Where a participant looks for others.
 struct DomainOptions {
   std::optional<std::uint32_t> id = {};  ///< 0 to 232; empty: ROS_DOMAIN_ID, or 0
-  /// Network interface: the loopback interface by default, so that only programs on this machine
-  /// communicate.
+  /// Network interface. "lo", the default: programs of this machine only, whichever interface they
+  /// use. Packets then leave it neither by multicast nor to addresses of others, and those of other
+  /// machines are discarded.
   std::string interface_name = kLoopbackInterface;
 };
 

@@ -3,7 +3,7 @@
 #include <glidar/link/dds/participant.hpp>
 
 #include <glidar/link/dds/endpoint.hpp>
-#include <glidar/link/dds/loopback_sockets.hpp>
+#include <glidar/link/dds/local_sockets.hpp>
 
 #include <dds/dds.h>
 
@@ -29,8 +29,8 @@ Participant::Participant(const DomainOptions& options, link::ErrorLog& errors)
   const std::int32_t participant = dds_create_participant(id_, qos.get(), nullptr);
   if (participant < 0 && is_first) dds_delete(domain_handle_);
   handle_ = checked(participant, where, "cannot be joined");
-  if (options.interface_name == kLoopbackInterface && !restrict_to_loopback(id_)) {
-    errors_.report("ROS 2", "the system does not restrict its ports to the loopback interface");
+  if (options.interface_name == kLoopbackInterface && !accept_only(local_addresses(), id_)) {
+    errors_.report("ROS 2", "the system does not keep packets of other machines from its ports");
   }
   const std::optional<std::size_t> limit = socket_buffer_limit();
   const std::string advice = limit ? socket_buffer_advice(*limit) : "";

@@ -49,12 +49,13 @@ TEST(DdsDomain, RefusesNumbersThatRosRefuses) {
   EXPECT_THROW(domain_id({.id = 233}), Error);
 }
 
-TEST(DdsDomain, UsesTheLoopbackInterfaceByDefault) {
+TEST(DdsDomain, StaysOnThisMachineByDefault) {
   const Variable ignored("CYCLONEDDS_URI", "<CycloneDDS/>");
   const std::string config = domain_config({.id = 1});
   EXPECT_THAT(config, HasSubstr(R"(<NetworkInterface name="lo" multicast="true"/>)"));
   EXPECT_THAT(config, HasSubstr(R"(<SocketReceiveBufferSize max="10000000 B"/>)"));
   EXPECT_THAT(config, HasSubstr("<MaxAutoParticipantIndex>119<"));
+  EXPECT_THAT(config, HasSubstr("<MulticastTimeToLive>0<"));
   EXPECT_THAT(config, Not(HasSubstr(",")));
   EXPECT_THAT(domain_config({.id = 232}), HasSubstr("<MaxAutoParticipantIndex>62<"));
 }
