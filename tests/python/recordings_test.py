@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Bags and packet captures of ``glidar render``, read by rosbags. The built program is found in PATH."""
 
+import signal
 import subprocess
 
 import numpy as np
 import pytest
+from waiting import wait_until
 
 highlevel = pytest.importorskip("rosbags.highlevel")
 typesys = pytest.importorskip("rosbags.typesys")
@@ -121,14 +123,44 @@ def test_a_capture_has_the_packets_of_one_revolution(tmp_path):
     assert set(lengths) <= {1206, 512}
 
 
+def test_a_capture_of_a_rig_has_the_sensor_with_packets(folder):
+    done = run(folder, "rig.yaml", "-o", "rig.pcap")
+    assert done.returncode == 0, done.stderr
+    assert (folder / "rig.pcap").stat().st_size > 75 * 1206
+
+
+def test_a_stream_completes_its_bag_after_sigint_and_a_replay_repeats_it(tmp_path):
+    (tmp_path / "rig.yaml").write_text(RIG)
+    words = ["rig.yaml", "--record", "r.jsonl", "-o", "live.mcap", "-o", "live.bag", "-o", "live.pcd", "--no-sidecar"]
+    with subprocess.Popen(["glidar", "stream", *words], cwd=tmp_path, stdout=subprocess.DEVNULL) as program:
+        wait_until((tmp_path / "live_lidar_000002.pcd").exists, "three frames", program)
+        program.send_signal(signal.SIGINT)
+    assert program.returncode == 130
+    live = messages(tmp_path / "live.mcap")
+    count = len(live["/lidar/points"])
+    assert count >= 3
+    assert len(messages(tmp_path / "live.bag")["/lidar/points"]) == count
+    assert len(live["/imu/data"]) >= 10 * count
+    done = subprocess.run(["glidar", "replay", "r.jsonl", "-o", "again.mcap"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    done = run(tmp_path, "rig.yaml", "--duration", str(count / 10), "-o", "rendered.mcap")
+    assert done.returncode == 0, done.stderr
+    for name in ("again.mcap", "rendered.mcap"):
+        other = messages(tmp_path / name)
+        assert set(other) == set(live)
+        for (stamp, cloud), (other_stamp, other_cloud) in zip(live["/lidar/points"], other["/lidar/points"], strict=True):
+            assert stamp == other_stamp
+            assert cloud.data.tobytes() == other_cloud.data.tobytes()
+
+
 @pytest.mark.parametrize(("arguments", "text"), [
     (("builtin:box", "-o", "a.pcap"), "depth camera"),
-    (("rig.yaml", "-o", "a.pcap"), "a rig of several sensors"),
+    (("rig.yaml", "-o", "a.pcap"), "several sensors with packets: lidar, second"),
     (("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "-o", "a.mcap", "-o", "./a.mcap"), "is given twice"),
     (("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "-o", "missing/a.mcap"), "missing"),
 ])  # fmt: skip
 def test_recordings_that_do_not_fit_are_refused_and_leave_nothing(tmp_path, arguments, text):
-    (tmp_path / "rig.yaml").write_text(RIG)
+    (tmp_path / "rig.yaml").write_text(RIG.replace("imus:", "  - {name: second, sensor: XT32}\nimus:"))
     done = run(tmp_path, *arguments)
     assert done.returncode == 2
     assert text in done.stderr

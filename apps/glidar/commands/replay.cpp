@@ -19,12 +19,15 @@ namespace {
 
 constexpr const char* kReplayExamples =
     R"(Repeats every frame of a recording and compares it with the recorded frame; the first difference is
-an error. Writes files (-o) or publishes (--port) like `glidar stream`.
+an error. Writes files (-o) or publishes (--port, --foxglove) like `glidar stream`. With --foxglove,
+the viewer plays, pauses and steps; the replay begins paused and ends by Ctrl-C.
 Examples:
   glidar stream builtin:asteroid --object-rate 0,0.5,0 --frames 20 --record r.jsonl -o scan.pcd
   glidar replay r.jsonl
   glidar replay r.jsonl -o again.pcd
+  glidar replay r.jsonl -o run.mcap
   glidar replay r.jsonl --port 5555 --rate 10
+  glidar replay r.jsonl --foxglove
 Models, scene and sensor files must have the same paths relative to the recording.
 Exit codes: 0 every frame is the same, 2 bad input or a frame that differs, 130 after Ctrl-C.)";
 
@@ -41,6 +44,7 @@ StreamFlags flags_of(const link::RecordingHead& head, const std::string& file) {
 StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
   StreamFlags flags = chosen;
   flags.pose_source = recorded.pose_source;
+  flags.replays_requests = !recorded.lockstep.empty();
   flags.render = std::move(recorded.render);
   flags.render.output = chosen.render.output;
   flags.render.renderer.threads = chosen.render.renderer.threads;
@@ -66,6 +70,7 @@ void make_absolute(StreamFlags& flags) {
   absolute(flags.replay);
   absolute(flags.stats);
   absolute(flags.render.output.legacy_name);
+  for (std::string& path : flags.render.output.recording_paths) absolute(path);
   for (std::string& path : flags.render.output.paths) {
     if (path != kStandardOutput) absolute(path);
   }

@@ -24,6 +24,8 @@ constexpr const char* kStreamExamples = R"(Examples:
   glidar stream builtin:asteroid --object-rate 0,0.5,0 --rate 10 --port 5555
   glidar stream builtin:asteroid --rate max --port 5555 --subscribers 0 --stats stats.json
   glidar stream builtin:box --sensor VLP-16 --eye 0,0,0 --duration 0.2 -o scan.pcd
+  glidar stream builtin:asteroid --object-rate 0,0.5,0 --foxglove 8765
+  glidar stream builtin:box --sensor VLP-16 --eye 0,0,0 --duration 10 -o run.mcap
 With your own files:
   glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
 Closed loop with a simulator that publishes poses at port 5557 and shakes hands at port 5558:

@@ -38,6 +38,19 @@ void OptionGroup::add(const std::string& names, const std::string& value_name,
   add(names, value_name, help, [&value](const std::string& text) { value = text; });
 }
 
+void OptionGroup::add_optional(const std::string& names, const std::string& value_name,
+                               const std::string& help, const std::string& value_if_none,
+                               const StoreValue& store) const {
+  const auto read = [option = long_name(names), value_if_none, store](const std::string& text) {
+    const bool is_none = text.empty() || text == "true";  // CLI11's words for no value
+    with_option_name(option, [&] { store(is_none ? value_if_none : text); });
+  };
+  command_.add_option_function<std::string>(names, read, help)
+      ->expected(0, 1)
+      ->type_name(value_name)
+      ->group(heading_);
+}
+
 void OptionGroup::add_repeatable(const std::string& names, const std::string& value_name,
                                  const std::string& help, const StoreValue& store) const {
   const auto read = [store](const std::vector<std::string>& texts) {

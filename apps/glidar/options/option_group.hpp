@@ -31,6 +31,10 @@ class OptionGroup {
   /// The same for any text.
   void add(const std::string& names, const std::string& value_name, const std::string& help,
            std::string& value) const;
+  /// An option whose value may be left out, which then is `value_if_none`.
+  void add_optional(const std::string& names, const std::string& value_name,
+                    const std::string& help, const std::string& value_if_none,
+                    const StoreValue& store) const;
   /// An option that may be repeated, once for each value.
   void add_repeatable(const std::string& names, const std::string& value_name,
                       const std::string& help, const StoreValue& store) const;

@@ -40,6 +40,14 @@ std::vector<std::string> layout_names() {
   return names;
 }
 
+std::vector<std::pair<std::string, OusterProfile>> ouster_profiles() {
+  std::vector<std::pair<std::string, OusterProfile>> profiles;
+  for (const std::string_view profile : ouster_profile_names()) {
+    profiles.emplace_back(profile, static_cast<OusterProfile>(profiles.size()));
+  }
+  return profiles;
+}
+
 /// Formats that can go to standard output.
 std::vector<std::string> stream_formats() {
   std::vector<std::string> names;
@@ -69,6 +77,8 @@ void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
                                  {"binary", PcdEncoding::binary},
                                  {"binary_compressed", PcdEncoding::binary_compressed}}));
   group.add_flag("--ply-ascii", "PLY as text", flags.sink.ply_ascii);
+  group.add("--ouster-profile", "NAME", "Packets of Ouster sensors: LEGACY ... [by the returns]",
+            flags.ouster_profile, one_of(ouster_profiles()));
   group.add("--depth-scale", "UNITS", "Units per metre in 16-bit depth images [1000]",
             flags.sink.depth_png_units_per_m,
             number(kAboveZero, kFinite, "a finite number above 0"));
@@ -131,11 +141,11 @@ std::string output_names_text() {
   }
   text += fmt::format("  {:<17} {}\n", ".imu.csv", "samples of IMUs, text (render --duration)");
   text += fmt::format("  {:<17} {}\n", ".imu.npz", "samples of IMUs, NumPy archive");
-  text += fmt::format("  {:<17} {}\n", ".mcap", "ROS bag of all frames and sensors (render)");
+  text += fmt::format("  {:<17} {}\n", ".mcap", "ROS bag of all frames and sensors");
   text +=
       fmt::format("  {:<17} {}\n", ".rosbag2", "the same as a folder with SQLite, for ros2 bag");
   text += fmt::format("  {:<17} {}\n", ".bag", "the same for ROS 1");
-  text += fmt::format("  {:<17} {}\n", ".pcap", "UDP packets as the sensor sends them (render)");
+  text += fmt::format("  {:<17} {}\n", ".pcap", "UDP packets as the sensor sends them");
   text += "\nColumns of clouds (* by default):\n";
   std::string names;
   for (const std::string& name : cloud_column_names()) {

@@ -4,7 +4,9 @@
 
 #include <apps/glidar/options/cli_fwd.hpp>
 #include <glidar/io/formats/file_sink.hpp>
+#include <glidar/io/packets/ouster_packet.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,7 @@ struct OutputFlags {
   std::vector<std::string> columns;  ///< of clouds; empty: default_columns()
   std::string frame = "sensor";      ///< axes of clouds
   bool deskew = false;
+  std::optional<OusterProfile> ouster_profile;  ///< of packets; empty: by the number of returns
   FileSinkOptions sink;
 };
 

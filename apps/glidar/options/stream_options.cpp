@@ -10,8 +10,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 namespace glidar::app {
 namespace {
@@ -86,6 +88,64 @@ void add_publishing_options(CLI::App& command, StreamFlags& flags) {
             flags.publish_queue, whole(0, kMaxQueue));
 }
 
+/// "[ADDRESS:]PORT".
+link::Endpoint parse_listen_address(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  const bool has_host = colon != std::string::npos;
+  link::Endpoint endpoint{.host = has_host ? text.substr(0, colon) : "127.0.0.1"};
+  if (endpoint.host.starts_with('[') && endpoint.host.ends_with(']')) {
+    endpoint.host = endpoint.host.substr(1, endpoint.host.size() - 2);
+  }
+  const std::string port = has_host ? text.substr(colon + 1) : text;
+  const char* const end = port.data() + port.size();
+  const auto [stop, error] = std::from_chars(port.data(), end, endpoint.port);
+  if (error != std::errc() || stop != end || endpoint.host.empty()) {
+    refuse_value(text, "PORT from 0 (any free port) to 65535, or ADDRESS:PORT",
+                 "for example --foxglove 8765, or --foxglove as the last option");
+  }
+  return endpoint;
+}
+
+void add_live_view_option(CLI::App& command, StreamFlags& flags) {
+  OptionGroup(command, "Live view in browsers, Foxglove and Lichtblick")
+      .add_optional(
+          "--foxglove", "[ADDRESS:]PORT", "Show the frames at this port [127.0.0.1:8765]", "8765",
+          [&flags](const std::string& text) { flags.foxglove = parse_listen_address(text); });
+}
+
+PacketTarget parse_packet_target(const std::string& text) {
+  PacketTarget target;
+  const std::size_t equals = text.find('=');
+  if (equals != std::string::npos) target.sensor_name = text.substr(0, equals);
+  std::string rest = equals == std::string::npos ? text : text.substr(equals + 1);
+  const auto take_port = [&]() -> std::optional<std::uint16_t> {
+    const std::size_t colon = rest.find(':');
+    if (colon == std::string::npos) return std::nullopt;
+    const std::size_t end = std::min(rest.find(':', colon + 1), rest.size());
+    const auto port = whole<std::uint16_t>(1, 65535)(rest.substr(colon + 1, end - colon - 1));
+    rest.erase(colon, end - colon);
+    return port;
+  };
+  target.data_port = take_port();
+  target.second_port = take_port();
+  target.host = rest;
+  const bool is_valid = !rest.empty() && rest.find(':') == std::string::npos && equals != 0;
+  if (!is_valid) {
+    refuse_value(text, "[SENSOR=]ADDRESS[:PORT[:PORT]]", "for example 127.0.0.1:2368");
+  }
+  return target;
+}
+
+void add_packet_option(CLI::App& command, StreamFlags& flags) {
+  OptionGroup(command, "Packets by UDP, as Velodyne, Ouster and Hesai sensors send them")
+      .add_repeatable("--udp", "ADDRESS[:PORT[:PORT]]",
+                      "Receiver; ports of data and IMU or position [the manufacturer's]",
+                      [&flags](const std::string& text) {
+                        with_option_name("--udp",
+                                         [&] { flags.udp.push_back(parse_packet_target(text)); });
+                      });
+}
+
 void add_pose_source_options(CLI::App& command, StreamFlags& flags) {
   const OptionGroup group(command,
                           "Poses over ZeroMQ, protocol of Woods 2016 (handshake at the next port)");
@@ -112,9 +172,9 @@ void add_lockstep_options(CLI::App& command, StreamFlags& flags) {
   require_option(command, {"--curve-keys"}, "--lockstep");
   forbid_together(
       command, {"--lockstep"},
-      {"--port", "--pose-source", "--trajectory", "--object-rate", "--sensor-rate", "--frames",
-       "--duration", "--subscribers", "--subscription-timeout", "--publish-every",
-       "--publish-latest", "--publish-queue", "--format", "--legacy-output"});
+      {"--port", "--foxglove", "--udp", "--pose-source", "--trajectory", "--object-rate",
+       "--sensor-rate", "--frames", "--duration", "--subscribers", "--subscription-timeout",
+       "--publish-every", "--publish-latest", "--publish-queue", "--format", "--legacy-output"});
   forbid_together(command, {"--lockstep"}, options_under(command, kOutputHeading));
 }
 
@@ -138,6 +198,8 @@ void add_stream_options(CLI::App& command, StreamFlags& flags) {
   hide_standard_output(command);
   add_timing_options(command, flags);
   add_publishing_options(command, flags);
+  add_live_view_option(command, flags);
+  add_packet_option(command, flags);
   add_pose_source_options(command, flags);
   add_lockstep_options(command, flags);
   add_limit_option(command, flags);
@@ -148,7 +210,7 @@ void add_replay_options(CLI::App& command, StreamFlags& flags) {
   add_legacy_output_option(command, flags.render.output);
   hide_standard_output(command);
   const OptionGroup timing(command, kTimingHeading);
-  timing.add("--rate", "HZ", "Frames per second at most; 0 or max: no limit [max]",
+  timing.add("--rate", "HZ", "Frames per second; 0: no limit [max; --foxglove: as recorded]",
              flags.replay_rate_hz, [](const std::string& text) {
                constexpr double kMax_hz = 1e9;
                const double rate_hz = parse_frame_rate(text);
@@ -158,6 +220,8 @@ void add_replay_options(CLI::App& command, StreamFlags& flags) {
              });
   add_end_options(timing, "End after N frames, of all sensors together [all]", flags);
   add_publishing_options(command, flags);
+  add_live_view_option(command, flags);
+  add_packet_option(command, flags);
   add_limit_option(command, flags);
   const OptionGroup run(command, "Run");
   add_threads_option(run, flags.render.renderer);
@@ -170,20 +234,19 @@ void check(const CLI::App& command, const StreamFlags& flags) {
     throw Error(
         {"--lockstep and --rate max", "requests give the times of frames", "", "leave --rate out"});
   }
-  if (!flags.render.output.recording_paths.empty()) {
-    throw Error({"--output, " + flags.render.output.recording_paths.front(),
-                 "a bag or a packet capture, which glidar stream does not write", "files of frames",
-                 "write it with glidar render --duration"});
-  }
   if (!flags.render.output.imu_paths.empty()) {
     throw Error({"--output, " + flags.render.output.imu_paths.front(),
                  "samples of IMUs, which glidar stream does not write", "files of clouds",
                  "use glidar render with --duration"});
   }
-  if (!has_outputs(flags.render.output)) {
+  const bool has_clouds = has_outputs(flags.render.output) ||
+                          !flags.render.output.recording_paths.empty() || flags.foxglove ||
+                          !flags.udp.empty();
+  if (!has_clouds) {
     if (!flags.port && flags.record.empty()) {
-      throw Error({"--port and --output", "neither is given, so no cloud would be sent or written",
-                   "", "for example: glidar stream " + flags.render.input + " --port 5555"});
+      throw Error({"--port, --foxglove, --udp and --output",
+                   "none is given, so no cloud would be sent or written", "",
+                   "for example: glidar stream " + flags.render.input + " --foxglove"});
     }
     OptionNames names = options_under(command, kOutputHeading);
     names.emplace_back("--format");

@@ -10,8 +10,17 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace glidar::app {
+
+/// A receiver of packets: [SENSOR=]ADDRESS[:PORT[:PORT]].
+struct PacketTarget {
+  std::string sensor_name;  ///< empty: the only sensor with packets
+  std::string host;
+  std::optional<std::uint16_t> data_port;    ///< empty: the manufacturer's
+  std::optional<std::uint16_t> second_port;  ///< of positions (Velodyne) or IMU (Ouster)
+};
 
 /// A stream as given on the command line.
 struct StreamFlags {
@@ -22,7 +31,8 @@ struct StreamFlags {
   std::string record;                         ///< file with all inputs of the frames; empty: none
   bool is_durable = false;                    ///< syncs that file to the disk
   std::string replay;                         ///< recording to repeat; empty: none
-  double replay_rate_hz = 0.0;                ///< 0: as fast as possible
+  std::optional<double> replay_rate_hz;       ///< 0: as fast as possible; empty: not given
+  bool replays_requests = false;              ///< the recorded poses are those of clients
   CommandRecord command;                      ///< this command line, for the recording
   std::string bind = "127.0.0.1";             ///< address to listen at
   std::optional<std::uint16_t> port;          ///< of the clouds; empty: they are not published
@@ -31,6 +41,8 @@ struct StreamFlags {
   std::uint32_t publish_every = 1;            ///< frames
   bool publishes_latest = false;              ///< --publish-latest
   int publish_queue = 32;                     ///< clouds for each subscriber
+  std::vector<PacketTarget> udp;              ///< receivers of packets
+  std::optional<link::Endpoint> foxglove;     ///< of the live view; empty: there is none
   std::optional<link::Endpoint> pose_source;  ///< empty: the command line gives the poses
   int pose_queue = 0;                         ///< 0: the newest pose only
   std::optional<double> pose_timeout_s;       ///< empty: none

@@ -285,9 +285,15 @@ void set_frame_header(const RenderFlags& flags, std::uint32_t number, const Acti
 
 std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,
                                           const std::shared_ptr<const BeamCache>& beam_cache) {
-  auto simulator = std::make_shared<Simulator>(prepared.scene, beam_cache, *prepared.renderer);
-  if (prepared.woods2016_camera)
-    simulator->set_return_replacement(woods2016_measurement(*prepared.woods2016_camera));
+  return make_simulator(prepared.scene, beam_cache, *prepared.renderer,
+                        prepared.woods2016_camera.get());
+}
+
+std::shared_ptr<Simulator> make_simulator(const Scene& scene,
+                                          const std::shared_ptr<const BeamCache>& beam_cache,
+                                          Renderer& renderer, Woods2016Camera* camera) {
+  auto simulator = std::make_shared<Simulator>(scene, beam_cache, renderer);
+  if (camera != nullptr) simulator->set_return_replacement(woods2016_measurement(*camera));
   return simulator;
 }
 

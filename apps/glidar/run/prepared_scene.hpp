@@ -68,6 +68,11 @@ void set_frame_header(const RenderFlags& flags, std::uint32_t number, const Acti
 std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,
                                           const std::shared_ptr<const BeamCache>& beam_cache);
 
+/// The same with another renderer of the scene; `camera` nullptr: no framebuffer.
+std::shared_ptr<Simulator> make_simulator(const Scene& scene,
+                                          const std::shared_ptr<const BeamCache>& beam_cache,
+                                          Renderer& renderer, Woods2016Camera* camera);
+
 /// Prints advice as warnings.
 void print_advice(const std::vector<std::string>& advice, Console& console);
 

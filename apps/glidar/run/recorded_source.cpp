@@ -29,26 +29,34 @@ void check(const link::RecordedFrame& frame, std::uint64_t number, const Prepare
 
 }  // namespace
 
-RecordedSource::RecordedSource(link::RecordingReader& recording, const FrameSchedule& schedule,
+RecordedSource::RecordedSource(link::RecordingReader& recording, const Options& options,
                                const PreparedScene& prepared, const StopRequest& stop)
     : recording_(recording),
-      schedule_(schedule),
+      options_(options),
       prepared_(prepared),
       stop_(stop),
       next_indices_(prepared.sensors.size()) {}
 
-std::optional<FrameRequest> RecordedSource::next() {
-  if (number_ >= schedule_.frames) {
+/// The next frame; empty at the end, of which `ending_` states why.
+std::optional<link::RecordedFrame> RecordedSource::read() {
+  if (number_ >= options_.schedule.frames) {
     ending_ = "all frames are done";
     return std::nullopt;
   }
   std::optional<link::RecordedFrame> frame = recording_.next();
-  if (!frame) {
-    ending_ = "the recording is complete";
-    return std::nullopt;
+  if (!frame) ending_ = "the recording is complete";
+  return frame;
+}
+
+std::optional<FrameRequest> RecordedSource::next() {
+  std::optional<link::RecordedFrame> frame = read();
+  if (!frame && options_.playback != nullptr) {
+    while (!stop_.is_requested()) stop_.wait_until(Clock::now() + std::chrono::hours(1));
   }
+  if (!frame) return std::nullopt;
   check(*frame, number_, prepared_);
-  wait_until_due();
+  if (options_.playback != nullptr && !options_.playback->wait(stop_)) return std::nullopt;
+  wait_until_due(frame->moment.t_ns);
   if (stop_.is_requested()) return std::nullopt;
   ++number_;
   FrameRequest moment{.sensor_index = frame->sensor,
@@ -63,14 +71,23 @@ std::optional<FrameRequest> RecordedSource::next() {
   return moment;
 }
 
-void RecordedSource::wait_until_due() {
-  const Clock::time_point now = Clock::now();
-  if (!due_ || schedule_.rate_hz <= 0.0) {
-    due_ = now;
-    return;
+/// From the last frame to this one.
+std::chrono::duration<double> RecordedSource::period(std::int64_t t_ns) const {
+  constexpr double kNanosecond_s = 1e-9;
+  constexpr double kMax_s = 10.0;  // clients may give any time
+  if (options_.pace == ReplayPace::stamps) {
+    const double s = kNanosecond_s * (static_cast<double>(t_ns) - static_cast<double>(last_ns_));
+    return std::chrono::duration<double>(std::clamp(s, 0.0, kMax_s));
   }
-  const std::chrono::duration<double> period(1.0 / schedule_.rate_hz);
-  due_ = std::max(now, *due_ + std::chrono::duration_cast<Clock::duration>(period));
+  const double rate_hz = options_.schedule.rate_hz;
+  return std::chrono::duration<double>(rate_hz > 0.0 ? 1.0 / rate_hz : 0.0);
+}
+
+void RecordedSource::wait_until_due(std::int64_t t_ns) {
+  const Clock::time_point now = Clock::now();
+  const auto since_last = std::chrono::duration_cast<Clock::duration>(period(t_ns));
+  last_ns_ = t_ns;
+  due_ = due_ ? std::max(now, *due_ + since_last) : now;
   while (Clock::now() < *due_ && !stop_.is_requested()) stop_.wait_until(*due_);
 }
 

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/bag_sink.hpp>
+#include <apps/glidar/run/packet_sinks.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
@@ -12,34 +13,6 @@
 
 namespace glidar::app {
 namespace {
-
-/// The packets of one sensor.
-class CaptureSink final : public FrameSink {
- public:
-  CaptureSink(const std::string& path, const Sensor& sensor) : writer_(path, sensor) {}
-
-  [[nodiscard]] std::vector<std::string> columns(std::size_t /*sensor_index*/) const override {
-    return {"xyz", "intensity", "range"};
-  }
-  void write(const MeasuredFrame& measured) override {
-    writer_.write(measured.frame, *measured.beams);
-  }
-  void finish() override { writer_.finish(); }
-  [[nodiscard]] std::vector<std::filesystem::path> files() const override {
-    return writer_.files();
-  }
-
- private:
-  PacketWriter writer_;
-};
-
-std::unique_ptr<FrameSink> make_capture(const std::string& path, const PreparedScene& prepared) {
-  if (prepared.sensors.size() != 1) {
-    throw Error({path, "a rig of several sensors", "the packets of one sensor",
-                 "choose it with --sensor-name"});
-  }
-  return std::make_unique<CaptureSink>(path, prepared.sensors.front().sensor);
-}
 
 /// Throws Error when two recordings have the same name.
 void check_names(const std::vector<std::string>& paths) {
@@ -61,7 +34,7 @@ std::vector<std::unique_ptr<FrameSink>> make_recording_sinks(const RenderFlags& 
     check_names(flags.output.recording_paths);
     for (const std::string& path : flags.output.recording_paths) {
       refuse_overwrite_of_inputs(read, path);
-      sinks.push_back(is_capture_name(path) ? make_capture(path, prepared)
+      sinks.push_back(is_capture_name(path) ? make_capture_sink(path, flags, prepared, origin)
                                             : make_bag_sink(path, flags, prepared, origin));
     }
   });

@@ -8,8 +8,8 @@
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/placement.hpp>
 #include <apps/glidar/run/recorded_source.hpp>
-#include <apps/glidar/run/rig_outputs.hpp>
 #include <apps/glidar/run/stream_report.hpp>
+#include <apps/glidar/run/stream_sinks.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 
@@ -48,6 +48,15 @@ woods2016::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
   return {.endpoint = *flags.pose_source, .queue = flags.pose_queue};
 }
 
+/// The bags and captures; empty: none.
+std::string written_text(const std::vector<std::unique_ptr<FrameSink>>& sinks) {
+  std::string text;
+  for (const auto& sink : sinks) {
+    for (const std::filesystem::path& file : sink->files()) text += " " + file.string();
+  }
+  return text.empty() ? text : "wrote" + text + "\n";
+}
+
 /// Throws Error when a frame is not the one that was recorded.
 void compare(const MeasuredFrame& measured, const std::string& recording, std::uint64_t number) {
   if (frame_hash(measured.frame) == measured.frame_hash) return;
@@ -79,6 +88,13 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
           std::make_unique<woods2016::CloudPublisher>(context_, publisher_options(flags_), errors_);
     });
   }
+  if (flags_.foxglove) {
+    with_option_name("--foxglove", [&] {
+      if (recording_) playback_ = std::make_unique<Playback>();
+      live_view_ = std::make_unique<LiveView>(*flags_.foxglove, playback_.get(), errors_);
+      console_.info("live view: " + live_view_->url());
+    });
+  }
   open_scene();
   if (recorder_) recorder_->begin(prepared_, flags_.command);
   if (flags_.pose_source && !recording_) {
@@ -91,23 +107,39 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
 }
 
 void StreamRun::open_scene() {
-  const ActiveSensor unknown{.sensor = {}};
-  std::vector<Output> outputs;
-  if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), unknown, unknown.beams);
+  std::unique_ptr<NumberedFiles> files;
+  if (has_outputs(flags_.render.output)) {
+    files = std::make_unique<NumberedFiles>(flags_, prepared_, console_);
+  }
   prepare_scene(
-      flags_.render, [&] { refuse_overwrite_of_inputs(prepared_.files, outputs); }, console_,
-      prepared_);
-  files_ = outputs_by_sensor(flags_.render, prepared_, console_);
-  reserved_files_ = reserved_files(flags_, prepared_.files);
-  std::vector<std::string> columns;
-  if (publisher_) {
-    columns = kPublishedColumns;
-    publisher_->set_topics(topics());
+      flags_.render,
+      [&] {
+        if (files) files->refuse_overwrite_of_inputs();
+      },
+      console_, prepared_);
+  const std::vector<std::string> reserved = reserved_files(flags_, prepared_.files);
+  for (const ActiveSensor& active : prepared_.sensors) {
+    motions_.push_back(std::make_shared<const Motion>(active.motion));
   }
-  for (const Output& output : outputs) {
-    columns.insert(columns.end(), output.columns.begin(), output.columns.end());
+  if (publisher_) publisher_->set_topics(topics());
+  open_sinks(std::move(files), reserved);
+}
+
+void StreamRun::open_sinks(std::unique_ptr<NumberedFiles> files,
+                           const std::vector<std::string>& reserved) {
+  if (live_view_) {
+    live_view_->begin(flags_.render, prepared_, pose_origin(flags_));
+    sinks_.push_back(std::move(live_view_));
   }
-  hit_columns_ = glidar::hit_columns_for(columns);
+  if (files) {
+    files->begin(reserved);
+    sinks_.push_back(std::move(files));
+  }
+  for (auto& sink : make_stream_sinks(flags_, prepared_, reserved, errors_)) {
+    sinks_.push_back(std::move(sink));
+  }
+  hit_columns_ = needed_hit_columns(sinks_, prepared_.sensors.size());
+  if (publisher_) hit_columns_ = hit_columns_ | glidar::hit_columns_for(kPublishedColumns);
 }
 
 /// The original topic for one sensor, one topic per sensor for a rig.
@@ -158,8 +190,14 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
       .frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
       .duration_s = duration_s_};
   if (recording_) {
-    schedule.rate_hz = flags_.replay_rate_hz;
-    return std::make_unique<RecordedSource>(*recording_, schedule, prepared_, stop);
+    schedule.rate_hz = flags_.replay_rate_hz.value_or(0.0);
+    const bool follows_stamps = playback_ && !flags_.replay_rate_hz;
+    return std::make_unique<RecordedSource>(
+        *recording_,
+        RecordedSource::Options{.schedule = schedule,
+                                .pace = follows_stamps ? ReplayPace::stamps : ReplayPace::schedule,
+                                .playback = playback_.get()},
+        prepared_, stop);
   }
   if (receiver_) {
     schedule.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
@@ -261,7 +299,9 @@ void StreamRun::stream(PoseSource& source, StopRequest& stop) {
 }
 
 void StreamRun::move(const RigMotion& motion) {
-  for (ActiveSensor& active : prepared_.sensors) active.motion = motion_of(motion, active);
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    motions_[i] = std::make_shared<const Motion>(motion_of(motion, prepared_.sensors[i]));
+  }
   if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(motion));
 }
 
@@ -270,6 +310,7 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
   measured.beams = active.simulator->beams(request.number);
   measured.index = request.index;
   measured.sensor_index = request.sensor_index;
+  measured.motion = motions_[request.sensor_index];
   measured.placed = placed_;
   measured.frame_hash = request.frame_hash;
   measured.due = request.due;
@@ -278,35 +319,14 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
   measured.frame.stamp_ns =
       request.stamp_ns.value_or(frame_interval(active.sensor, request.number).start_ns);
   measured.frame.seed = request.seed.value_or(flags_.render.seed);
-  active.simulator->simulate(active.motion, hit_columns_, measured.frame);
+  active.simulator->simulate(*measured.motion, hit_columns_, measured.frame);
   if (measured_++ > 0) return;
   print_advice(view_advice({prepared_.scene, active.sensor, *measured.beams, measured.frame}),
                console_);
 }
 
 bool StreamRun::is_wanted(std::uint64_t index) const {
-  return recording_ || recorder_ || writes_files() || (publisher_ && publisher_->wants(index));
-}
-
-bool StreamRun::writes_files() const {
-  return has_outputs(flags_.render.output);
-}
-
-std::vector<Output> StreamRun::plan(const OutputFlags& files, const ActiveSensor& active,
-                                    const Beams& beams) {
-  SidecarContext context{.scene = prepared_.scene,
-                         .sensor = active.sensor,
-                         .beams = beams,
-                         .renderer = renderer_name(flags_.render),
-                         .inputs = reserved_files_};
-  if (!flags_.pose_source && !recording_) {  // otherwise the command does not contain the poses
-    context.command = flags_.command;
-    const std::string label = label_of(flags_.render, active);
-    if (!label.empty()) {
-      context.command.arguments.insert(context.command.arguments.end(), {"--sensor-name", label});
-    }
-  }
-  return plan_outputs(files, flags_.render.input, context, console_.report());
+  return recording_ || recorder_ || !sinks_.empty() || (publisher_ && publisher_->wants(index));
 }
 
 void StreamRun::deliver(const MeasuredFrame& measured) {
@@ -314,7 +334,7 @@ void StreamRun::deliver(const MeasuredFrame& measured) {
     recorder_->write(line_of(measured.sensor_index, measured.frame, measured.placed.get()));
   if (!measured.frame_hash.empty()) compare(measured, flags_.replay, stats_.latency.count());
   if (publisher_ && publisher_->wants(measured.index)) publish(measured);
-  if (writes_files()) write_files(measured);
+  for (const auto& sink : sinks_) sink->write(measured);
   stats_.add_frame(measured.due);
 }
 
@@ -325,20 +345,9 @@ void StreamRun::publish(const MeasuredFrame& measured) {
   publisher_->write(cloud_, measured.frame);
 }
 
-void StreamRun::write_files(const MeasuredFrame& measured) {
-  const ActiveSensor& active = prepared_.sensors[measured.sensor_index];
-  OutputFlags files = files_[measured.sensor_index];
-  if (!has_outputs(files)) return;
-  const std::string label = label_of(flags_.render, active);
-  if (!label.empty()) files = labelled(files, label);
-  const std::vector<Output> outputs =
-      plan(numbered(files, static_cast<std::uint32_t>(measured.index)), active, *measured.beams);
-  refuse_overwrite_of_inputs(reserved_files_, outputs);
-  write_outputs(outputs, measured.frame, *measured.beams, prepared_.scene);
-}
-
 void StreamRun::serve_peers() {
   if (publisher_) publisher_->serve();
+  for (const auto& sink : sinks_) sink->serve();
   const auto now = StreamStats::Clock::now();
   if (now - status_time_ < kStatusInterval) return;
   status_time_ = now;
@@ -359,6 +368,7 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     }
   };
   if (publisher_) attempt([&] { publisher_->shut_down(is_urgent ? kUrgent : kUnhurried); });
+  for (const auto& sink : sinks_) attempt([&] { sink->finish(); });
   errors_.flush();
   StreamSummary summary{.stats = stats_,
                         .ending = ending,
@@ -374,7 +384,7 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     });
   }
   if (recorder_) attempt([&] { recorder_->commit(); });
-  if (!flags_.render.quiet) fmt::print("{}", summary_text(summary));
+  if (!flags_.render.quiet) fmt::print("{}{}", summary_text(summary), written_text(sinks_));
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -6,8 +6,11 @@
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/delivery.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/interrupt.hpp>
-#include <apps/glidar/run/outputs.hpp>
+#include <apps/glidar/run/live_view.hpp>
+#include <apps/glidar/run/numbered_files.hpp>
+#include <apps/glidar/run/playback.hpp>
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorder.hpp>
@@ -36,6 +39,7 @@ class StreamRun {
 
  private:
   void open_scene();
+  void open_sinks(std::unique_ptr<NumberedFiles> files, const std::vector<std::string>& reserved);
   [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
@@ -46,12 +50,8 @@ class StreamRun {
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const FrameRequest& request, MeasuredFrame& measured);
   [[nodiscard]] bool is_wanted(std::uint64_t index) const;
-  [[nodiscard]] bool writes_files() const;
-  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const ActiveSensor& active,
-                                         const Beams& beams);
   void move(const RigMotion& motion);
   void deliver(const MeasuredFrame& measured);
-  void write_files(const MeasuredFrame& measured);
   void publish(const MeasuredFrame& measured);
   void serve_peers();
   void finish(const std::string& ending, bool is_urgent = false);
@@ -68,8 +68,10 @@ class StreamRun {
   std::shared_ptr<const lockstep::Moment> placed_;    ///< poses of the simulator's last message
   double duration_s_ = 0.0;
   PreparedScene prepared_;
-  std::vector<std::string> reserved_files_;  ///< files that no output may replace
-  std::vector<OutputFlags> files_;           ///< of each sensor
+  std::vector<std::shared_ptr<const Motion>> motions_;  ///< of each sensor, now
+  std::unique_ptr<Playback> playback_;                  ///< of a replay with a live view
+  std::unique_ptr<LiveView> live_view_;                 ///< until it is one of the sinks
+  std::vector<std::unique_ptr<FrameSink>> sinks_;
   MovedScene moved_scene_;
   HitColumnMask hit_columns_;
   StreamStats stats_;

@@ -22,6 +22,9 @@ constexpr const char* kRigFrame = "base_link";
 /// From one pose of the rig to the next in /tf, /odom and /clock: 100 Hz.
 constexpr std::int64_t kPosePeriod_ns = 10'000'000;
 
+/// Longer times between frames have no poses and samples.
+constexpr std::int64_t kMaxGap_ns = 1'000'000'000'000;
+
 bool is_camera(const PublishedSensor& published) {
   return std::holds_alternative<Pinhole>(published.sensor.optics);
 }
@@ -195,6 +198,7 @@ void RigPublisher::finish() {
 /// Writes the ground truth of the rig and the samples of IMUs up to a time, and the pose at it.
 void RigPublisher::advance(std::int64_t until_ns) {
   if (last_pose_ns_ && until_ns <= *last_pose_ns_) return;
+  skip_gap(until_ns);
   compute_imu_samples(until_ns + 1);
   for (; next_pose_ns_ <= until_ns; next_pose_ns_ += kPosePeriod_ns) {
     for (std::size_t i = 0; i < imus_.size(); ++i) write_imu_samples(i, next_pose_ns_);
@@ -202,6 +206,17 @@ void RigPublisher::advance(std::int64_t until_ns) {
   }
   for (std::size_t i = 0; i < imus_.size(); ++i) write_imu_samples(i, until_ns + 1);
   if (last_pose_ns_ != until_ns) write_motion_pose(until_ns);
+}
+
+/// Begins at the first frame, and again after a gap in time, such as of an edited recording.
+void RigPublisher::skip_gap(std::int64_t until_ns) {
+  if (last_pose_ns_ && until_ns - *last_pose_ns_ <= kMaxGap_ns) return;
+  next_pose_ns_ = until_ns - until_ns % kPosePeriod_ns;
+  for (ImuTopic& imu : imus_) {
+    imu.computed_ns = next_pose_ns_;
+    imu.samples = {};
+    imu.next = 0;
+  }
 }
 
 void RigPublisher::write_motion_pose(std::int64_t t_ns) {

@@ -110,6 +110,7 @@ class RigPublisher {
   void write_cloud(std::size_t sensor, const CloudSource& source, std::int64_t stamp_ns);
   void write_images(const SensorTopics& topics, const CloudSource& source, std::int64_t stamp_ns);
   void advance(std::int64_t until_ns);
+  void skip_gap(std::int64_t until_ns);
   void write_motion_pose(std::int64_t t_ns);
   void write_frame_pose(std::size_t sensor, const Frame& frame);
   void write_pose(std::int64_t t_ns, const TFMessage& transforms, const Odometry& odometry);

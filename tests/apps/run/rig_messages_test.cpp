@@ -72,6 +72,22 @@ TEST(RigMessages, HaveThePosesOfFramesWhenTheMotionIsNotKnown) {
   EXPECT_NEAR(poses[1].pose.position.x, 0.5, 1e-12);
 }
 
+TEST(RigMessages, BeginAtTheFirstFrameAndAgainAfterALongGap) {
+  ImuScene scene;
+  ros::MemorySink sink;
+  const auto publisher = make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  for (const std::int64_t start_ns : {kDay_ns, 2 * kDay_ns}) {
+    MeasuredFrame measured = scene.measure(0);
+    measured.frame.stamp_ns = start_ns;
+    publisher->publish(0, measured.frame, *measured.beams);
+  }
+  publisher->finish();
+  EXPECT_EQ(sink.counts().at("/imu/data"),
+            12U);  // one at the first frame, eleven from the second on
+  EXPECT_LE(sink.counts().at("/odom"), 15U);
+}
+
 TEST(RigMessages, OfViewersHaveTrueRangesAndImages) {
   LiveScene scene;
   ros::MemorySink sink;
@@ -81,8 +97,8 @@ TEST(RigMessages, OfViewersHaveTrueRangesAndImages) {
   EXPECT_EQ(images[0].height, 16U);
   EXPECT_EQ(sink.counts().at("/lidar/intensity/image_raw"), 2U);
   std::vector<std::string> names;
-  for (const auto& field : sink.of<ros::PointCloud2>("/lidar/points")[0].fields)
-    names.push_back(field.name);
+  const auto clouds = sink.of<ros::PointCloud2>("/lidar/points");
+  for (const auto& field : clouds.at(0).fields) names.push_back(field.name);
   EXPECT_THAT(names, ElementsAre("x", "y", "z", "intensity", "ring", "time", "range", "true_range",
                                  "instance", "class"));
 }

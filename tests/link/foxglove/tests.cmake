@@ -18,10 +18,10 @@ set(GLIDAR_NODE_MODULES ${PROJECT_SOURCE_DIR}/build/npm/node_modules
     CACHE PATH "Packages of tests/link/foxglove/package.json")
 find_program(NODE_PROGRAM node)
 if(NODE_PROGRAM)
-  file(GLOB node_tests CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} link/foxglove/*_test.mjs)
+  file(GLOB node_tests CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} link/foxglove/*_test.mjs apps/*_test.mjs)
   foreach(script IN LISTS node_tests)
     add_test(NAME "node: ${script}" COMMAND ${NODE_PROGRAM} ${CMAKE_CURRENT_SOURCE_DIR}/${script})
     set_tests_properties("node: ${script}" PROPERTIES SKIP_RETURN_CODE 77 ENVIRONMENT
-      "GLIDAR_FOXGLOVE_FEED=$<TARGET_FILE:glidar_foxglove_feed>;GLIDAR_NODE_MODULES=${GLIDAR_NODE_MODULES}")
+      "GLIDAR_FOXGLOVE_FEED=$<TARGET_FILE:glidar_foxglove_feed>;GLIDAR_PROGRAM=$<TARGET_FILE:glidar_app>;GLIDAR_NODE_MODULES=${GLIDAR_NODE_MODULES}")
   endforeach()
 endif()

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/numbered_files.hpp>
+
+#include <apps/glidar/run/rig_outputs.hpp>
+
+#include <cstdint>
+#include <utility>
+
+namespace glidar::app {
+
+NumberedFiles::NumberedFiles(const StreamFlags& flags, const PreparedScene& prepared,
+                             Console& console)
+    : flags_(flags), prepared_(prepared), console_(console) {
+  first_ = plan(numbered(flags_.render.output, 0), unknown_, unknown_.beams);
+}
+
+void NumberedFiles::refuse_overwrite_of_inputs() const {
+  app::refuse_overwrite_of_inputs(prepared_.files, first_);
+}
+
+void NumberedFiles::begin(std::vector<std::string> reserved) {
+  reserved_ = std::move(reserved);
+  files_ = outputs_by_sensor(flags_.render, prepared_, console_);
+}
+
+std::vector<std::string> NumberedFiles::columns(std::size_t /*sensor_index*/) const {
+  std::vector<std::string> columns;
+  for (const Output& output : first_) {
+    columns.insert(columns.end(), output.columns.begin(), output.columns.end());
+  }
+  return columns;
+}
+
+std::vector<Output> NumberedFiles::plan(const OutputFlags& files, const ActiveSensor& active,
+                                        const Beams& beams) const {
+  SidecarContext context{.scene = prepared_.scene,
+                         .sensor = active.sensor,
+                         .beams = beams,
+                         .renderer = renderer_name(flags_.render),
+                         .inputs = reserved_};
+  // otherwise the command does not contain the poses
+  if (!flags_.pose_source && flags_.replay.empty()) {
+    context.command = flags_.command;
+    const std::string label = label_of(flags_.render, active);
+    if (!label.empty()) {
+      context.command.arguments.insert(context.command.arguments.end(), {"--sensor-name", label});
+    }
+  }
+  return plan_outputs(files, flags_.render.input, context, console_.report());
+}
+
+void NumberedFiles::write(const MeasuredFrame& measured) {
+  const ActiveSensor& active = prepared_.sensors[measured.sensor_index];
+  OutputFlags files = files_[measured.sensor_index];
+  if (!has_outputs(files)) return;
+  const std::string label = label_of(flags_.render, active);
+  if (!label.empty()) files = labelled(files, label);
+  const std::vector<Output> outputs =
+      plan(numbered(files, static_cast<std::uint32_t>(measured.index)), active, *measured.beams);
+  app::refuse_overwrite_of_inputs(reserved_, outputs);
+  write_outputs(outputs, measured.frame, *measured.beams, prepared_.scene);
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/point_explainer.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/explain/trace_text.hpp>
+#include <glidar/simulate/explain.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+/// Frames of each sensor that viewers may still show.
+constexpr std::size_t kKnownFrames = 100;
+
+}  // namespace
+
+PointExplainer::PointExplainer(const RenderFlags& flags, const PreparedScene& prepared,
+                               const ros::RigPublisher& publisher)
+    : flags_(flags),
+      prepared_(prepared),
+      publisher_(publisher),
+      simulators_(prepared.sensors.size()),
+      thread_([this] { run(); }) {}
+
+PointExplainer::~PointExplainer() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void PointExplainer::add_frame(const MeasuredFrame& measured) {
+  const Frame& frame = measured.frame;
+  KnownFrame known{.sensor_index = measured.sensor_index,
+                   .message_ns = ros::first_firing_ns(frame, *measured.beams),
+                   .stamp_ns = frame.stamp_ns,
+                   .number = frame.number,
+                   .seed = frame.seed,
+                   .motion = measured.motion};
+  const std::lock_guard lock(mutex_);
+  frames_.push_back(std::move(known));
+  if (frames_.size() > kKnownFrames * simulators_.size()) frames_.pop_front();
+}
+
+void PointExplainer::explain(PublishedPoint point, Reply reply) {
+  {
+    const std::lock_guard lock(mutex_);
+    questions_.push_back({std::move(point), std::move(reply)});
+  }
+  changed_.notify_one();
+}
+
+void PointExplainer::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return is_ending_ || !questions_.empty(); });
+    if (is_ending_) return;
+    const Question question = std::move(questions_.front());
+    questions_.pop_front();
+    lock.unlock();
+    std::string text;
+    try {
+      text = explanation(question.point);
+    } catch (const std::exception& error) {
+      text = error.what();
+    }
+    question.reply(text);
+    lock.lock();
+  }
+}
+
+/// The newest frame with this stamp: a replay may repeat stamps.
+PointExplainer::KnownFrame PointExplainer::find_frame(const PublishedPoint& point) const {
+  const std::lock_guard lock(mutex_);
+  const auto is_same = [&](const KnownFrame& known) {
+    return known.message_ns == point.stamp_ns &&
+           publisher_.cloud_topic(known.sensor_index) == point.topic;
+  };
+  const auto found = std::find_if(frames_.rbegin(), frames_.rend(), is_same);
+  if (found != frames_.rend()) return *found;
+  throw Error({"explanation of a point",
+               fmt::format("the frame of {} at {} ns is not known", point.topic, point.stamp_ns),
+               fmt::format("the last {} frames of each sensor", kKnownFrames),
+               "select a point of a newer cloud"});
+}
+
+std::string PointExplainer::explanation(const PublishedPoint& point) {
+  const KnownFrame known = find_frame(point);
+  Simulator& simulator = simulator_of(known.sensor_index);
+  Frame frame;
+  frame.stamp_ns = known.stamp_ns;
+  frame.seed = known.seed;
+  frame.number = known.number;
+  frame.sensor_id = prepared_.sensors[known.sensor_index].id;
+  const auto pick = [&](const Frame& repeated) {
+    return entry_of(point, known.sensor_index, repeated, *simulator.beams(known.number));
+  };
+  const PointTrace trace = glidar::explain(simulator, *known.motion, pick, frame);
+  return format_trace(trace, simulator, frame);
+}
+
+std::size_t PointExplainer::entry_of(const PublishedPoint& point, std::size_t sensor_index,
+                                     const Frame& frame, const Beams& beams) const {
+  PointCloud cloud;
+  const std::vector<std::string> columns = {"xyz"};
+  make_point_cloud(frame, beams, prepared_.scene,
+                   output_frame("sensor", beams, frame.world_from_sensor), columns, cloud);
+  const std::vector<std::uint32_t> points =
+      ros::message_points(cloud, beams, publisher_.cloud_options(sensor_index));
+  if (point.index < points.size()) return points[point.index];
+  throw Error({"explanation of a point", fmt::format("point {}", point.index),
+               fmt::format("0 to {}, a point of the cloud", points.size())});
+}
+
+Simulator& PointExplainer::simulator_of(std::size_t sensor_index) {
+  if (!renderer_) {
+    RendererOptions options = flags_.renderer;
+    options.threads = 1;  // leaves the others to the measurement
+    renderer_ = make_renderer(prepared_.scene, options);
+    if (flags_.quantized_framebuffer) {
+      woods2016_camera_ = make_woods2016_camera(prepared_.scene, options);
+    }
+  }
+  std::shared_ptr<Simulator>& simulator = simulators_[sensor_index];
+  if (!simulator) {
+    const ActiveSensor& active = prepared_.sensors[sensor_index];
+    simulator = make_simulator(prepared_.scene,
+                               std::make_shared<const BeamCache>(active.sensor, active.beams),
+                               *renderer_, woods2016_camera_.get());
+  }
+  return *simulator;
+}
+
+}  // namespace glidar::app

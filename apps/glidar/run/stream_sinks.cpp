@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/stream_sinks.hpp>
+
+#include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/run/packet_sinks.hpp>
+#include <apps/glidar/run/recording_sinks.hpp>
+
+namespace glidar::app {
+
+PoseOrigin pose_origin(const StreamFlags& flags) {
+  return flags.pose_source || flags.replays_requests ? PoseOrigin::frames : PoseOrigin::motion;
+}
+
+double time_speed(const StreamFlags& flags, const Sensor& first_sensor) {
+  if (flags.replay.empty()) return flags.pose_source || flags.is_unpaced ? 0.0 : 1.0;
+  if (flags.replay_rate_hz) return *flags.replay_rate_hz / first_sensor.rate_hz;
+  return flags.foxglove ? 1.0 : 0.0;
+}
+
+std::vector<std::unique_ptr<FrameSink>> make_stream_sinks(const StreamFlags& flags,
+                                                          const PreparedScene& prepared,
+                                                          const std::vector<std::string>& read,
+                                                          link::ErrorLog& errors) {
+  const PoseOrigin origin = pose_origin(flags);
+  std::vector<std::unique_ptr<FrameSink>> sinks =
+      make_recording_sinks(flags.render, prepared, read, origin);
+  const double speed = time_speed(flags, prepared.sensors.front().sensor);
+  with_option_name("--udp", [&] {
+    for (const PacketTarget& target : flags.udp) {
+      sinks.push_back(make_udp_sink(target, speed, flags.render, prepared, origin, errors));
+    }
+  });
+  return sinks;
+}
+
+HitColumnMask needed_hit_columns(const std::vector<std::unique_ptr<FrameSink>>& sinks,
+                                 std::size_t sensor_count) {
+  HitColumnMask needed;
+  for (const auto& sink : sinks) {
+    for (std::size_t i = 0; i < sensor_count; ++i) {
+      needed = needed | hit_columns_for(sink->columns(i));
+    }
+  }
+  return needed;
+}
+
+}  // namespace glidar::app

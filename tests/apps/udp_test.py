@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""glidar stream --udp: packets for drivers. The built program is found in PATH."""
+
+import socket
+import threading
+import unittest
+
+from cli_support import MAX_WAIT_S, CliTest
+
+VLP16 = ("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0")
+RIG = """models: [{model: builtin:box, pose: {position: [4, 0, 0]}}]
+sensors: [{name: front, sensor: VLP-16}, {name: rear, sensor: XT32}]
+rig_pose: {position: [0, 0, 0]}
+"""
+
+
+class Receiver:
+    """Collects the datagrams that arrive at a free port."""
+
+    def __init__(self):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
+        self.socket.bind(("127.0.0.1", 0))
+        self.port = self.socket.getsockname()[1]
+        self.packets = []
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def run(self):
+        while packet := self.socket.recv(65536):
+            self.packets.append(packet)
+
+    def finish(self):
+        """Everything that was sent before; the socket keeps the order."""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as last:
+            last.sendto(b"", ("127.0.0.1", self.port))
+        self.thread.join(MAX_WAIT_S)
+        self.socket.close()
+        return self.packets
+
+
+class Udp(CliTest):
+    def captured(self, name, size):
+        """The payloads of this size in a capture, of one Ethernet frame each."""
+        data = self.bytes_of(name)
+        found = []
+        at = 24
+        while at < len(data):
+            length = int.from_bytes(data[at + 8:at + 12], "little")
+            payload = data[at + 16 + 42:at + 16 + length]
+            if len(payload) == size:
+                found.append(payload)
+            at += 16 + length
+        return found
+
+    def test_sends_the_packets_of_the_capture_in_real_time(self):
+        data, positions = Receiver(), Receiver()
+        self.succeed("stream", *VLP16, "--frames", "3", "--udp", f"127.0.0.1:{data.port}:{positions.port}", "-o", "scan.pcap")
+        sent = data.finish()
+        self.assertGreater(len(sent), 200)
+        self.assertEqual(sent, self.captured("scan.pcap", 1206))
+        self.assertEqual(positions.finish(), self.captured("scan.pcap", 512))
+
+    def test_a_rig_sends_the_packets_of_the_named_sensors(self):
+        self.write("rig.yaml", RIG)
+        front, rear = Receiver(), Receiver()
+        self.succeed("stream", "rig.yaml", "--frames", "2", "--udp", f"front=127.0.0.1:{front.port}", "--udp",
+                     f"rear=127.0.0.1:{rear.port}")
+        self.assertEqual({len(packet) for packet in front.finish()}, {1206})
+        self.assertEqual({len(packet) for packet in rear.finish()}, {1080})
+        self.assertIn("several sensors with packets: front, rear", self.refused("stream", "rig.yaml", "--udp", "127.0.0.1"))
+        self.assertIn("no sensor 'top'", self.refused("stream", "rig.yaml", "--udp", "top=127.0.0.1"))
+
+    def test_a_replay_sends_the_same_packets(self):
+        self.succeed("stream", *VLP16, "--frames", "2", "--rate", "max", "--record", "r.jsonl", "-o", "first.pcap")
+        receiver = Receiver()
+        self.succeed("replay", "r.jsonl", "--rate", "10", "--udp", f"127.0.0.1:{receiver.port}:9", "-o", "again.pcap")
+        self.assertEqual(receiver.finish(), self.captured("first.pcap", 1206))
+        self.assertEqual(self.bytes_of("again.pcap"), self.bytes_of("first.pcap"))
+
+    def test_sensors_without_packets_and_bad_addresses_are_refused(self):
+        self.assertIn("no manufacturer's packets", self.refused("stream", "builtin:box", "--udp", "127.0.0.1"))
+        for address in ("", ":2368", "127.0.0.1:0", "127.0.0.1:1:2:3", "127.0.0.1:x", "=127.0.0.1"):
+            self.assertIn("--udp", self.refused("stream", *VLP16, f"--udp={address}"))
+        self.assertIn("cannot find the address", self.refused("stream", *VLP16, "--udp", "no such host"))
+
+
+if __name__ == "__main__":
+    unittest.main()
