@@ -44,7 +44,7 @@ StreamFlags flags_of(const link::RecordingHead& head, const std::string& file) {
 StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
   StreamFlags flags = chosen;
   flags.pose_source = recorded.pose_source;
-  flags.replays_requests = !recorded.lockstep.empty();
+  flags.replays_requests = !recorded.lockstep.empty() || !recorded.ros2.pose_topic.empty();
   flags.render = std::move(recorded.render);
   flags.render.output = chosen.render.output;
   flags.render.renderer.threads = chosen.render.renderer.threads;

@@ -147,16 +147,18 @@ void add_packet_option(CLI::App& command, StreamFlags& flags) {
 }
 
 void add_pose_source_options(CLI::App& command, StreamFlags& flags) {
-  const OptionGroup group(command,
-                          "Poses over ZeroMQ, protocol of Woods 2016 (handshake at the next port)");
-  group.add("--pose-source", "ADDRESS", "Simulator that publishes poses, tcp://HOST:PORT [none]",
-            flags.pose_source, parse_pose_source);
+  const OptionGroup group(command, "Poses by the protocol of Woods 2016 (ZeroMQ), or by ROS 2");
+  group.add("--pose-source", "SOURCE",
+            "tcp://HOST:PORT, ros2:/odom, ros2:/tf:PARENT:CHILD or ros2:/clock [none]",
+            [&flags](const std::string& text) {
+              if (text.starts_with(kRos2Prefix)) return set_ros2_pose_source(text, flags.ros2);
+              flags.pose_source = parse_pose_source(text);
+            });
   group.add("--pose-queue", "N", "Queued poses, each gives a frame; 0: the newest only [0]",
             flags.pose_queue, whole(0, kMaxQueue));
   group.add("--pose-timeout", "S", "End when no pose arrives for S seconds [none]",
             flags.pose_timeout_s, positive_seconds());
   require_option(command, {"--pose-timeout"}, "--pose-source");
-  forbid_together(command, {"--pose-source"}, {"--trajectory", "--object-rate", "--sensor-rate"});
 }
 
 /// Requests give times and poses, so that no other option may.
@@ -172,7 +174,7 @@ void add_lockstep_options(CLI::App& command, StreamFlags& flags) {
   require_option(command, {"--curve-keys"}, "--lockstep");
   forbid_together(
       command, {"--lockstep"},
-      {"--port", "--foxglove", "--udp", "--pose-source", "--trajectory", "--object-rate",
+      {"--port", "--foxglove", "--udp", "--ros2", "--pose-source", "--trajectory", "--object-rate",
        "--sensor-rate", "--frames", "--duration", "--subscribers", "--subscription-timeout",
        "--publish-every", "--publish-latest", "--publish-queue", "--format", "--legacy-output"});
   forbid_together(command, {"--lockstep"}, options_under(command, kOutputHeading));
@@ -182,6 +184,16 @@ void add_limit_option(CLI::App& command, StreamFlags& flags) {
   OptionGroup(command, "Limits of peers")
       .add_repeatable("--limit", "NAME=VALUE", "Limit of what peers may use, repeatable",
                       [&flags](const std::string& text) { set_limit(flags.limits, text); });
+}
+
+/// The clock of ROS 2 gives times only.
+void check_motion(const CLI::App& command, const StreamFlags& flags) {
+  if (!has_pose_source(flags) || follows_ros_clock(flags.ros2)) return;
+  for (const char* name : {"--trajectory", "--object-rate", "--sensor-rate"}) {
+    if (command.count(name) == 0) continue;
+    throw Error(
+        {std::string("--pose-source and ") + name, "both are given", "", "give one of them"});
+  }
 }
 
 void check_ports(const StreamFlags& flags) {
@@ -200,6 +212,7 @@ void add_stream_options(CLI::App& command, StreamFlags& flags) {
   add_publishing_options(command, flags);
   add_live_view_option(command, flags);
   add_packet_option(command, flags);
+  add_ros2_options(command, flags.ros2);
   add_pose_source_options(command, flags);
   add_lockstep_options(command, flags);
   add_limit_option(command, flags);
@@ -222,6 +235,7 @@ void add_replay_options(CLI::App& command, StreamFlags& flags) {
   add_publishing_options(command, flags);
   add_live_view_option(command, flags);
   add_packet_option(command, flags);
+  add_ros2_options(command, flags.ros2);
   add_limit_option(command, flags);
   const OptionGroup run(command, "Run");
   add_threads_option(run, flags.render.renderer);
@@ -241,10 +255,10 @@ void check(const CLI::App& command, const StreamFlags& flags) {
   }
   const bool has_clouds = has_outputs(flags.render.output) ||
                           !flags.render.output.recording_paths.empty() || flags.foxglove ||
-                          !flags.udp.empty();
+                          !flags.udp.empty() || flags.ros2.publishes;
   if (!has_clouds) {
     if (!flags.port && flags.record.empty()) {
-      throw Error({"--port, --foxglove, --udp and --output",
+      throw Error({"--port, --foxglove, --udp, --ros2 and --output",
                    "none is given, so no cloud would be sent or written", "",
                    "for example: glidar stream " + flags.render.input + " --foxglove"});
     }
@@ -256,6 +270,10 @@ void check(const CLI::App& command, const StreamFlags& flags) {
                    "leave these out: clouds on a port have x, y, z and intensity"});
     }
   }
+  if (!flags.ros2.ros_namespace.empty() && !uses_ros2(flags.ros2)) {
+    throw Error({"--namespace", "given without --ros2, which publishes topics", "", "add --ros2"});
+  }
+  check_motion(command, flags);
   check_ports(flags);
 }
 

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/options/cli_fwd.hpp>
 #include <apps/glidar/options/render_options.hpp>
+#include <apps/glidar/options/ros2_options.hpp>
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/limits.hpp>
 
@@ -44,12 +45,18 @@ struct StreamFlags {
   std::vector<PacketTarget> udp;              ///< receivers of packets
   std::optional<link::Endpoint> foxglove;     ///< of the live view; empty: there is none
   std::optional<link::Endpoint> pose_source;  ///< empty: the command line gives the poses
-  int pose_queue = 0;                         ///< 0: the newest pose only
-  std::optional<double> pose_timeout_s;       ///< empty: none
-  std::string lockstep;    ///< endpoint at which requests are answered; empty: none
+  Ros2Flags ros2;
+  int pose_queue = 0;                    ///< 0: the newest pose only
+  std::optional<double> pose_timeout_s;  ///< empty: none
+  std::string lockstep;                  ///< endpoint at which requests are answered; empty: none
   std::string curve_keys;  ///< file of the keys that it is encrypted with; empty: no encryption
   link::Limits limits;     ///< of peers
 };
+
+/// Whether a simulator or ROS 2 gives the poses or the time.
+inline bool has_pose_source(const StreamFlags& flags) {
+  return flags.pose_source || !flags.ros2.pose_topic.empty();
+}
 
 /// Adds MODEL and all options of `stream`.
 void add_stream_options(CLI::App& command, StreamFlags& flags);

@@ -40,7 +40,7 @@ std::vector<Output> NumberedFiles::plan(const OutputFlags& files, const ActiveSe
                          .renderer = renderer_name(flags_.render),
                          .inputs = reserved_};
   // otherwise the command does not contain the poses
-  if (!flags_.pose_source && flags_.replay.empty()) {
+  if (!has_pose_source(flags_) && flags_.replay.empty()) {
     context.command = flags_.command;
     const std::string label = label_of(flags_.render, active);
     if (!label.empty()) {

@@ -50,6 +50,8 @@ class PoseSource {
   virtual std::optional<FrameRequest> next() = 0;
   /// Why there are no more frames; empty before.
   [[nodiscard]] virtual std::string ending() const = 0;
+  /// Whether they ended because no pose came in time.
+  [[nodiscard]] virtual bool has_timed_out() const { return false; }
 };
 
 /// Frames of the motion by the command line or the scene file, one per period of each sensor, in
@@ -103,7 +105,7 @@ class SimulatorSource final : public PoseSource {
                   const Options& options, const StopRequest& stop);
   std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
-  [[nodiscard]] bool has_timed_out() const { return has_timed_out_; }
+  [[nodiscard]] bool has_timed_out() const override { return has_timed_out_; }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -95,6 +95,10 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
       console_.info("live view: " + live_view_->url());
     });
   }
+  if (uses_ros2(flags_.ros2)) {
+    with_option_name(flags_.ros2.publishes ? "--ros2" : "--pose-source",
+                     [&] { ros2_ = std::make_unique<Ros2Link>(flags_.ros2, errors_); });
+  }
   open_scene();
   if (recorder_) recorder_->begin(prepared_, flags_.command);
   if (flags_.pose_source && !recording_) {
@@ -137,6 +141,9 @@ void StreamRun::open_sinks(std::unique_ptr<NumberedFiles> files,
   }
   for (auto& sink : make_stream_sinks(flags_, prepared_, reserved, errors_)) {
     sinks_.push_back(std::move(sink));
+  }
+  if (flags_.ros2.publishes) {
+    sinks_.push_back(ros2_->make_sink(flags_.render, prepared_, pose_origin(flags_)));
   }
   hit_columns_ = needed_hit_columns(sinks_, prepared_.sensors.size());
   if (publisher_) hit_columns_ = hit_columns_ | glidar::hit_columns_for(kPublishedColumns);
@@ -208,6 +215,11 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
                                  .sensor_count = prepared_.sensors.size()},
         stop);
   }
+  if (!flags_.ros2.pose_topic.empty()) {
+    if (!flags_.is_unpaced) schedule.rate_hz = prepared_.sensors.front().sensor.rate_hz;
+    return ros2_->make_source({.frames = schedule, .timeout_s = flags_.pose_timeout_s},
+                              static_cast<std::size_t>(flags_.pose_queue), prepared_, stop);
+  }
   std::vector<double> periods_s;
   for (const ActiveSensor& active : prepared_.sensors)
     periods_s.push_back(1.0 / active.sensor.rate_hz);
@@ -223,8 +235,7 @@ int StreamRun::run() {
     if (const auto* motion = dynamic_cast<const MotionSource*>(source.get())) {
       late_ = motion->late();
     }
-    const auto* simulator = dynamic_cast<const SimulatorSource*>(source.get());
-    if (simulator != nullptr && simulator->has_timed_out()) exit_code_ = kNoPoses;
+    if (source->has_timed_out()) exit_code_ = kNoPoses;
     constexpr int kSignalExitBase = 128;  // as in shells
     if (stop.is_requested()) {
       exit_code_ = kSignalExitBase + stop.signal();
@@ -298,11 +309,14 @@ void StreamRun::stream(PoseSource& source, StopRequest& stop) {
   delivery.finish();
 }
 
-void StreamRun::move(const RigMotion& motion) {
+void StreamRun::move(const RigMotion& given) {
+  RigMotion motion = given;
+  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(given));
+  if (motion.world_from_instance.empty())
+    motion.world_from_instance = prepared_.motion.world_from_instance;
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     motions_[i] = std::make_shared<const Motion>(motion_of(motion, prepared_.sensors[i]));
   }
-  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(motion));
 }
 
 void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {

@@ -14,6 +14,7 @@
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorder.hpp>
+#include <apps/glidar/run/ros2_link.hpp>
 #include <apps/glidar/run/stream_stats.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/files/atomic_file.hpp>
@@ -50,7 +51,7 @@ class StreamRun {
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const FrameRequest& request, MeasuredFrame& measured);
   [[nodiscard]] bool is_wanted(std::uint64_t index) const;
-  void move(const RigMotion& motion);
+  void move(const RigMotion& given);
   void deliver(const MeasuredFrame& measured);
   void publish(const MeasuredFrame& measured);
   void serve_peers();
@@ -71,6 +72,7 @@ class StreamRun {
   std::vector<std::shared_ptr<const Motion>> motions_;  ///< of each sensor, now
   std::unique_ptr<Playback> playback_;                  ///< of a replay with a live view
   std::unique_ptr<LiveView> live_view_;                 ///< until it is one of the sinks
+  std::unique_ptr<Ros2Link> ros2_;
   std::vector<std::unique_ptr<FrameSink>> sinks_;
   MovedScene moved_scene_;
   HitColumnMask hit_columns_;

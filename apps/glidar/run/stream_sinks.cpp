@@ -9,11 +9,11 @@
 namespace glidar::app {
 
 PoseOrigin pose_origin(const StreamFlags& flags) {
-  return flags.pose_source || flags.replays_requests ? PoseOrigin::frames : PoseOrigin::motion;
+  return has_pose_source(flags) || flags.replays_requests ? PoseOrigin::frames : PoseOrigin::motion;
 }
 
 double time_speed(const StreamFlags& flags, const Sensor& first_sensor) {
-  if (flags.replay.empty()) return flags.pose_source || flags.is_unpaced ? 0.0 : 1.0;
+  if (flags.replay.empty()) return has_pose_source(flags) || flags.is_unpaced ? 0.0 : 1.0;
   if (flags.replay_rate_hz) return *flags.replay_rate_hz / first_sensor.rate_hz;
   return flags.foxglove ? 1.0 : 0.0;
 }

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/options/ros2_options.hpp>
+#include <apps/glidar/run/frame_sink.hpp>
+#include <apps/glidar/run/rig_messages.hpp>
+#include <apps/glidar/run/ros2_source.hpp>
+#include <glidar/link/dds/clock_subscriber.hpp>
+#include <glidar/link/dds/participant.hpp>
+#include <glidar/link/dds/pose_subscriber.hpp>
+#include <glidar/link/error_log.hpp>
+
+#include <cstddef>
+#include <memory>
+
+namespace glidar::app {
+
+/// The connection of a stream to ROS 2. It outlives the sink and the source that it makes.
+class Ros2Link {
+ public:
+  /// Joins the domain. Flags and log must outlive it. Throws Error.
+  Ros2Link(const Ros2Flags& flags, link::ErrorLog& errors);
+
+  /// Publishes frames.
+  [[nodiscard]] std::unique_ptr<FrameSink> make_sink(const RenderFlags& flags,
+                                                     const PreparedScene& prepared,
+                                                     PoseOrigin origin) const;
+  /// Subscribes to the poses, or the clock, of the flags. `queue`: poses that wait; 0: the newest
+  /// only.
+  std::unique_ptr<PoseSource> make_source(const Ros2Schedule& schedule, std::size_t queue,
+                                          const PreparedScene& prepared, const StopRequest& stop);
+
+ private:
+  const Ros2Flags& flags_;
+  dds::Participant participant_;
+  std::unique_ptr<dds::PoseSubscriber> poses_;
+  std::unique_ptr<dds::ClockSubscriber> clock_;
+};
+
+}  // namespace glidar::app

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/ros2_sink.hpp>
+
+namespace glidar::app {
+namespace {
+
+/// What others publish when they give the poses or the time.
+std::vector<std::string> omitted_topics(const Ros2Flags& flags) {
+  if (flags.pose_topic.empty()) return {};
+  if (follows_ros_clock(flags)) return {"/clock"};
+  return {"/tf", "/odom", "/clock"};
+}
+
+}  // namespace
+
+Ros2Sink::Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2,
+                   const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin)
+    : topics_(participant, {.ros_namespace = ros2.ros_namespace, .omitted = omitted_topics(ros2)}),
+      publisher_(make_rig_publisher(topics_, flags, prepared, origin)) {}
+
+std::vector<std::string> Ros2Sink::columns(std::size_t sensor_index) const {
+  return publisher_->columns(sensor_index);
+}
+
+void Ros2Sink::write(const MeasuredFrame& measured) {
+  publisher_->publish(measured.sensor_index, measured.frame, *measured.beams);
+}
+
+void Ros2Sink::finish() {
+  publisher_->finish();
+  topics_.finish();
+}
+
+}  // namespace glidar::app
