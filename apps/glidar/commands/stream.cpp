@@ -30,6 +30,9 @@ With your own files:
   glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
 Closed loop with a simulator that publishes poses at port 5557 and shakes hands at port 5558:
   glidar stream satellite.obj --pose-source tcp://127.0.0.1:5557 --pose-queue 100 --port 5555
+Topics of ROS 2, poses from it, and its clock, without a ROS installation (docs/ros2.md):
+  glidar stream scene.yaml --ros2
+  glidar stream scene.yaml --pose-source ros2:/odom --ros2
 A client that sends all poses and requests every frame (docs/link.md):
   glidar stream scene.yaml --lockstep tcp://127.0.0.1:5600
 Record, then repeat with the same bytes on any machine:

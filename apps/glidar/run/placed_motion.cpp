@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/placed_motion.hpp>
 
+#include <algorithm>
 #include <variant>
 
 namespace glidar::app {
@@ -38,6 +39,10 @@ RigMotion motion_at(const lockstep::Moment& moment, const PreparedScene& prepare
 lockstep::Moment static_moment(const RigMotion& motion) {
   lockstep::Moment moment;
   moment.sensor = body_of(motion.world_from_rig);
+  const auto is_constant = [](const Trajectory& instance) {
+    return std::holds_alternative<ConstantPose>(instance);
+  };
+  if (!std::ranges::all_of(motion.world_from_instance, is_constant)) return moment;
   for (const Trajectory& instance : motion.world_from_instance) {
     moment.objects.push_back(body_of(instance));
   }

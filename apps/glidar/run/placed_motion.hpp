@@ -11,7 +11,8 @@ namespace glidar::app {
 /// they move as prepared.
 RigMotion motion_at(const lockstep::Moment& moment, const PreparedScene& prepared);
 
-/// The bodies of a motion of constant poses.
+/// The bodies of a motion with a constant pose of the rig; without the objects if any of them
+/// moves.
 lockstep::Moment static_moment(const RigMotion& motion);
 
 }  // namespace glidar::app

@@ -24,7 +24,7 @@ std::unique_ptr<PoseSource> Ros2Link::make_source(const Ros2Schedule& schedule, 
   }
   const dds::PoseTopic topic = dds::parse_pose_topic(flags_.pose_topic, flags_.ros_namespace);
   poses_ = std::make_unique<dds::PoseSubscriber>(participant_, topic, queue);
-  return std::make_unique<Ros2PoseSource>(*poses_, schedule, prepared.sensors.size(), stop);
+  return std::make_unique<Ros2PoseSource>(*poses_, schedule, prepared, stop);
 }
 
 }  // namespace glidar::app

@@ -64,15 +64,16 @@ bool StampPace::is_due(std::int64_t stamp_ns) {
 }
 
 Ros2PoseSource::Ros2PoseSource(dds::PoseSubscriber& subscriber, const Ros2Schedule& schedule,
-                               std::size_t sensor_count, const StopRequest& stop)
+                               const PreparedScene& prepared, const StopRequest& stop)
     : subscriber_(subscriber),
-      sensor_count_(sensor_count),
+      prepared_(prepared),
       stop_(stop),
       wait_(schedule, stop),
       pace_(schedule.frames.rate_hz) {}
 
 std::optional<FrameRequest> Ros2PoseSource::next() {
-  if (number_ > 0 && request_.sensor_index + 1 < sensor_count_ && !stop_.is_requested()) {
+  if (number_ > 0 && request_.sensor_index + 1 < prepared_.sensors.size() &&
+      !stop_.is_requested()) {
     request_.motion.reset();
     ++request_.sensor_index;
     return request_;
@@ -87,7 +88,7 @@ std::optional<FrameRequest> Ros2PoseSource::next() {
               .index = number_++,
               .due = Clock::now(),
               .motion = RigMotion{.world_from_rig = ConstantPose{world_from_rig},
-                                  .world_from_instance = {}},
+                                  .world_from_instance = prepared_.motion.world_from_instance},
               .stamp_ns = pose->t_ns};
   return request_;
 }

@@ -66,7 +66,7 @@ class Ros2PoseSource final : public PoseSource {
  public:
   /// All must outlive it.
   Ros2PoseSource(dds::PoseSubscriber& subscriber, const Ros2Schedule& schedule,
-                 std::size_t sensor_count, const StopRequest& stop);
+                 const PreparedScene& prepared, const StopRequest& stop);
   std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return wait_.ending(); }
   [[nodiscard]] bool has_timed_out() const override { return wait_.has_timed_out(); }
@@ -75,7 +75,7 @@ class Ros2PoseSource final : public PoseSource {
   std::optional<TimedPose> wait_for_pose();
 
   dds::PoseSubscriber& subscriber_;
-  std::size_t sensor_count_;
+  const PreparedScene& prepared_;
   const StopRequest& stop_;
   Ros2Wait wait_;
   StampPace pace_;

@@ -142,9 +142,8 @@ void StreamRun::open_sinks(std::unique_ptr<NumberedFiles> files,
   for (auto& sink : make_stream_sinks(flags_, prepared_, reserved, errors_)) {
     sinks_.push_back(std::move(sink));
   }
-  if (flags_.ros2.publishes) {
+  if (flags_.ros2.publishes)
     sinks_.push_back(ros2_->make_sink(flags_.render, prepared_, pose_origin(flags_)));
-  }
   hit_columns_ = needed_hit_columns(sinks_, prepared_.sensors.size());
   if (publisher_) hit_columns_ = hit_columns_ | glidar::hit_columns_for(kPublishedColumns);
 }
@@ -215,15 +214,14 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
                                  .sensor_count = prepared_.sensors.size()},
         stop);
   }
+  if (!flags_.is_unpaced) schedule.rate_hz = prepared_.sensors.front().sensor.rate_hz;
   if (!flags_.ros2.pose_topic.empty()) {
-    if (!flags_.is_unpaced) schedule.rate_hz = prepared_.sensors.front().sensor.rate_hz;
     return ros2_->make_source({.frames = schedule, .timeout_s = flags_.pose_timeout_s},
                               static_cast<std::size_t>(flags_.pose_queue), prepared_, stop);
   }
   std::vector<double> periods_s;
   for (const ActiveSensor& active : prepared_.sensors)
     periods_s.push_back(1.0 / active.sensor.rate_hz);
-  if (!flags_.is_unpaced) schedule.rate_hz = prepared_.sensors.front().sensor.rate_hz;
   return std::make_unique<MotionSource>(schedule, std::move(periods_s), stop);
 }
 
@@ -309,14 +307,11 @@ void StreamRun::stream(PoseSource& source, StopRequest& stop) {
   delivery.finish();
 }
 
-void StreamRun::move(const RigMotion& given) {
-  RigMotion motion = given;
-  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(given));
-  if (motion.world_from_instance.empty())
-    motion.world_from_instance = prepared_.motion.world_from_instance;
+void StreamRun::move(const RigMotion& motion) {
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     motions_[i] = std::make_shared<const Motion>(motion_of(motion, prepared_.sensors[i]));
   }
+  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(motion));
 }
 
 void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {

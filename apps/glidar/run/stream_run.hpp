@@ -51,7 +51,7 @@ class StreamRun {
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const FrameRequest& request, MeasuredFrame& measured);
   [[nodiscard]] bool is_wanted(std::uint64_t index) const;
-  void move(const RigMotion& given);
+  void move(const RigMotion& motion);
   void deliver(const MeasuredFrame& measured);
   void publish(const MeasuredFrame& measured);
   void serve_peers();
