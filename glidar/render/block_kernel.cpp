@@ -4,7 +4,6 @@
 #include <glidar/render/block_kernel.hpp>
 
 #include <glidar/render/corner_gather.hpp>
-#include <glidar/render/plane_gather.hpp>
 
 #include <cstddef>
 
@@ -20,6 +19,19 @@ constexpr unsigned kWidth = 2;
 #endif
 using Vector = double __attribute__((vector_size(kWidth * sizeof(double)), may_alias));
 using VectorMask = long long __attribute__((vector_size(kWidth * sizeof(double))));
+using FloatVector = float __attribute__((vector_size(kWidth * sizeof(float)), may_alias));
+
+GLIDAR_INLINE Vector square_root(Vector x) {
+#if defined(__AVX512F__)
+  return _mm512_sqrt_pd(x);
+#elif defined(__AVX2__)
+  return _mm256_sqrt_pd(x);
+#elif defined(__SSE2__)
+  return _mm_sqrt_pd(x);
+#else
+  return Vector{__builtin_sqrt(x[0]), __builtin_sqrt(x[1])};
+#endif
+}
 
 GLIDAR_INLINE double* numbers(Lanes<double>& lanes) {
   return reinterpret_cast<double*>(&lanes);
@@ -46,10 +58,43 @@ GLIDAR_INLINE Vector& at(Lanes<double>& lanes, unsigned i) {
   return *reinterpret_cast<Vector*>(numbers(lanes) + i);
 }
 
+struct Vector3 {
+  Vector x;
+  Vector y;
+  Vector z;
+};
+
+/// Corners of the lanes from i on.
+GLIDAR_INLINE Vector3 corner_at(const Lanes3<float>& corner, unsigned i) {
+  const auto component = [i](const Lanes<float>& lanes) {
+    return __builtin_convertvector(
+        *reinterpret_cast<const FloatVector*>(reinterpret_cast<const float*>(&lanes) + i), Vector);
+  };
+  return {component(corner.x), component(corner.y), component(corner.z)};
+}
+
+/// Computes planes as plane_of().
+GLIDAR_INLINE void find_planes(const CornerBlock& corners, Lanes3<double>& normal,
+                               Lanes<double>& offset) {
+  for (unsigned i = 0; i < kLanes; i += kWidth) {
+    const Vector3 a = corner_at(corners.c0, i);
+    const Vector3 b = corner_at(corners.c1, i);
+    const Vector3 c = corner_at(corners.c2, i);
+    const Vector3 u = {b.x - a.x, b.y - a.y, b.z - a.z};
+    const Vector3 v = {c.x - a.x, c.y - a.y, c.z - a.z};
+    const Vector3 cross = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+    const Vector length = square_root(cross.x * cross.x + cross.y * cross.y + cross.z * cross.z);
+    const Vector3 n = {cross.x / length, cross.y / length, cross.z / length};
+    at(normal.x, i) = n.x;
+    at(normal.y, i) = n.y;
+    at(normal.z, i) = n.z;
+    at(offset, i) = n.x * a.x + n.y * a.y + n.z * a.z;
+  }
+}
+
 bool intersect(const OneInstanceHits& block, const HitsToFind& exact) {
-  gather_planes(reinterpret_cast<const double*>(block.planes), block.primitive,
-                {numbers(exact.normal->x), numbers(exact.normal->y), numbers(exact.normal->z),
-                 numbers(*exact.offset)});
+  gather_lanes(block.positions, *exact.corners);
+  find_planes(*exact.corners, *exact.normal, *exact.offset);
   rotate_lanes(block.object_from_sensor, *block.direction, numbers(exact.direction->x),
                numbers(exact.direction->y), numbers(exact.direction->z));
   const Vector ox = Vector{} + block.sensor_in_object[0];
@@ -100,9 +145,13 @@ void orient(const double* sensor_from_object, const Lanes3<double>& front,
   }
 }
 
+void gather(const TrianglesToGather& from, CornerBlock& to) {
+  gather_lanes(from, to);
+}
+
 }  // namespace
 
 extern const BlockKernel kBlockKernel;
-const BlockKernel kBlockKernel = {GLIDAR_KERNEL_NAME, intersect, orient, gather_corners};
+const BlockKernel kBlockKernel = {GLIDAR_KERNEL_NAME, intersect, orient, gather};
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

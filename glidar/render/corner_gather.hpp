@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/lanes.hpp>
+#include <glidar/render/block_kernel.hpp>
 #include <glidar/render/rays/kernel_simd.hpp>
 
-// Loads vectors at vertices one by one and transposes them in registers, as plane_gather.hpp.
+// Loads vectors at the corners of triangles one by one and transposes them in registers: vectors
+// that are written number by number are slow to load. In namespace glidar::rays::GLIDAR_KERNEL.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 #if defined(__AVX2__)
@@ -25,36 +26,49 @@ GLIDAR_INLINE __m256 load_two(const float* of_vertex, std::uint32_t low, std::ui
                               load_three(of_vertex + std::size_t{3} * high), 1);
 }
 
-inline void gather_corners(const float* of_vertex, const std::uint32_t* vertices,
-                           Lanes3<float>& vectors) {
-  auto* const x = reinterpret_cast<float*>(&vectors.x);
-  auto* const y = reinterpret_cast<float*>(&vectors.y);
-  auto* const z = reinterpret_cast<float*>(&vectors.z);
-  for (unsigned i = 0; i < kLanes; i += 8) {
-    const std::uint32_t* const v = vertices + i;
-    const __m256 a = load_two(of_vertex, v[0], v[4]);
-    const __m256 b = load_two(of_vertex, v[1], v[5]);
-    const __m256 c = load_two(of_vertex, v[2], v[6]);
-    const __m256 d = load_two(of_vertex, v[3], v[7]);
-    const __m256d ab = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
-    const __m256d cd = _mm256_castps_pd(_mm256_unpacklo_ps(c, d));
-    const __m256d ab_z = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
-    const __m256d cd_z = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
-    _mm256_store_ps(x + i, _mm256_castpd_ps(_mm256_unpacklo_pd(ab, cd)));
-    _mm256_store_ps(y + i, _mm256_castpd_ps(_mm256_unpackhi_pd(ab, cd)));
-    _mm256_store_ps(z + i, _mm256_castpd_ps(_mm256_unpacklo_pd(ab_z, cd_z)));
+/// Writes corner k of eight triangles to lanes [first, first + 8).
+GLIDAR_INLINE void gather_corner(const float* of_vertex, const std::uint32_t* const (&triangle)[8],
+                                 unsigned k, unsigned first, Lanes3<float>& to) {
+  const __m256 a = load_two(of_vertex, triangle[0][k], triangle[4][k]);
+  const __m256 b = load_two(of_vertex, triangle[1][k], triangle[5][k]);
+  const __m256 c = load_two(of_vertex, triangle[2][k], triangle[6][k]);
+  const __m256 d = load_two(of_vertex, triangle[3][k], triangle[7][k]);
+  const __m256d ab = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
+  const __m256d cd = _mm256_castps_pd(_mm256_unpacklo_ps(c, d));
+  const __m256d ab_z = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
+  const __m256d cd_z = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
+  const auto store_at = [first](Lanes<float>& lanes, __m256d numbers) {
+    _mm256_store_ps(reinterpret_cast<float*>(&lanes) + first, _mm256_castpd_ps(numbers));
+  };
+  store_at(to.x, _mm256_unpacklo_pd(ab, cd));
+  store_at(to.y, _mm256_unpackhi_pd(ab, cd));
+  store_at(to.z, _mm256_unpacklo_pd(ab_z, cd_z));
+}
+
+GLIDAR_INLINE void gather_lanes(const TrianglesToGather& from, CornerBlock& to) {
+  for (unsigned first = 0; first < kLanes; first += 8) {
+    const std::uint32_t* triangle[8];
+    for (unsigned i = 0; i < 8; ++i) {
+      triangle[i] = from.vertices + std::size_t{3} * from.primitive[first + i];
+    }
+    gather_corner(from.of_vertex, triangle, 0, first, to.c0);
+    gather_corner(from.of_vertex, triangle, 1, first, to.c1);
+    gather_corner(from.of_vertex, triangle, 2, first, to.c2);
   }
 }
 
 #else
 
-inline void gather_corners(const float* of_vertex, const std::uint32_t* vertices,
-                           Lanes3<float>& vectors) {
+GLIDAR_INLINE void gather_lanes(const TrianglesToGather& from, CornerBlock& to) {
+  Lanes3<float>* const corners[3] = {&to.c0, &to.c1, &to.c2};
   for (unsigned i = 0; i < kLanes; ++i) {
-    const float* const vector = of_vertex + std::size_t{3} * vertices[i];
-    vectors.x[i] = vector[0];
-    vectors.y[i] = vector[1];
-    vectors.z[i] = vector[2];
+    const std::uint32_t* const triangle = from.vertices + std::size_t{3} * from.primitive[i];
+    for (unsigned k = 0; k < 3; ++k) {
+      const float* const vector = from.of_vertex + std::size_t{3} * triangle[k];
+      corners[k]->x.at[i] = vector[0];
+      corners[k]->y.at[i] = vector[1];
+      corners[k]->z.at[i] = vector[2];
+    }
   }
 }
 

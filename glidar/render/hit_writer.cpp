@@ -30,8 +30,8 @@ struct PixelBatch {
   unsigned used = 0;
 };
 
-/// Three batches are in progress at a time: data that later steps of one need (planes and corners
-/// of its triangles) are prefetched while the next is collected.
+/// Three batches are in progress at a time: data that later steps of one need (the corners of
+/// its triangles) are prefetched while the next is collected.
 struct PixelBatchQueue {
   std::array<PixelBatch, 3> batches;
   std::size_t started = 0;  ///< the last of them is being filled
@@ -113,8 +113,7 @@ void finish(const HitWriter& w, PixelBatch& batch) {
   directions_through(batch.x, batch.y, batch.beams.direction);
   w.resolver.intersect(batch.beams, block, batch.exact);
   const std::uint32_t uncertain = block.mask & ~(batch.certain & ahead(batch.exact));
-  const std::uint32_t beside =
-      uncertain == 0 ? 0 : uncertain_lanes(w.resolver, block, batch.exact) & uncertain;
+  const std::uint32_t beside = uncertain == 0 ? 0 : uncertain_lanes(block, batch.exact) & uncertain;
   const std::uint32_t recast = beside | (batch.contested & block.mask);
   if (recast != 0 && recast_lanes(w, recast, batch.beams, block) && block.mask != 0) {
     w.resolver.intersect(batch.beams, block, batch.exact);
@@ -184,15 +183,14 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
   batch.certain = ids.certain;
   batch.contested = ids.contested;
   block.is_one_triangle = ids.lowest == ids.highest;
-  const bool with_corners = needs_corners(w.request.hit_columns);
   const std::uint32_t instance = w.triangles.instance_of(ids.lowest);
   if (ids.highest < w.triangles.end(instance)) {
     decode_instance(w, instance, batch);
-    w.resolver.prefetch_one_instance(block, with_corners);
+    w.resolver.prefetch_one_instance(block);
   } else {
     for (unsigned lane = 0; lane < kLanes; ++lane) {
       decode_lane(w, lane, batch);
-      w.resolver.prefetch(block, lane, with_corners);
+      w.resolver.prefetch(block, lane);
     }
   }
   if (w.close_triangles != nullptr) batch.contested |= close_lanes(w, block);
@@ -202,12 +200,7 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
 /// oldest.
 void advance(const HitWriter& w, PixelBatchQueue& queue) {
   decode_triangles(w, queue.filling());
-  PixelBatch& previous = queue.previous();
-  HitColumnMask hit_columns = w.request.hit_columns;
-  // To find its uncertain lanes.
-  hit_columns.barycentrics =
-      hit_columns.barycentrics || (previous.block.mask & ~previous.certain) != 0;
-  w.resolver.prefetch_corners(previous.block, hit_columns);
+  w.resolver.prefetch_corners(queue.previous().block, w.request.hit_columns);
   ++queue.started;
   finish(w, queue.filling());
 }

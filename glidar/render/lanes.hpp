@@ -37,6 +37,13 @@ struct Lanes3 {
   }
 };
 
+/// A vector at each corner of the lanes' triangles.
+struct CornerBlock {
+  Lanes3<float> c0;
+  Lanes3<float> c1;
+  Lanes3<float> c2;
+};
+
 /// Sets all lanes to the value.
 template <class T>
 inline void fill(T value, Lanes<T>& lanes) {

@@ -2,24 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/planes.hpp>
 
+#include <cmath>
+
 namespace glidar {
-namespace {
 
-Eigen::Vector3d corner(const Mesh& mesh, std::uint32_t triangle, std::size_t k) {
-  return mesh.positions_m[mesh.triangles[triangle][k]].cast<double>();
-}
-
-}  // namespace
-
-std::vector<TrianglePlane> triangle_planes(const Mesh& mesh) {
-  std::vector<TrianglePlane> planes(mesh.triangles.size());
-  for (std::uint32_t i = 0; i < planes.size(); ++i) {
-    const Eigen::Vector3d v0 = corner(mesh, i, 0);
-    const Eigen::Vector3d cross = (corner(mesh, i, 1) - v0).cross(corner(mesh, i, 2) - v0);
-    planes[i].normal = cross / cross.norm();
-    planes[i].offset = planes[i].normal.dot(v0);
-  }
-  return planes;
+TrianglePlane plane_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
+    return mesh.positions_m[mesh.triangles[triangle][k]].cast<double>();
+  };
+  const Eigen::Vector3d a = corner(0);
+  const Eigen::Vector3d u = corner(1) - a;
+  const Eigen::Vector3d v = corner(2) - a;
+  // Without Eigen's products, which may add the terms in another order than the kernels.
+  const double x = u.y() * v.z() - u.z() * v.y();
+  const double y = u.z() * v.x() - u.x() * v.z();
+  const double z = u.x() * v.y() - u.y() * v.x();
+  const double length = std::sqrt(x * x + y * y + z * z);
+  const Eigen::Vector3d normal(x / length, y / length, z / length);
+  return {normal, normal.x() * a.x() + normal.y() * a.y() + normal.z() * a.z()};
 }
 
 }  // namespace glidar

@@ -4,8 +4,6 @@
 
 #include <glidar/core/mesh.hpp>
 
-#include <vector>
-
 namespace glidar {
 
 /// The plane of a triangle, n . p = offset, in the mesh's frame relative to Mesh::origin_m.
@@ -15,7 +13,8 @@ struct TrianglePlane {
   double offset;
 };
 
-/// One per triangle, in double from the mesh's vertices.
-std::vector<TrianglePlane> triangle_planes(const Mesh& mesh);
+/// In double from the mesh's vertices. Planes are not stored: their corners take less memory, and
+/// columns such as barycentrics need these anyway. BlockKernel::intersect computes the same bits.
+TrianglePlane plane_of(const Mesh& mesh, std::uint32_t triangle);
 
 }  // namespace glidar

@@ -28,7 +28,7 @@ bool blocks_beam(const Resolver& resolver, const Beams& beams, std::size_t beam,
   const Instance& instance = resolver.scene().instances[candidate.instance];
   const Mesh& mesh = resolver.mesh(candidate.instance);
   const ObjectRay ray = ray_in(resolver.view(candidate.instance), beams, beam);
-  const TrianglePlane& plane = resolver.plane(candidate.instance, candidate.primitive);
+  const TrianglePlane plane = resolver.plane(candidate.instance, candidate.primitive);
   if (cull_back_faces && plane.normal.dot(ray.direction) > 0.0) return false;
   const std::uint16_t slot = material_slot(mesh, candidate.primitive);
   if (!(resolver.scene().materials[instance.materials[slot]].alpha_cutoff > 0.0F)) return true;

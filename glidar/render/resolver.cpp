@@ -56,28 +56,29 @@ GLIDAR_SIMD void intersect_planes(ExactHits& e) {
   }
 }
 
-/// The vertices of a block's triangles, corner by corner.
-using CornerIndices = std::array<std::array<std::uint32_t, kLanes>, 3>;
-
-void find_corners(const Triangle* triangles, const HitBlock& block, CornerIndices& corners) {
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const Triangle& triangle = triangles[block.primitive[i]];
-    corners[0][i] = triangle[0];
-    corners[1][i] = triangle[1];
-    corners[2][i] = triangle[2];
-  }
+/// Gathers vectors of one mesh's vertices.
+TrianglesToGather gather_from(const Eigen::Vector3f* of_vertex, const Triangle* triangles,
+                              const HitBlock& block) {
+  return {.of_vertex = of_vertex->data(),
+          .vertices = triangles->data(),
+          .primitive = block.primitive.data()};
 }
 
-void gather_vectors(const BlockKernel& kernel, const Eigen::Vector3f* of_vertex,
-                    const CornerIndices& corners, CornerBlock& vectors) {
-  const float* const numbers = of_vertex->data();
-  kernel.gather(numbers, corners[0].data(), vectors.c0);
-  kernel.gather(numbers, corners[1].data(), vectors.c1);
-  kernel.gather(numbers, corners[2].data(), vectors.c2);
+void set_corners(unsigned lane, const Eigen::Vector3f* of_vertex, const Triangle& triangle,
+                 CornerBlock& corners) {
+  corners.c0.set(lane, of_vertex[triangle[0]]);
+  corners.c1.set(lane, of_vertex[triangle[1]]);
+  corners.c2.set(lane, of_vertex[triangle[2]]);
 }
 
 bool needs_normals(const HitColumnMask& hit_columns) {
   return hit_columns.shading_normal || hit_columns.shading;
+}
+
+/// True when some of the columns depend on the position of a hit within its triangle.
+bool needs_weights(const HitColumnMask& hit_columns) {
+  return hit_columns.barycentrics || needs_normals(hit_columns) ||
+         SurfaceColours::needed(hit_columns);
 }
 
 }  // namespace
@@ -85,11 +86,6 @@ bool needs_normals(const HitColumnMask& hit_columns) {
 bool has_mask(const Scene& scene, const Instance& instance) {
   return std::any_of(instance.materials.begin(), instance.materials.end(),
                      [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
-}
-
-bool needs_corners(const HitColumnMask& hit_columns) {
-  return hit_columns.barycentrics || hit_columns.shading_normal || hit_columns.shading ||
-         SurfaceColours::needed(hit_columns);
 }
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
@@ -144,9 +140,7 @@ GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes
 
 Resolver::Resolver(const Scene& scene)
     : scene_(scene), kernel_(select_block_kernel()), colours_(scene) {
-  planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
-    planes_.push_back(triangle_planes(mesh));
     first_coincident_.push_back(find_first_coincident(mesh));
     distinct_.push_back(distinct_triangles(mesh, first_coincident_.back()));
   }
@@ -165,7 +159,6 @@ Resolver::Resolver(const Scene& scene)
          .triangles = mesh.triangles.data(),
          .positions_m = mesh.positions_m.data(),
          .normals = mesh.normals.empty() ? nullptr : mesh.normals.data(),
-         .planes = planes_[instance.mesh].data(),
          .first_coincident = has_duplicates ? first_coincident.data() : nullptr,
          .has_normal_map = std::any_of(instance.materials.begin(), instance.materials.end(),
                                        [&](std::uint32_t material) {
@@ -187,7 +180,6 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
 }
 
 void Resolver::prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const {
-  if (!needs_corners(hit_columns)) return;
   const bool with_normals = needs_normals(hit_columns);
   const std::uint32_t lowest = block.mask & (~block.mask + 1U);
   for_lanes(block.is_one_triangle ? lowest : block.mask, [&](unsigned i) {
@@ -199,6 +191,16 @@ void Resolver::prefetch_corners(const HitBlock& block, const HitColumnMask& hit_
   });
 }
 
+/// Sets a lane's triangle.
+void Resolver::set_plane(const HitBlock& block, unsigned lane, ExactHits& exact) const {
+  const InstanceData& of = instances_[block.instance[lane]];
+  const std::uint32_t primitive = block.primitive[lane];
+  set_corners(lane, of.positions_m, of.triangles[primitive], exact.corners);
+  const TrianglePlane plane = plane_of(*of.mesh, primitive);
+  exact.normal.set(lane, plane.normal);
+  exact.offset[lane] = plane.offset;
+}
+
 void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exact) const {
   const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
   for_lanes(~block.mask & kAllLanes, [&](unsigned i) {
@@ -207,25 +209,23 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
   });
   if (!beams.has_origins && is_one_instance(block)) {
     const InstanceView& view = views_[block.instance[0]];
-    const bool is_certain = kernel_.intersect({.object_from_sensor = view.object_from_sensor.data(),
-                                               .sensor_in_object = view.sensor_in_object.data(),
-                                               .direction = &beams.direction,
-                                               .planes = instances_[block.instance[0]].planes,
-                                               .primitive = block.primitive.data()},
-                                              {.normal = &exact.normal,
-                                               .origin = &exact.origin,
-                                               .direction = &exact.direction,
-                                               .offset = &exact.offset,
-                                               .cosine = &exact.cosine,
-                                               .distance = &exact.distance});
+    const InstanceData& of = instances_[block.instance[0]];
+    const bool is_certain =
+        kernel_.intersect({.object_from_sensor = view.object_from_sensor.data(),
+                           .sensor_in_object = view.sensor_in_object.data(),
+                           .direction = &beams.direction,
+                           .positions = gather_from(of.positions_m, of.triangles, block)},
+                          {.corners = &exact.corners,
+                           .normal = &exact.normal,
+                           .origin = &exact.origin,
+                           .direction = &exact.direction,
+                           .offset = &exact.offset,
+                           .cosine = &exact.cosine,
+                           .distance = &exact.distance});
     if (!is_certain) intersect_grazing(*this, block, exact);
     return;
   }
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
-    exact.normal.set(i, triangle.normal);
-    exact.offset[i] = triangle.offset;
-  }
+  for (unsigned i = 0; i < kLanes; ++i) set_plane(block, i, exact);
   rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
   ExactHits source;
   for (std::uint32_t rest = lanes_not_on(block, block.instance[0]); rest != 0;) {
@@ -274,7 +274,7 @@ void Resolver::write(const Beams& beams, const HitColumnMask& hit_columns, const
         point.cwiseQuotient(scene_.sources[scene_.instances[block.instance[i]].mesh].stretch);
   });
   if (hit_columns.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
-  if (needs_corners(hit_columns)) write_surface(hit_columns, block, exact, hits);
+  if (needs_weights(hit_columns)) write_surface(hit_columns, block, exact, hits);
 }
 
 void Resolver::write_batch(const Beams& beams, const HitColumnMask& hit_columns, HitBatch& batch,
@@ -307,28 +307,26 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
   });
 }
 
-void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners) const {
+void Resolver::gather_normals(const HitBlock& block, CornerBlock& normals) const {
   // Zero normals have no length, so the flat normal is used.
   static const Eigen::Vector3f kNone = Eigen::Vector3f::Zero();
   if (is_one_instance(block)) {
     const InstanceData& of = instances_[block.instance[0]];
-    CornerIndices indices;
-    find_corners(of.triangles, block, indices);
-    gather_vectors(kernel_, of.positions_m, indices, corners.position_m);
-    if (!with_normals) return;
-    if (of.normals == nullptr) indices = {};
-    gather_vectors(kernel_, of.normals == nullptr ? &kNone : of.normals, indices, corners.normal);
+    if (of.normals == nullptr) {
+      normals = {};
+      return;
+    }
+    kernel_.gather(gather_from(of.normals, of.triangles, block), normals);
     return;
   }
-  const auto set = [&](unsigned lane) {
-    const InstanceData& of = instances_[block.instance[lane]];
-    const Triangle& triangle = of.triangles[block.primitive[lane]];
-    corners.position_m.set(lane, of.positions_m, triangle);
-    if (!with_normals) return;
-    corners.normal.set(lane, of.normals == nullptr ? &kNone : of.normals,
-                       of.normals == nullptr ? Triangle{} : triangle);
-  };
-  for (unsigned i = 0; i < kLanes; ++i) set(i);
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const InstanceData& of = instances_[block.instance[i]];
+    if (of.normals == nullptr) {
+      set_corners(i, &kNone, Triangle{}, normals);
+    } else {
+      set_corners(i, of.normals, of.triangles[block.primitive[i]], normals);
+    }
+  }
 }
 
 void Resolver::write_shading(const HitColumnMask& hit_columns, const HitBlock& block,
@@ -348,16 +346,17 @@ void Resolver::write_shading(const HitColumnMask& hit_columns, const HitBlock& b
 
 void Resolver::write_surface(const HitColumnMask& hit_columns, const HitBlock& block,
                              const ExactHits& exact, Hits& hits) const {
-  const bool with_normals = needs_normals(hit_columns);
-  Corners corners;
   Lanes<float> w1;
   Lanes<float> w2;
-  gather(block, with_normals, corners);
-  interpolate_weights(exact, corners.position_m, w1, w2);
+  interpolate_weights(exact, exact.corners, w1, w2);
   if (hit_columns.barycentrics) {
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
-  if (with_normals) write_shading(hit_columns, block, exact, {w1, w2, corners.normal}, hits);
+  if (needs_normals(hit_columns)) {
+    CornerBlock normals;
+    gather_normals(block, normals);
+    write_shading(hit_columns, block, exact, {w1, w2, normals}, hits);
+  }
   if (SurfaceColours::needed(hit_columns)) colours_.write(hit_columns, block, w1, w2, hits);
 }
 

@@ -21,9 +21,6 @@ struct BlockKernel;
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
 
-/// True when some of the columns depend on the position of a hit within its triangle.
-bool needs_corners(const HitColumnMask& hit_columns);
-
 /// The sensor in the frame of an instance: object units, relative to the mesh's origin.
 struct InstanceView {
   Eigen::Matrix3d object_from_sensor;  ///< rotation
@@ -63,6 +60,7 @@ void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& o
 
 /// The exact geometry of a block's hits, in the objects' frames and units.
 struct ExactHits {
+  CornerBlock corners;       ///< of the triangle, relative to the mesh's origin
   Lanes3<double> normal;     ///< of the triangle's front
   Lanes3<double> origin;     ///< of the beam
   Lanes3<double> direction;  ///< of the beam
@@ -78,19 +76,6 @@ struct HitBatch {
   ExactHits exact;
 };
 
-/// A vector at each corner of a block's triangles.
-struct CornerBlock {
-  Lanes3<float> c0;
-  Lanes3<float> c1;
-  Lanes3<float> c2;
-
-  void set(unsigned lane, const Eigen::Vector3f* of_vertex, const Triangle& triangle) {
-    c0.set(lane, of_vertex[triangle[0]]);
-    c1.set(lane, of_vertex[triangle[1]]);
-    c2.set(lane, of_vertex[triangle[2]]);
-  }
-};
-
 /// Computes hit columns from (beam, instance, primitive) in double. All renderers share it, so the
 /// results do not depend on how a triangle was found.
 class Resolver {
@@ -103,8 +88,8 @@ class Resolver {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const InstanceView& view(std::uint32_t instance) const { return views_[instance]; }
-  [[nodiscard]] const TrianglePlane& plane(std::uint32_t instance, std::uint32_t primitive) const {
-    return instances_[instance].planes[primitive];
+  [[nodiscard]] TrianglePlane plane(std::uint32_t instance, std::uint32_t primitive) const {
+    return plane_of(mesh(instance), primitive);
   }
   [[nodiscard]] const Mesh& mesh(std::uint32_t instance) const {
     return *instances_[instance].mesh;
@@ -134,26 +119,19 @@ class Resolver {
   }
 
   /// Prefetches a lane's triangle.
-  void prefetch(const HitBlock& block, unsigned lane, bool with_corners) const {
-    const std::uint32_t primitive = block.primitive[lane];
-    __builtin_prefetch(&plane(block.instance[lane], primitive));
-    if (!with_corners) return;
-    __builtin_prefetch(instances_[block.instance[lane]].triangles + primitive);
+  void prefetch(const HitBlock& block, unsigned lane) const {
+    __builtin_prefetch(instances_[block.instance[lane]].triangles + block.primitive[lane]);
   }
 
   /// Prefetches the triangles of a block's lanes, which are all of one instance.
-  void prefetch_one_instance(const HitBlock& block, bool with_corners) const {
-    const InstanceData& of = instances_[block.instance[0]];
+  void prefetch_one_instance(const HitBlock& block) const {
+    const Triangle* const triangles = instances_[block.instance[0]].triangles;
     for (const std::uint32_t primitive : block.primitive) {
-      __builtin_prefetch(of.planes + primitive);
-    }
-    if (!with_corners) return;
-    for (const std::uint32_t primitive : block.primitive) {
-      __builtin_prefetch(of.triangles + primitive);
+      __builtin_prefetch(triangles + primitive);
     }
   }
 
-  /// Prefetches the corners of a block's triangles if the columns need them.
+  /// Prefetches the corners of a block's triangles, and their normals if the columns need them.
   void prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const;
 
   /// Computes distance and incidence of a block with at least one hit. Lanes without a hit get the
@@ -172,11 +150,8 @@ class Resolver {
   void write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const;
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
-  struct Corners {
-    CornerBlock position_m;  ///< relative to the mesh's origin
-    CornerBlock normal;
-  };
-  void gather(const HitBlock& block, bool with_normals, Corners& corners) const;
+  void gather_normals(const HitBlock& block, CornerBlock& normals) const;
+  void set_plane(const HitBlock& block, unsigned lane, ExactHits& exact) const;
   /// Barycentric weights of corners 1 and 2 per lane, and the normals that they interpolate.
   struct Weights {
     const Lanes<float>& w1;
@@ -197,8 +172,7 @@ class Resolver {
     const Mesh* mesh;
     const Triangle* triangles;
     const Eigen::Vector3f* positions_m;
-    const Eigen::Vector3f* normals;  ///< nullptr: flat shading
-    const TrianglePlane* planes;
+    const Eigen::Vector3f* normals;         ///< nullptr: flat shading
     const std::uint32_t* first_coincident;  ///< nullptr: all triangles differ
     bool has_normal_map;                    ///< in some slot
     bool is_masked;                         ///< see Resolver::is_masked()
@@ -206,7 +180,6 @@ class Resolver {
 
   const Scene& scene_;
   const BlockKernel& kernel_;
-  std::vector<std::vector<TrianglePlane>> planes_;            ///< per mesh
   std::vector<std::vector<std::uint32_t>> first_coincident_;  ///< per mesh
   std::vector<std::vector<std::uint32_t>> distinct_;          ///< per mesh, see distinct()
   std::vector<InstanceData> instances_;                       ///< per instance

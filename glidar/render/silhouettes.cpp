@@ -185,7 +185,7 @@ void SilhouettePixels::find_sides(const Resolver& resolver, std::uint32_t instan
   thread_pool.parallel_for(
       sides_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-          const TrianglePlane& plane = resolver.plane(instance, static_cast<std::uint32_t>(i));
+          const TrianglePlane plane = resolver.plane(instance, static_cast<std::uint32_t>(i));
           sides_[i] = side_of(plane, sensor, distance);
         }
       });

@@ -13,10 +13,10 @@ namespace {
 // squared distance to the farthest corner.
 constexpr float kAreaRounding = 0x1p-20F;
 
-GLIDAR_SIMD std::uint32_t outside(const ExactHits& e, const CornerBlock& c) {
+GLIDAR_SIMD std::uint32_t outside(const ExactHits& e) {
   Lanes<std::uint32_t> bits;
   for (unsigned i = 0; i < kLanes; ++i) {
-    const CornerAreas areas = areas_around(e, c, i);
+    const CornerAreas areas = areas_around(e, e.corners, i);
     const float ab = areas.at_0 < areas.at_1 ? areas.at_0 : areas.at_1;
     const float smallest = ab < areas.at_2 ? ab : areas.at_2;
     const int inside = static_cast<int>(smallest >= kAreaRounding * areas.reach_squared);
@@ -30,14 +30,8 @@ GLIDAR_SIMD std::uint32_t outside(const ExactHits& e, const CornerBlock& c) {
 
 }  // namespace
 
-std::uint32_t uncertain_lanes(const Resolver& resolver, const HitBlock& block,
-                              const ExactHits& exact) {
-  CornerBlock corners;
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const Mesh& mesh = resolver.mesh(block.instance[i]);
-    corners.set(i, mesh.positions_m.data(), mesh.triangles[block.primitive[i]]);
-  }
-  return outside(exact, corners) & block.mask;
+std::uint32_t uncertain_lanes(const HitBlock& block, const ExactHits& exact) {
+  return outside(exact) & block.mask;
 }
 
 bool are_hits_of_rule(const Resolver& resolver, const HitBlock& block, const ExactHits& exact) {

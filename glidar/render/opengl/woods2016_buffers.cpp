@@ -33,11 +33,10 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& dra
                             " with this driver's quantized framebuffer",
                  .remedy = "leave --quantized-framebuffer out"});
   }
-  const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   std::vector<Eigen::Vector4f> normals;
   normals.reserve(drawn.size());
   for (const std::uint32_t t : drawn) {
-    normals.push_back(planes[t].normal.cast<float>().homogeneous());
+    normals.push_back(plane_of(mesh, t).normal.cast<float>().homogeneous());
   }
   fill(shaded.flat_normals, GL_TEXTURE_BUFFER, normals);
   glBindTexture(GL_TEXTURE_BUFFER, shaded.flat_normals_view.name());

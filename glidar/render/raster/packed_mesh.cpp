@@ -27,13 +27,12 @@ struct TriangleCentroid {
 
 /// Centroids of the chosen triangles that have a plane.
 std::vector<TriangleCentroid> centroids(const Mesh& mesh, std::span<const std::uint32_t> chosen) {
-  const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   const std::size_t count = chosen.empty() ? mesh.triangles.size() : chosen.size();
   std::vector<TriangleCentroid> all;
   all.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t t = chosen.empty() ? i : chosen[i];
-    if (std::isnan(planes[t].normal.x())) continue;
+    if (std::isnan(plane_of(mesh, t).normal.x())) continue;
     constexpr float kThird =
         1.0F / 3.0F;  // before the sum, which would overflow for large coordinates
     all.push_back(

@@ -25,7 +25,6 @@ struct Job {
   const HitColumnMask& hit_columns;
   const Resolver& resolver;
   const rays::BeamSearch& search;
-  bool with_corners;  ///< the columns need those of triangles
   Hits& hits;
 };
 
@@ -105,7 +104,7 @@ void prepare_hits(const Job& job, bool is_run, HitBlock& block) {
     if (block.primitive[lane] == last.primitive && block.instance[lane] == last.instance) return;
     block.is_one_triangle = last.instance == kInvalidId;
     last = {block.instance[lane], block.primitive[lane]};
-    job.resolver.prefetch(block, lane, job.with_corners);
+    job.resolver.prefetch(block, lane);
   });
 }
 
@@ -135,7 +134,7 @@ void write_tile_misses(const Job& job, const rays::Tiling& tiling, std::size_t b
 }
 
 /// Casts tiles [begin, end). Three are in progress at a time: data that later steps of one need
-/// (planes and corners of its triangles) are prefetched while the next is traced.
+/// (the corners of its triangles) are prefetched while the next is traced.
 void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, std::size_t end) {
   std::array<HitBatch, 3> batches;
   if (!tiling.has_runs()) write_tile_misses(job, tiling, begin, end);
@@ -183,7 +182,6 @@ class RaysRenderer final : public Renderer {
         .hit_columns = request.hit_columns,
         .resolver = resolver,
         .search = base_->search.beams(),
-        .with_corners = needs_corners(request.hit_columns),
         .hits = hits};
     const rays::Tiling tiling(request.beams);
     ProgressCounter count(request.progress, tiling.size());

@@ -42,7 +42,7 @@ void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, 
     }
     block.instance[lane] = last_found_.instance;
     block.primitive[lane] = last_found_.primitive;
-    if (is_new) target_.resolver.prefetch(block, lane, with_corners_);
+    if (is_new) target_.resolver.prefetch(block, lane);
     differs = differs || (is_new && lanes != block.mask);
   }
   block.is_one_triangle = !differs;

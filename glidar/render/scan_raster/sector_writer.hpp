@@ -24,8 +24,7 @@ struct HitTarget {
 /// are prefetched meanwhile.
 class SectorWriter {
  public:
-  explicit SectorWriter(const HitTarget& target)
-      : target_(target), with_corners_(needs_corners(target.request.hit_columns)) {}
+  explicit SectorWriter(const HitTarget& target) : target_(target) {}
 
   /// Hits and misses of all beams of a sector's rows. Deferred cells count as misses.
   void write_rows(const SectorTable& sector, const SectorBuffer& buffer,
@@ -52,7 +51,6 @@ class SectorWriter {
   void write(HitBatch& batch) const;
 
   HitTarget target_;
-  bool with_corners_;
   std::uint32_t last_number_ = kNoSlotNumber;  ///< of the previous cell
   PrimitiveRef last_found_;
   std::array<HitBatch, 3> batches_;
