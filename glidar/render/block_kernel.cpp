@@ -4,6 +4,7 @@
 #include <glidar/render/block_kernel.hpp>
 
 #include <glidar/render/corner_gather.hpp>
+#include <glidar/render/plane_gather.hpp>
 
 #include <cstddef>
 
@@ -73,28 +74,62 @@ GLIDAR_INLINE Vector3 corner_at(const Lanes3<float>& corner, unsigned i) {
   return {component(corner.x), component(corner.y), component(corner.z)};
 }
 
-/// Computes planes as plane_of().
-GLIDAR_INLINE void find_planes(const CornerBlock& corners, Lanes3<double>& normal,
-                               Lanes<double>& offset) {
-  for (unsigned i = 0; i < kLanes; i += kWidth) {
-    const Vector3 a = corner_at(corners.c0, i);
-    const Vector3 b = corner_at(corners.c1, i);
-    const Vector3 c = corner_at(corners.c2, i);
-    const Vector3 u = {b.x - a.x, b.y - a.y, b.z - a.z};
-    const Vector3 v = {c.x - a.x, c.y - a.y, c.z - a.z};
-    const Vector3 cross = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-    const Vector length = square_root(cross.x * cross.x + cross.y * cross.y + cross.z * cross.z);
-    const Vector3 n = {cross.x / length, cross.y / length, cross.z / length};
-    at(normal.x, i) = n.x;
-    at(normal.y, i) = n.y;
-    at(normal.z, i) = n.z;
-    at(offset, i) = n.x * a.x + n.y * a.y + n.z * a.z;
+/// Computes the planes of the lanes from i on as plane_of().
+GLIDAR_INLINE void find_planes_at(const CornerBlock& corners, unsigned i, Lanes3<double>& normal,
+                                  Lanes<double>& offset) {
+  const Vector3 a = corner_at(corners.c0, i);
+  const Vector3 b = corner_at(corners.c1, i);
+  const Vector3 c = corner_at(corners.c2, i);
+  const Vector3 u = {b.x - a.x, b.y - a.y, b.z - a.z};
+  const Vector3 v = {c.x - a.x, c.y - a.y, c.z - a.z};
+  const Vector3 cross = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  const Vector length = square_root(cross.x * cross.x + cross.y * cross.y + cross.z * cross.z);
+  const Vector3 n = {cross.x / length, cross.y / length, cross.z / length};
+  at(normal.x, i) = n.x;
+  at(normal.y, i) = n.y;
+  at(normal.z, i) = n.z;
+  at(offset, i) = n.x * a.x + n.y * a.y + n.z * a.z;
+}
+
+void find_planes(const CornerBlock& corners, Lanes3<double>& normal, Lanes<double>& offset) {
+  for (unsigned i = 0; i < kLanes; i += kWidth) find_planes_at(corners, i, normal, offset);
+}
+
+/// Sets all lanes to the first lane's triangle.
+GLIDAR_INLINE void set_triangle(const TrianglesToGather& from, const HitsToFind& exact) {
+  Lanes3<float>* const corners[3] = {&exact.corners->c0, &exact.corners->c1, &exact.corners->c2};
+  const std::uint32_t* const triangle = from.vertices + std::size_t{3} * from.primitive[0];
+  const auto fill_lanes = [](auto& lanes, auto number) {
+    auto* const all = reinterpret_cast<decltype(number)*>(&lanes);
+    for (unsigned i = 0; i < kLanes; ++i) all[i] = number;
+  };
+  for (unsigned k = 0; k < 3; ++k) {
+    const float* const vector = from.of_vertex + std::size_t{3} * triangle[k];
+    fill_lanes(corners[k]->x, vector[0]);
+    fill_lanes(corners[k]->y, vector[1]);
+    fill_lanes(corners[k]->z, vector[2]);
   }
+  find_planes_at(*exact.corners, 0, *exact.normal, *exact.offset);
+  fill_lanes(exact.normal->x, *numbers(exact.normal->x));
+  fill_lanes(exact.normal->y, *numbers(exact.normal->y));
+  fill_lanes(exact.normal->z, *numbers(exact.normal->z));
+  fill_lanes(*exact.offset, *numbers(*exact.offset));
+}
+
+GLIDAR_INLINE void set_triangles(const OneInstanceHits& block, const HitsToFind& exact) {
+  if (block.planes != nullptr) {
+    gather_planes(reinterpret_cast<const double*>(block.planes), block.positions.primitive,
+                  {numbers(exact.normal->x), numbers(exact.normal->y), numbers(exact.normal->z),
+                   numbers(*exact.offset)});
+    return;
+  }
+  if (block.is_one_triangle) return set_triangle(block.positions, exact);
+  gather_lanes(block.positions, *exact.corners);
+  find_planes(*exact.corners, *exact.normal, *exact.offset);
 }
 
 bool intersect(const OneInstanceHits& block, const HitsToFind& exact) {
-  gather_lanes(block.positions, *exact.corners);
-  find_planes(*exact.corners, *exact.normal, *exact.offset);
+  set_triangles(block, exact);
   rotate_lanes(block.object_from_sensor, *block.direction, numbers(exact.direction->x),
                numbers(exact.direction->y), numbers(exact.direction->z));
   const Vector ox = Vector{} + block.sensor_in_object[0];
@@ -152,6 +187,6 @@ void gather(const TrianglesToGather& from, CornerBlock& to) {
 }  // namespace
 
 extern const BlockKernel kBlockKernel;
-const BlockKernel kBlockKernel = {GLIDAR_KERNEL_NAME, intersect, orient, gather};
+const BlockKernel kBlockKernel = {GLIDAR_KERNEL_NAME, intersect, orient, find_planes, gather};
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/render/lanes.hpp>
+#include <glidar/render/planes.hpp>
 
 namespace glidar {
 
@@ -22,11 +23,13 @@ struct OneInstanceHits {
   const double* sensor_in_object;    ///< where the beams start
   const Lanes3<double>* direction;   ///< of the beams, in the sensor's frame
   TrianglesToGather positions;       ///< relative to the mesh's origin
+  bool is_one_triangle;              ///< all lanes hit the same one
+  const TrianglePlane* planes;       ///< per triangle; nullptr: not stored
 };
 
 /// Where BlockKernel::intersect writes: the members of ExactHits.
 struct HitsToFind {
-  CornerBlock* corners;
+  CornerBlock* corners;  ///< unless the planes are stored
   Lanes3<double>* normal;
   Lanes3<double>* origin;
   Lanes3<double>* direction;
@@ -39,12 +42,15 @@ struct HitsToFind {
 /// caster. Each does all of its work at once, because calls and memory take longer than numbers.
 struct BlockKernel {
   const char* name;  ///< as rays::Kernel::name
-  /// Gathers corners, and computes planes as plane_of(), cosine = n.d and distance = (offset - n.o)
-  /// / (n.d) as distance_to(). False when a lane needs intersect_grazing().
+  /// Gathers planes; or gathers corners, and computes planes as plane_of(), cosine = n.d and
+  /// distance = (offset - n.o) / (n.d) as distance_to(). False when a lane needs
+  /// intersect_grazing().
   bool (*intersect)(const OneInstanceHits& block, const HitsToFind& exact);
   /// Turns normals to the sensor and into its frame, and writes them lane after lane.
   void (*orient)(const double* sensor_from_object, const Lanes3<double>& front,
                  const Lanes<double>& cosine, float* normals);
+  /// Computes planes as plane_of().
+  void (*find_planes)(const CornerBlock& corners, Lanes3<double>& normal, Lanes<double>& offset);
   void (*gather)(const TrianglesToGather& from, CornerBlock& to);
 };
 

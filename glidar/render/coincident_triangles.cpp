@@ -57,6 +57,7 @@ std::vector<CornerKey> sorted_keys(const Mesh& mesh) {
 /// The nearest earlier key of the same triangle, or i where there is none.
 std::size_t earlier_coincident(const Mesh& mesh, const std::vector<CornerKey>& keys,
                                std::size_t i) {
+  if (i == 0 || keys[i - 1].hash != keys[i].hash) return i;
   const auto corners = sorted_corners(mesh, keys[i].triangle);
   // Keys of the same hash are mostly coincident triangles.
   for (std::size_t j = i; j-- > 0 && keys[j].hash == keys[i].hash;) {

@@ -113,7 +113,8 @@ void finish(const HitWriter& w, PixelBatch& batch) {
   directions_through(batch.x, batch.y, batch.beams.direction);
   w.resolver.intersect(batch.beams, block, batch.exact);
   const std::uint32_t uncertain = block.mask & ~(batch.certain & ahead(batch.exact));
-  const std::uint32_t beside = uncertain == 0 ? 0 : uncertain_lanes(block, batch.exact) & uncertain;
+  const std::uint32_t beside =
+      uncertain == 0 ? 0 : uncertain_lanes(w.resolver, block, batch.exact) & uncertain;
   const std::uint32_t recast = beside | (batch.contested & block.mask);
   if (recast != 0 && recast_lanes(w, recast, batch.beams, block) && block.mask != 0) {
     w.resolver.intersect(batch.beams, block, batch.exact);

@@ -13,8 +13,7 @@ struct TrianglePlane {
   double offset;
 };
 
-/// In double from the mesh's vertices. Planes are not stored: their corners take less memory, and
-/// columns such as barycentrics need these anyway. BlockKernel::intersect computes the same bits.
+/// In double from the mesh's vertices. BlockKernel::intersect computes the same bits.
 TrianglePlane plane_of(const Mesh& mesh, std::uint32_t triangle);
 
 }  // namespace glidar

@@ -75,17 +75,16 @@ bool needs_normals(const HitColumnMask& hit_columns) {
   return hit_columns.shading_normal || hit_columns.shading;
 }
 
-/// True when some of the columns depend on the position of a hit within its triangle.
-bool needs_weights(const HitColumnMask& hit_columns) {
-  return hit_columns.barycentrics || needs_normals(hit_columns) ||
-         SurfaceColours::needed(hit_columns);
-}
-
 }  // namespace
 
 bool has_mask(const Scene& scene, const Instance& instance) {
   return std::any_of(instance.materials.begin(), instance.materials.end(),
                      [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
+}
+
+bool needs_corners(const HitColumnMask& hit_columns) {
+  return hit_columns.barycentrics || needs_normals(hit_columns) ||
+         SurfaceColours::needed(hit_columns);
 }
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
@@ -170,6 +169,7 @@ Resolver::Resolver(const Scene& scene)
 }
 
 void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> world_from_instance) {
+  uses_planes_ = false;
   views_.resize(scene_.instances.size());
   for (std::size_t i = 0; i < views_.size(); ++i) {
     const Instance& instance = scene_.instances[i];
@@ -179,26 +179,56 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
   }
 }
 
+void Resolver::use_stored_planes(ThreadPool& thread_pool) {
+  constexpr std::size_t kTrianglesPerTask = 4096;
+  uses_planes_ = true;
+  if (!planes_.empty()) return;
+  planes_.resize(scene_.meshes.size());
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    const Mesh& mesh = scene_.meshes[i];
+    std::vector<TrianglePlane>& planes = planes_[i];
+    planes.resize(mesh.triangles.size());
+    thread_pool.parallel_for(planes.size(), kTrianglesPerTask,
+                             [&](std::size_t begin, std::size_t end) {
+                               for (std::size_t t = begin; t < end; ++t) {
+                                 planes[t] = plane_of(mesh, static_cast<std::uint32_t>(t));
+                               }
+                             });
+  }
+}
+
+/// Positions of the first corners only: most others are the first ones of neighbours, or near them.
 void Resolver::prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const {
+  if (uses_planes_) return;
   const bool with_normals = needs_normals(hit_columns);
   const std::uint32_t lowest = block.mask & (~block.mask + 1U);
   for_lanes(block.is_one_triangle ? lowest : block.mask, [&](unsigned i) {
     const InstanceData& of = instances_[block.instance[i]];
-    for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
-      __builtin_prefetch(of.positions_m + vertex);
-      if (with_normals && of.normals != nullptr) __builtin_prefetch(of.normals + vertex);
-    }
+    const Triangle& triangle = of.triangles[block.primitive[i]];
+    __builtin_prefetch(of.positions_m + triangle[0]);
+    if (with_normals && of.normals != nullptr) __builtin_prefetch(of.normals + triangle[0]);
   });
 }
 
-/// Sets a lane's triangle.
-void Resolver::set_plane(const HitBlock& block, unsigned lane, ExactHits& exact) const {
-  const InstanceData& of = instances_[block.instance[lane]];
-  const std::uint32_t primitive = block.primitive[lane];
-  set_corners(lane, of.positions_m, of.triangles[primitive], exact.corners);
-  const TrianglePlane plane = plane_of(*of.mesh, primitive);
-  exact.normal.set(lane, plane.normal);
-  exact.offset[lane] = plane.offset;
+void Resolver::gather_corners(const HitBlock& block, ExactHits& exact) const {
+  if (exact.has_corners) return;
+  exact.has_corners = true;
+  if (is_one_instance(block)) {
+    const InstanceData& of = instances_[block.instance[0]];
+    kernel_.gather(gather_from(of.positions_m, of.triangles, block), exact.corners);
+    return;
+  }
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const InstanceData& of = instances_[block.instance[i]];
+    set_corners(i, of.positions_m, of.triangles[block.primitive[i]], exact.corners);
+  }
+}
+
+/// Sets the triangles of lanes of any instances.
+void Resolver::set_triangles(const HitBlock& block, ExactHits& exact) const {
+  exact.has_corners = false;
+  gather_corners(block, exact);
+  kernel_.find_planes(exact.corners, exact.normal, exact.offset);
 }
 
 void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exact) const {
@@ -210,11 +240,14 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
   if (!beams.has_origins && is_one_instance(block)) {
     const InstanceView& view = views_[block.instance[0]];
     const InstanceData& of = instances_[block.instance[0]];
+    exact.has_corners = !uses_planes_;
     const bool is_certain =
         kernel_.intersect({.object_from_sensor = view.object_from_sensor.data(),
                            .sensor_in_object = view.sensor_in_object.data(),
                            .direction = &beams.direction,
-                           .positions = gather_from(of.positions_m, of.triangles, block)},
+                           .positions = gather_from(of.positions_m, of.triangles, block),
+                           .is_one_triangle = block.is_one_triangle,
+                           .planes = uses_planes_ ? planes_of(block.instance[0]) : nullptr},
                           {.corners = &exact.corners,
                            .normal = &exact.normal,
                            .origin = &exact.origin,
@@ -225,7 +258,7 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
     if (!is_certain) intersect_grazing(*this, block, exact);
     return;
   }
-  for (unsigned i = 0; i < kLanes; ++i) set_plane(block, i, exact);
+  set_triangles(block, exact);
   rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
   ExactHits source;
   for (std::uint32_t rest = lanes_not_on(block, block.instance[0]); rest != 0;) {
@@ -274,7 +307,7 @@ void Resolver::write(const Beams& beams, const HitColumnMask& hit_columns, const
         point.cwiseQuotient(scene_.sources[scene_.instances[block.instance[i]].mesh].stretch);
   });
   if (hit_columns.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
-  if (needs_weights(hit_columns)) write_surface(hit_columns, block, exact, hits);
+  if (needs_corners(hit_columns)) write_surface(hit_columns, block, exact, hits);
 }
 
 void Resolver::write_batch(const Beams& beams, const HitColumnMask& hit_columns, HitBatch& batch,

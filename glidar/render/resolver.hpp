@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/hit_block.hpp>
 #include <glidar/render/planes.hpp>
 #include <glidar/render/surface.hpp>
@@ -20,6 +21,9 @@ struct BlockKernel;
 
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
+
+/// True when some of the columns depend on the position of a hit within its triangle.
+bool needs_corners(const HitColumnMask& hit_columns);
 
 /// The sensor in the frame of an instance: object units, relative to the mesh's origin.
 struct InstanceView {
@@ -60,7 +64,8 @@ void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& o
 
 /// The exact geometry of a block's hits, in the objects' frames and units.
 struct ExactHits {
-  CornerBlock corners;       ///< of the triangle, relative to the mesh's origin
+  CornerBlock corners;  ///< of the triangle, relative to the mesh's origin, if has_corners
+  bool has_corners;
   Lanes3<double> normal;     ///< of the triangle's front
   Lanes3<double> origin;     ///< of the beam
   Lanes3<double> direction;  ///< of the beam
@@ -85,6 +90,11 @@ class Resolver {
 
   /// Sets the poses of the next cast; empty `world_from_instance`: the scene's own.
   void set_poses(const Pose& world_from_sensor, std::span<const Pose> world_from_instance);
+
+  /// Stores the planes of all triangles (32 bytes each), and uses them until the next set_poses():
+  /// gathering planes is faster than computing them. For casts whose columns need no corners, from
+  /// which planes are computed otherwise.
+  void use_stored_planes(ThreadPool& thread_pool);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const InstanceView& view(std::uint32_t instance) const { return views_[instance]; }
@@ -120,18 +130,31 @@ class Resolver {
 
   /// Prefetches a lane's triangle.
   void prefetch(const HitBlock& block, unsigned lane) const {
-    __builtin_prefetch(instances_[block.instance[lane]].triangles + block.primitive[lane]);
+    const std::uint32_t instance = block.instance[lane];
+    const std::uint32_t primitive = block.primitive[lane];
+    if (uses_planes_) {
+      __builtin_prefetch(planes_of(instance) + primitive);
+    } else {
+      __builtin_prefetch(instances_[instance].triangles + primitive);
+    }
   }
 
   /// Prefetches the triangles of a block's lanes, which are all of one instance.
   void prefetch_one_instance(const HitBlock& block) const {
-    const Triangle* const triangles = instances_[block.instance[0]].triangles;
+    const InstanceData& of = instances_[block.instance[0]];
+    const auto* const first = uses_planes_
+                                  ? reinterpret_cast<const char*>(planes_of(block.instance[0]))
+                                  : reinterpret_cast<const char*>(of.triangles);
+    const std::size_t bytes = uses_planes_ ? sizeof(TrianglePlane) : sizeof(Triangle);
     for (const std::uint32_t primitive : block.primitive) {
-      __builtin_prefetch(triangles + primitive);
+      __builtin_prefetch(first + bytes * primitive);
     }
   }
 
-  /// Prefetches the corners of a block's triangles, and their normals if the columns need them.
+  /// Gathers the corners of a block's triangles, unless intersect() did.
+  void gather_corners(const HitBlock& block, ExactHits& exact) const;
+
+  /// Prefetches corners of a block's triangles, and their normals if the columns need them.
   void prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const;
 
   /// Computes distance and incidence of a block with at least one hit. Lanes without a hit get the
@@ -150,8 +173,11 @@ class Resolver {
   void write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const;
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
+  [[nodiscard]] const TrianglePlane* planes_of(std::uint32_t instance) const {
+    return planes_[scene_.instances[instance].mesh].data();
+  }
   void gather_normals(const HitBlock& block, CornerBlock& normals) const;
-  void set_plane(const HitBlock& block, unsigned lane, ExactHits& exact) const;
+  void set_triangles(const HitBlock& block, ExactHits& exact) const;
   /// Barycentric weights of corners 1 and 2 per lane, and the normals that they interpolate.
   struct Weights {
     const Lanes<float>& w1;
@@ -180,6 +206,8 @@ class Resolver {
 
   const Scene& scene_;
   const BlockKernel& kernel_;
+  bool uses_planes_ = false;
+  std::vector<std::vector<TrianglePlane>> planes_;            ///< per mesh; empty: not stored
   std::vector<std::vector<std::uint32_t>> first_coincident_;  ///< per mesh
   std::vector<std::vector<std::uint32_t>> distinct_;          ///< per mesh, see distinct()
   std::vector<InstanceData> instances_;                       ///< per instance

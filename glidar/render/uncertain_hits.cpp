@@ -30,7 +30,8 @@ GLIDAR_SIMD std::uint32_t outside(const ExactHits& e) {
 
 }  // namespace
 
-std::uint32_t uncertain_lanes(const HitBlock& block, const ExactHits& exact) {
+std::uint32_t uncertain_lanes(const Resolver& resolver, const HitBlock& block, ExactHits& exact) {
+  resolver.gather_corners(block, exact);
   return outside(exact) & block.mask;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 namespace glidar {
 namespace {
@@ -32,13 +33,16 @@ struct Window {
   Eigen::Vector2d high;
 };
 
-/// Calls visit(vertex, world frame) for every corner of the instance's triangles.
+/// Calls visit(vertex, world frame) once for every vertex of the instance's triangles.
 template <typename Visit>
 void visit_corners(const Instance& instance, const Mesh& mesh, const Visit& visit) {
+  std::vector<std::uint8_t> is_used(mesh.positions_m.size(), 0);
   for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t corner : triangle) {
-      visit(instance.world_from_object * (instance.scale * vertex_m(mesh, corner)));
-    }
+    for (const std::uint32_t corner : triangle) is_used[corner] = 1;
+  }
+  for (std::uint32_t i = 0; i < is_used.size(); ++i) {
+    if (is_used[i] == 0) continue;
+    visit(instance.world_from_object * (instance.scale * vertex_m(mesh, i)));
   }
 }
 

@@ -23,10 +23,10 @@ SplitNode box_around(const TreeNode& node) {
 
 void BoxTree::build(std::span<BoxReference> boxes, std::size_t count, ThreadPool& thread_pool) {
   const SplitOptions options = {.leaf_size = 1, .max_depth = kMaxTreeDepth - 2};
-  const auto split = build_split_tree(boxes, options, thread_pool);
-  sphere_ = sphere_of(split[0]);
+  const SplitTree split = build_split_tree(boxes, options, thread_pool);
+  sphere_ = sphere_of(split.nodes[0]);
   std::vector<LeafRange> leaves;
-  collapse_tree(split.get(), nodes_, leaves);
+  collapse_tree(split.view(), nodes_, leaves);
   index_of_leaf_.clear();
   for (const LeafRange& leaf : leaves) index_of_leaf_.push_back(boxes[leaf.first].index);
   find_slots(count);

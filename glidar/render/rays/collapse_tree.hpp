@@ -7,6 +7,7 @@
 #include <glidar/render/rays/split_tree.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace glidar::rays {
@@ -19,7 +20,7 @@ struct LeafRange {
 
 /// Collapses a binary tree with at least a root into one of eight children per node. Nodes refer to
 /// leaves[i] as ~i.
-void collapse_tree(const SplitNode* split, std::vector<TreeNode>& nodes,
+void collapse_tree(std::span<const SplitNode> split, std::vector<TreeNode>& nodes,
                    std::vector<LeafRange>& leaves);
 
 /// A sphere around the box of a node.

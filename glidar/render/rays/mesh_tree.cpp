@@ -179,11 +179,12 @@ MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options,
       .leaf_size = std::clamp(options.cluster_size, 1U, kMaxClusterSize),
       .bins = std::clamp(options.bins, 2U, 16U),
       .max_depth = kMaxTreeDepth - 2};
-  const auto split = build_split_tree(references, split_options, thread_pool);
-  if (split == nullptr) return tree;
-  tree.sphere = sphere_of(split[0]);
+  SplitTree split = build_split_tree(references, split_options, thread_pool);
+  if (split.count == 0) return tree;
+  tree.sphere = sphere_of(split.nodes[0]);
   std::vector<LeafRange> leaves;
-  collapse_tree(split.get(), tree.nodes, leaves);
+  collapse_tree(split.view(), tree.nodes, leaves);
+  split = {};
   pack({mesh, leaves, references}, tree, thread_pool);
   return tree;
 }

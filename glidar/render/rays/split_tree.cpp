@@ -3,6 +3,9 @@
 #include <glidar/render/rays/split_tree.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/render/common/triangle_blocks.hpp>
+#include <glidar/render/rays/split_boxes.hpp>
+#include <glidar/render/rays/sweep_split.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_invoke.h>
@@ -10,76 +13,26 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <utility>
 
 namespace glidar::rays {
 namespace {
 
-using Quad = float __attribute__((vector_size(16), may_alias));
 using Indices = std::int32_t __attribute__((vector_size(16)));
 
 constexpr std::uint32_t kMaxBins = 16;
-constexpr std::uint32_t kFewReferences = 64;           ///< half the bins suffice for as many
 constexpr std::uint32_t kParallelReferences = 4096;    ///< minimum for a task
 constexpr std::uint32_t kParallelBinning = 64 * 1024;  ///< minimum for parallel binning of one node
 constexpr unsigned kBalancedDepth = 40;                ///< deeper nodes are halved
 constexpr float kMinExtent = 0x1p-100F;  ///< of middles that are split: 16 / it is finite
-
-Quad low_of(const BoxReference& r) {
-  return *reinterpret_cast<const Quad*>(r.low);
-}
-Quad high_of(const BoxReference& r) {
-  return *reinterpret_cast<const Quad*>(r.high);
-}
-Quad all(float x) {
-  return Quad{x, x, x, x};
-}
-Quad min(Quad a, Quad b) {
-  return a < b ? a : b;
-}
-Quad max(Quad a, Quad b) {
-  return a > b ? a : b;
-}
-
-/// x, y, z; the fourth component is unused.
-struct Box {
-  Quad low = all(kInfinityf);
-  Quad high = all(-kInfinityf);
-
-  void extend(Quad other_low, Quad other_high) {
-    low = min(low, other_low);
-    high = max(high, other_high);
-  }
-  void extend(const Box& other) { extend(other.low, other.high); }
-  /// Half its surface; 0 for an empty box.
-  [[nodiscard]] float area() const {
-    const Quad size = high - low;
-    return size[0] < 0.0F ? 0.0F : size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
-  }
-};
-
-/// The boxes of some references, and of their doubled middles.
-struct Extent {
-  Box boxes;
-  Box middles;
-
-  void extend(const BoxReference& r) {
-    boxes.extend(low_of(r), high_of(r));
-    const Quad middle = low_of(r) + high_of(r);
-    middles.extend(middle, middle);
-  }
-  void extend(const Extent& other) {
-    boxes.extend(other.boxes);
-    middles.extend(other.middles);
-  }
-};
 
 /// Maps doubled middles to bins, along all axes.
 struct Binning {
   Quad low;
   Quad scale;
 
-  Binning(const Box& middles, std::uint32_t bins) : low(middles.low) {
+  Binning(const SplitBox& middles, std::uint32_t bins) : low(middles.low) {
     const Quad size = middles.high - middles.low;
     const Quad wide = all(0.9999F * static_cast<float>(bins)) / size;
     scale = size > all(kMinExtent) ? wide : all(0.0F);
@@ -90,7 +43,7 @@ struct Binning {
 };
 
 struct Bins {
-  std::array<std::array<Box, kMaxBins>, 3> box;
+  std::array<std::array<SplitBox, kMaxBins>, 3> box;
   std::array<std::array<std::uint32_t, kMaxBins>, 3> count{};
 
   void add(const BoxReference& r, const Binning& binning) {
@@ -120,7 +73,7 @@ struct Split {
 };
 
 /// Blocks have eight triangles, but half a block also counts as a saving, since it allows merging.
-float test_cost(const Box& box, std::uint32_t count) {
+float test_cost(const SplitBox& box, std::uint32_t count) {
   const std::uint32_t half_blocks = (count + 3) / 4;
   return box.area() * static_cast<float>(half_blocks);
 }
@@ -128,7 +81,7 @@ float test_cost(const Box& box, std::uint32_t count) {
 void find_split_along(const Bins& bins, std::uint32_t bin_count, std::size_t axis, Split& best) {
   std::array<float, kMaxBins> cost_above{};
   std::uint32_t count = 0;
-  Box box;
+  SplitBox box;
   for (std::size_t i = bin_count - 1; i > 0; --i) {
     box.extend(bins.box[axis][i]);
     count += bins.count[axis][i];
@@ -145,16 +98,18 @@ void find_split_along(const Bins& bins, std::uint32_t bin_count, std::size_t axi
   }
 }
 
-/// Builds the nodes of the subtrees. The subtree of n references has up to 2 n - 1 nodes, which
-/// follow its root. All positions are therefore known in advance, and threads need no coordination.
+/// Builds the nodes of the subtrees. Threads append them in any order, so that only memory for as
+/// many as there are is touched.
 class Builder {
  public:
   Builder(std::span<BoxReference> references, const SplitOptions& options, SplitNode* nodes)
       : references_(references), options_(options), nodes_(nodes) {}
 
-  void build() const {
-    const Extent extent = extent_of(references_);
+  /// Returns the number of nodes.
+  std::uint32_t build() {
+    const SplitExtent extent = extent_of(references_);
     build({0, static_cast<std::uint32_t>(references_.size())}, extent, 0, 0);
+    return count_;
   }
 
  private:
@@ -164,8 +119,8 @@ class Builder {
     [[nodiscard]] std::uint32_t size() const { return end - begin; }
   };
 
-  [[nodiscard]] static Extent extent_of(std::span<const BoxReference> references) {
-    Extent extent;
+  [[nodiscard]] static SplitExtent extent_of(std::span<const BoxReference> references) {
+    SplitExtent extent;
     for (const BoxReference& r : references) extent.extend(r);
     return extent;
   }
@@ -174,7 +129,7 @@ class Builder {
     return references_.subspan(range.begin, range.size());
   }
 
-  void build(Range range, const Extent& extent, std::uint32_t index, unsigned depth) const {
+  void build(Range range, const SplitExtent& extent, std::uint32_t index, unsigned depth) {
     SplitNode& node = nodes_[index];
     for (int axis = 0; axis < 3; ++axis) {
       node.low[axis] = extent.boxes.low[axis];
@@ -183,13 +138,13 @@ class Builder {
     node.first = range.begin;
     node.count = range.size();
     if (range.size() <= options_.leaf_size) return;
-    std::array<Extent, 2> sides;
+    std::array<SplitExtent, 2> sides;
     const std::uint32_t middle = cut(range, extent, depth, sides);
-    node.first = index + 2 * (middle - range.begin);
+    const std::uint32_t first = count_.fetch_add(2, std::memory_order_relaxed);
+    node.first = first;
     node.count = 0;
-    const std::uint32_t second = node.first;
-    const auto build_first = [&] { build({range.begin, middle}, sides[0], index + 1, depth + 1); };
-    const auto build_second = [&] { build({middle, range.end}, sides[1], second, depth + 1); };
+    const auto build_first = [&] { build({range.begin, middle}, sides[0], first, depth + 1); };
+    const auto build_second = [&] { build({middle, range.end}, sides[1], first + 1, depth + 1); };
     if (range.size() >= kParallelReferences) {
       tbb::parallel_invoke(build_first, build_second);
     } else {
@@ -199,15 +154,16 @@ class Builder {
   }
 
   /// Partitions references into two sides; returns where the second one begins.
-  std::uint32_t cut(Range range, const Extent& extent, unsigned depth,
-                    std::array<Extent, 2>& sides) const {
-    const std::uint32_t bins =
-        range.size() > kFewReferences ? options_.bins : (options_.bins + 1) / 2;
-    const Binning binning(extent.middles, bins);
-    Split best;
-    if (depth < std::min(kBalancedDepth, options_.max_depth / 2)) {
-      best = find_split(range, binning, bins);
+  std::uint32_t cut(Range range, const SplitExtent& extent, unsigned depth,
+                    std::array<SplitExtent, 2>& sides) const {
+    const bool is_free = depth < std::min(kBalancedDepth, options_.max_depth / 2);
+    if (is_free && range.size() <= kMaxSweep) {
+      const std::uint32_t block_size = options_.leaf_size < kBlockSize ? 1 : kBlockSize;
+      return range.begin + sweep_split(in(range), block_size, sides);
     }
+    const Binning binning(extent.middles, options_.bins);
+    Split best;
+    if (is_free) best = find_split(range, binning, options_.bins);
     if (best.cost < kInfinityf) return partition(range, binning, best, sides);
     const std::uint32_t middle = range.begin + range.size() / 2;
     sides[0] = extent_of(in({range.begin, middle}));
@@ -239,7 +195,7 @@ class Builder {
   }
 
   std::uint32_t partition(Range range, const Binning& binning, const Split& split,
-                          std::array<Extent, 2>& sides) const {
+                          std::array<SplitExtent, 2>& sides) const {
     const auto is_first = [&](const BoxReference& r) {
       return binning.of(r)[split.axis] < split.bin;
     };
@@ -260,18 +216,19 @@ class Builder {
   std::span<BoxReference> references_;
   const SplitOptions& options_;
   SplitNode* nodes_;
+  std::atomic<std::uint32_t> count_ = 1;
 };
 
 }  // namespace
 
-std::unique_ptr<SplitNode[]> build_split_tree(std::span<BoxReference> references,
-                                              const SplitOptions& options,
-                                              ThreadPool& thread_pool) {
-  if (references.empty()) return nullptr;
-  auto nodes = std::make_unique_for_overwrite<SplitNode[]>(2 * references.size());
-  const Builder builder(references, options, nodes.get());
-  thread_pool.execute([&] { builder.build(); });
-  return nodes;
+SplitTree build_split_tree(std::span<BoxReference> references, const SplitOptions& options,
+                           ThreadPool& thread_pool) {
+  SplitTree tree;
+  if (references.empty()) return tree;
+  tree.nodes = std::make_unique_for_overwrite<SplitNode[]>(2 * references.size());
+  Builder builder(references, options, tree.nodes.get());
+  thread_pool.execute([&] { tree.count = builder.build(); });
+  return tree;
 }
 
 }  // namespace glidar::rays

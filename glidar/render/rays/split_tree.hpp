@@ -21,8 +21,8 @@ struct alignas(16) BoxReference {
 /// A node of a binary tree over boxes: a leaf holds references [first, first + count).
 struct alignas(16) SplitNode {
   float low[3];
-  std::uint32_t first;  ///< leaf: its first reference; otherwise index of the second child, the
-                        ///< first one follows the node
+  std::uint32_t first;  ///< leaf: its first reference; otherwise index of its first child, which
+                        ///< the second one follows
   float high[3];
   std::uint32_t count;  ///< 0: not a leaf
 };
@@ -41,10 +41,18 @@ struct SplitOptions {
   unsigned max_depth = 70;      ///< maximum, of leaves
 };
 
-/// Sorts the references into leaves by binned surface area heuristic (I. Wald, "On fast
-/// Construction of SAH-based Bounding Volume Hierarchies", 2007). Returns the nodes, the root
-/// first; nullptr for no references. The result does not depend on the number of threads.
-std::unique_ptr<SplitNode[]> build_split_tree(std::span<BoxReference> references,
-                                              const SplitOptions& options, ThreadPool& thread_pool);
+/// The root is the first node.
+struct SplitTree {
+  std::unique_ptr<SplitNode[]> nodes;
+  std::uint32_t count = 0;  ///< of nodes; 0 for no references
+
+  [[nodiscard]] std::span<const SplitNode> view() const { return {nodes.get(), count}; }
+};
+
+/// Sorts the references into leaves by the surface area heuristic, for many references with bins
+/// (I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007). The tree does
+/// not depend on the number of threads, but the order of its nodes in memory does.
+SplitTree build_split_tree(std::span<BoxReference> references, const SplitOptions& options,
+                           ThreadPool& thread_pool);
 
 }  // namespace glidar::rays
