@@ -87,56 +87,6 @@ bool needs_corners(const HitColumnMask& hit_columns) {
          SurfaceColours::needed(hit_columns);
 }
 
-InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
-                     const Pose& world_from_sensor) {
-  using Wide = Eigen::Matrix<long double, 3, 1>;
-  const Eigen::Matrix3d object_from_world = world_from_object.linear().transpose();
-  // Positions are subtracted first, in extended precision: a mesh whose vertices are 1000 km from
-  // its origin would lose 1e-10 m if that offset were rotated in double.
-  const Wide offset = world_from_sensor.translation().cast<long double>() -
-                      world_from_object.translation().cast<long double>();
-  const Wide origin =
-      world_from_object.linear().cast<long double>() *
-      (static_cast<long double>(instance.scale) * mesh.origin_m.cast<long double>());
-  return {.object_from_sensor = object_from_world * world_from_sensor.linear(),
-          .sensor_in_object = object_from_world * (offset - origin).cast<double>() / instance.scale,
-          .scale = instance.scale};
-}
-
-Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {
-  const Eigen::Matrix3d rotation = view.scale * view.object_from_sensor.transpose();
-  Eigen::Matrix<double, 3, 4> matrix;
-  matrix << rotation, -(rotation * view.sensor_in_object);
-  return matrix;
-}
-
-ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam) {
-  const Eigen::Matrix3d& rotation = view.object_from_sensor;
-  ObjectRay ray{view.sensor_in_object, rotate(rotation, beams.directions[beam])};
-  if (!beams.origins_m.empty()) ray.origin += rotate(rotation, beams.origins_m[beam]) / view.scale;
-  return ray;
-}
-
-GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
-                         Lanes3<double>& direction) {
-  rotate(view.object_from_sensor, beams.direction, direction);
-  const Eigen::Vector3d& sensor = view.sensor_in_object;
-  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] = sensor.x();
-  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] = sensor.y();
-  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] = sensor.z();
-  if (!beams.has_origins) return;
-  Lanes3<double> offset_m;
-  rotate(view.object_from_sensor, beams.origin_m, offset_m);
-  if (view.scale != 1.0) {  // divisions take half of the time
-    for (unsigned i = 0; i < kLanes; ++i) offset_m.x[i] /= view.scale;
-    for (unsigned i = 0; i < kLanes; ++i) offset_m.y[i] /= view.scale;
-    for (unsigned i = 0; i < kLanes; ++i) offset_m.z[i] /= view.scale;
-  }
-  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] += offset_m.x[i];
-  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] += offset_m.y[i];
-  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i];
-}
-
 Resolver::Resolver(const Scene& scene)
     : scene_(scene), kernel_(select_block_kernel()), colours_(scene) {
   for (const Mesh& mesh : scene.meshes) {

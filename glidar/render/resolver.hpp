@@ -7,6 +7,7 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/math/thread_pool.hpp>
 #include <glidar/render/hit_block.hpp>
+#include <glidar/render/instance_view.hpp>
 #include <glidar/render/planes.hpp>
 #include <glidar/render/surface.hpp>
 #include <glidar/render/surface_colours.hpp>
@@ -25,42 +26,10 @@ bool has_mask(const Scene& scene, const Instance& instance);
 /// True when some of the columns depend on the position of a hit within its triangle.
 bool needs_corners(const HitColumnMask& hit_columns);
 
-/// The sensor in the frame of an instance: object units, relative to the mesh's origin.
-struct InstanceView {
-  Eigen::Matrix3d object_from_sensor;  ///< rotation
-  Eigen::Vector3d sensor_in_object;    ///< the sensor's origin
-  double scale;                        ///< metres per object unit
-};
-
-InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
-                     const Pose& world_from_sensor);
-
-/// From a point relative to the mesh's origin into the sensor's frame, metres.
-Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view);
-
-/// A beam in an instance's view: origin and unit direction.
-struct ObjectRay {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;
-};
-
-ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam);
-
 /// Distance along the ray to the plane, object units: t = (offset - n.o) / (n.d).
 inline double distance_to(const TrianglePlane& plane, const ObjectRay& ray) {
   return (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
 }
-
-/// The beams of a block, in the sensor frame.
-struct BeamBlock {
-  Lanes3<double> direction;
-  Lanes3<double> origin_m;
-  bool has_origins = false;  ///< else they start at the sensor's origin, and origin_m is unset
-};
-
-/// The beams in an instance's frame, lane by lane as ray_in().
-void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
-             Lanes3<double>& direction);
 
 /// The exact geometry of a block's hits, in the objects' frames and units.
 struct ExactHits {
