@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 namespace glidar {
@@ -125,6 +126,47 @@ TEST(RandomScenes, CamerasSeeTheSameBitsByEveryRenderer) {
     const Scene scene = random_scene(draws, centre);
     const Beams beams = camera_beams(96, 64, std::pow(10.0, between(draws, 1.5, 3.0)));
     hits += compare(scene, beams, random_view(draws, scene, centre), {"raster", "auto"});
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(hits, 100'000U);
+}
+
+// Without corners, the raster stores planes; with them, it computes planes from corners.
+TEST(RandomScenes, ColumnsHaveTheSameBitsAloneAndWithAllOthers) {
+  std::size_t hits = 0;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Draws draws(seed);
+    const Eigen::Vector3d centre = (seed % 3 == 0 ? 1e6 : 0.0) * draws.direction();
+    const Scene scene = random_scene(draws, centre);
+    const Beams beams = camera_beams(96, 64, std::pow(10.0, between(draws, 1.5, 3.0)));
+    const Pose pose = random_view(draws, scene, centre);
+    CastRequest request{.beams = beams, .world_from_sensor = pose, .hit_columns = {.normal = true}};
+    for (const char* kind : {"raster", "rays"}) {
+      SCOPED_TRACE(kind);
+      const auto renderer = make_renderer(scene, {.kind = kind});
+      Hits alone;
+      Hits all;
+      Hits alone_again;
+      request.hit_columns = {.normal = true};
+      renderer->cast(request, alone);
+      request.hit_columns = kAllHitColumns;
+      renderer->cast(request, all);
+      request.hit_columns = {.normal = true};
+      renderer->cast(request, alone_again);
+      const auto expect_same = [](const auto& a, const auto& b) {
+        ASSERT_EQ(a.size(), b.size());
+        EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])), 0);
+      };
+      expect_same(alone.range_m, all.range_m);
+      expect_same(alone.normal, all.normal);
+      expect_same(alone.primitive, all.primitive);
+      expect_same(alone.range_m, alone_again.range_m);
+      expect_same(alone.normal, alone_again.normal);
+      hits += static_cast<std::size_t>(
+          std::count_if(all.instance.begin(), all.instance.end(),
+                        [](std::uint32_t instance) { return instance != kInvalidId; }));
+    }
     if (HasFailure()) return;
   }
   EXPECT_GT(hits, 100'000U);

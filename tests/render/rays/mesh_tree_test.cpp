@@ -165,6 +165,15 @@ TEST(MeshTree, IsTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(are_same(one.blocks, four.blocks));
 }
 
+TEST(MeshTree, BlocksAndNodesAreMostlyFull) {
+  const TestMesh mesh = make_sphere(6, 1.0, Eigen::Vector3d::Zero());
+  const MeshTree tree = tree_of(mesh);
+  const double places = static_cast<double>(kBlockSize * tree.blocks.size());
+  EXPECT_GT(static_cast<double>(mesh.triangles.size()) / places, 0.85);
+  const double children = static_cast<double>(tree.nodes.size() - 1 + tree.clusters.size());
+  EXPECT_GT(children / static_cast<double>(tree.nodes.size()), 5.0);
+}
+
 TEST(MeshTree, FourMillionRaysAtVerticesAndEdgesOfAClosedMeshDoNotLeak) {
   constexpr int kRounds = 20;  // of rays that fit into memory
   Numbers numbers(32);
