@@ -35,8 +35,8 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help; also for view, stream, replay, explain, info, campaign, sensors,
-schema and verify)";
+More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
+sensors, schema and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -161,6 +161,7 @@ int run(int argc, char** argv) {
                              {"view", add_view(program)},
                              {"stream", add_stream(program, arguments)},
                              {"replay", add_replay(program)},
+                             {"decode", add_decode(program)},
                              {"explain", add_explain(program)},
                              {"info", add_info(program)},
                              {"campaign", add_campaign(program)},

@@ -51,13 +51,13 @@ class Help(CliTest):
 
     def run_stream(self, arguments):
         port = str(free_ports())
-        arguments = [port if word == "5555" else word for word in arguments]
+        arguments = [{"5555": port, "8765": "0"}.get(word, word) for word in arguments]
         if "--subscribers" not in arguments:
             arguments += ["--subscribers", "0"]
         self.succeed(*arguments, "--frames", "1")
 
     def test_help_has_one_line_of_at_most_100_characters_per_option(self):
-        for level in (["render"], ["view"], ["stream"], ["info"], ["verify"]):
+        for level in (["render"], ["view"], ["stream"], ["replay"], ["decode"], ["info"], ["verify"]):
             text = self.succeed(*level, "--help").stdout
             self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
             self.assertLessEqual(max(len(line) for line in text.split("\n")), 100)

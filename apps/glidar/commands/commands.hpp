@@ -17,6 +17,7 @@ using Command = std::function<int()>;
 /// `arguments` are those of the whole command line, for sidecars and recordings.
 Command add_render(CLI::App& program, const std::vector<std::string>& arguments);
 Command add_campaign(CLI::App& program);
+Command add_decode(CLI::App& program);
 Command add_explain(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_stream(CLI::App& program, const std::vector<std::string>& arguments);

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/option_group.hpp>
+#include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/options/output_options.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/outputs.hpp>
+#include <apps/glidar/run/packet_frames.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag_clouds.hpp>
+#include <glidar/io/bags/bag_topics.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/packets/packet_writer.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <type_traits>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kDecodeExamples =
+    R"(Writes the clouds of a packet capture (.pcap, .pcapng) or of a bag (.mcap, .bag, .rosbag2 or a
+folder of rosbag2) with messages PointCloud2, CustomMsg or VelodyneScan: a file for each frame.
+Examples:
+  glidar decode scan.pcap --sensor VLP-16 -o cloud.pcd     # cloud_000000.pcd ...
+  glidar decode ouster.pcap -o cloud.npz                   # with ouster.json, the sensor's metadata
+  glidar decode run.mcap --topic /lidar/points -o cloud.ply)";
+
+struct DecodeFlags {
+  std::string input;
+  std::string sensor;    ///< that sent the packets
+  std::string metadata;  ///< of an Ouster sensor; empty: FILE.json
+  std::string topic;     ///< of a bag; empty: the first that fits
+  std::optional<std::uint64_t> frames;
+  OutputFlags output;
+  bool quiet = false;
+};
+
+/// Columns that packets contain.
+const std::vector<std::string> kDecodedColumns = {"xyz", "intensity", "range", "ring", "time"};
+
+/// The metadata of an Ouster sensor for this capture; empty: none.
+std::filesystem::path metadata_of(const DecodeFlags& flags) {
+  if (!flags.metadata.empty()) return flags.metadata;
+  if (!flags.sensor.empty()) return {};
+  const std::filesystem::path beside =
+      std::filesystem::path(flags.input).replace_extension(".json");
+  return std::filesystem::exists(beside) ? beside : std::filesystem::path();
+}
+
+/// The sensor that sent the packets, and the decoder for them.
+struct Sender {
+  Sensor sensor;
+  std::unique_ptr<PacketDecoder> decoder;
+};
+
+Sender sender_of(const DecodeFlags& flags) {
+  const std::filesystem::path metadata = metadata_of(flags);
+  if (!metadata.empty()) {
+    const OusterSource source = load_ouster_source(metadata);
+    return {source.sensor, make_ouster_decoder(source)};
+  }
+  if (flags.sensor.empty()) {
+    throw Error({flags.input, "packets, which do not state the sensor that sent them",
+                 "--sensor with a preset of Velodyne, Ouster or Hesai, or --metadata of an Ouster",
+                 "add --sensor VLP-16, for example"});
+  }
+  Sender sender{load_sensor_file(find_sensor_file(flags.sensor)), nullptr};
+  PacketOptions options;
+  options.ouster.profile = flags.output.ouster_profile;
+  with_option_name("--sensor",
+                   [&] { sender.decoder = make_packet_decoder(sender.sensor, options); });
+  return sender;
+}
+
+/// Whether the file has clouds, not packets.
+bool has_clouds(const DecodeFlags& flags) {
+  if (!bags::is_bag_path(flags.input)) return false;
+  const auto bag = bags::open_bag(flags.input);
+  for (const bags::StoredTopic& topic : bag->topics()) {
+    if (!flags.topic.empty() && topic.name != flags.topic) continue;
+    const ros::MessageType* type = bags::type_of(topic);
+    if (type == &ros::message_type<ros::PointCloud2>() ||
+        type == &ros::message_type<ros::CustomMsg>())
+      return true;
+  }
+  const auto is_scan = [&](const bags::StoredTopic& topic) {
+    return bags::type_of(topic) == &ros::message_type<ros::VelodyneScan>();
+  };
+  return std::none_of(bag->topics().begin(), bag->topics().end(), is_scan);
+}
+
+/// Counts the frames and prints the summary.
+class Written {
+ public:
+  explicit Written(const DecodeFlags& flags) : flags_(flags) {}
+  [[nodiscard]] bool is_enough() const { return flags_.frames && count_ >= *flags_.frames; }
+  [[nodiscard]] std::uint32_t next() const { return static_cast<std::uint32_t>(count_); }
+  void add() { ++count_; }
+  void finish() const {
+    if (count_ == 0) {
+      throw Error(
+          {flags_.input, "it has no frame", "a file with packets of the sensor, or clouds"});
+    }
+    if (flags_.quiet) return;
+    fmt::print("{} frame{} of {}\nwrote", count_, count_ == 1 ? "" : "s", flags_.input);
+    for (const std::string& path : numbered(flags_.output, 0).paths) fmt::print(" {}", path);
+    fmt::print("{}\n", count_ == 1 ? "" : " ...");
+  }
+
+ private:
+  const DecodeFlags& flags_;
+  std::uint64_t count_ = 0;
+};
+
+void decode_packets(const DecodeFlags& flags, Console& console, Written& written) {
+  Sender sender = sender_of(flags);
+  PacketFrames frames(open_packets(flags.input, flags.topic), std::move(sender.decoder));
+  const Scene nothing;
+  DecodedFrame decoded;
+  while (!written.is_enough() && frames.next(decoded)) {
+    const SidecarContext context{
+        .scene = nothing, .sensor = sender.sensor, .beams = decoded.beams, .renderer = ""};
+    const std::vector<Output> outputs = plan_outputs(numbered(flags.output, written.next()),
+                                                     flags.input, context, console.report());
+    write_outputs(outputs, decoded.frame, decoded.beams, nothing);
+    written.add();
+  }
+  if (frames.malformed() == 0) return;
+  if (written.next() == 0)
+    throw Error({flags.input, "no packet is valid: " + frames.first_error()});
+  console.warn(fmt::format("{} packets are not valid; the first one: {}", frames.malformed(),
+                           frames.first_error()));
+}
+
+/// Options that need what only a measurement has.
+void check_cloud_options(const DecodeFlags& flags) {
+  const OutputFlags& output = flags.output;
+  if (!output.columns.empty() || !output.sink.layout.empty() || output.frame != "sensor" ||
+      output.deskew) {
+    throw Error({"--columns, --layout, --frame and --deskew", "given for clouds of a bag",
+                 "the columns and axes of the messages", "leave them out"});
+  }
+  for (const std::string& path : output.paths) {
+    if (format_of(output, path).takes_more) continue;
+    throw Error({"--output, " + path, "a format without the columns of a message",
+                 suffixes_with_columns(), "choose one of these"});
+  }
+}
+
+/// Formats expect intensities as float32.
+void convert_intensity(PointCloud& cloud) {
+  for (Column& column : cloud.columns) {
+    if (column.name != "intensity") continue;
+    column.values = std::visit(
+        [](const auto& values) { return std::vector<float>(values.begin(), values.end()); },
+        column.values);
+  }
+}
+
+void decode_clouds(const DecodeFlags& flags, Console& console, Written& written) {
+  check_cloud_options(flags);
+  bags::BagClouds clouds(flags.input, flags.topic);
+  const Scene nothing;
+  const Sensor unknown;
+  const Beams beams;
+  const SidecarContext context{.scene = nothing, .sensor = unknown, .beams = beams, .renderer = ""};
+  bags::BagCloud found;
+  Frame frame;
+  while (!written.is_enough() && clouds.next(found)) {
+    frame.stamp_ns = found.stamp_ns;
+    convert_intensity(found.cloud);
+    for (const std::string& path : numbered(flags.output, written.next()).paths) {
+      make_file_sink(path, flags.output.sink, context, console.report())->write(found.cloud, frame);
+    }
+    written.add();
+  }
+}
+
+int run_decode(DecodeFlags flags) {
+  Console console(flags.quiet);
+  flags.output.sink.sidecar = false;  // there is no measurement to describe
+  const bool are_clouds = has_clouds(flags);
+  if (!are_clouds && flags.output.columns.empty()) flags.output.columns = kDecodedColumns;
+  if (flags.output.paths.empty()) {
+    throw Error({"--output", "there is no -o, so nothing would be written",
+                 "files of clouds: " + suffixes_with_columns(), "add -o cloud.pcd, for example"});
+  }
+  Written written(flags);
+  if (are_clouds) {
+    decode_clouds(flags, console, written);
+  } else {
+    decode_packets(flags, console, written);
+  }
+  written.finish();
+  return kDone;
+}
+
+}  // namespace
+
+Command add_decode(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("decode", "Write the clouds of packet captures and bags");
+  const auto flags = std::make_shared<DecodeFlags>();
+  command.footer(kDecodeExamples);
+  command.add_option("FILE", flags->input, "Packet capture or bag")->required()->type_name("");
+  const OptionGroup input(command, "Input");
+  input.add("--sensor", "NAME|FILE", "Preset or file of the sensor that sent the packets",
+            flags->sensor);
+  input.add("--metadata", "FILE", "Metadata of an Ouster sensor [FILE.json]", flags->metadata);
+  input.add("--topic", "NAME", "Topic of a bag [the first one with clouds or packets]",
+            flags->topic);
+  input.add("--frames", "N", "End after N frames [all]", flags->frames,
+            whole<std::uint64_t>(1, std::numeric_limits<std::uint32_t>::max()));
+  forbid_together(command, {"--sensor"}, {"--metadata"});
+  add_output_options(command, flags->output);
+  hide_standard_output(command);
+  command.remove_option(command.get_option("--no-sidecar"));
+  OptionGroup(command, "Run").add_flag("--quiet", "No summary, only warnings", flags->quiet);
+  return [flags] { return run_decode(*flags); };
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""glidar decode: clouds of packet captures and bags. The built program is found in PATH."""
+
+import os
+import unittest
+
+import numpy as np
+from cli_support import CliTest
+
+ROOM = ("builtin:box:size=20,16,6", "--eye", "1,2,0", "--sensor-rate", "0,0.3,0", "--duration", "0.2", "--ground-truth")
+
+
+class Decode(CliTest):
+    def arrays(self, name):
+        with np.load(os.path.join(self.folder, name)) as stored:
+            return {key: stored[key] for key in stored.files}
+
+    def render(self, sensor, *outputs, columns="xyz,intensity,range,ring,time"):
+        words = [word for output in outputs for word in ("-o", output)]
+        self.succeed("render", *ROOM, "--sensor", sensor, "--columns", columns, *words)
+
+    def compare(self, sensor, unit_m, *options):
+        """Decoded frames against those that were measured, beam by beam; the last packet of a frame may be decoded
+        with the next."""
+        self.render(sensor, "true.npz", "scan.pcap")
+        done = self.succeed("decode", "scan.pcap", *options, "-o", "found.npz")
+        self.assertIn("2 frames", done.stdout)
+        self.assertIn("found_000000.npz", done.stdout)
+        beams = 0
+        for k in range(2):
+            true, found = self.arrays(f"true_00000{k}.npz"), self.arrays(f"found_00000{k}.npz")
+            self.assertEqual(found["range"].shape, true["range"].shape)
+            valid = np.isfinite(true["range"]) & np.isfinite(found["range"])
+            beams += valid.sum()
+            self.assertGreater(valid.mean(), 0.95)
+            self.assertLessEqual(np.abs(true["range"] - found["range"])[valid].max(), 0.5001 * unit_m)
+            self.assertTrue((true["ring"] == found["ring"]).all())
+        self.assertGreater(beams, 10000)
+
+    def test_velodyne_packets_are_the_measured_clouds_within_their_unit(self):
+        self.compare("VLP-16", 0.002, "--sensor", "VLP-16")
+
+    def test_ouster_packets_need_only_their_metadata(self):
+        self.compare("OS1-32", 0.001)
+
+    def test_hesai_packets_are_the_measured_clouds_within_their_unit(self):
+        self.compare("XT32", 0.004, "--sensor", "XT32")
+
+    def test_clouds_of_bags_have_the_points_of_the_messages(self):
+        self.render("VLP-16", "true.npz", "run.mcap", "run.bag", "run.rosbag2")
+        for bag in ("run.mcap", "run.bag", "run.rosbag2"):
+            self.succeed("decode", bag, "--topic", "/lidar/points", "-o", "found.npz", "-o", "found.pcd")
+            for k in range(2):
+                true, found = self.arrays(f"true_00000{k}.npz"), self.arrays(f"found_00000{k}.npz")
+                ranges = true["range"][np.isfinite(true["range"])]
+                self.assertTrue(np.array_equal(np.sort(found["range"].ravel()), np.sort(ranges.ravel())))
+                self.assertTrue((np.diff(found["time"].ravel().astype(np.int64)) >= 0).all())
+            os.rename(os.path.join(self.folder, "found_000000.npz"), os.path.join(self.folder, "kept.npz"))
+
+    def test_ends_after_the_given_frames(self):
+        self.render("VLP-16", "scan.pcap")
+        self.succeed("decode", "scan.pcap", "--sensor", "VLP-16", "--frames", "1", "-o", "one.csv")
+        self.assertEqual([name for name in self.files() if name.startswith("one")], ["one_000000.csv"])
+
+    def test_errors_state_what_is_missing(self):
+        self.render("VLP-16", "scan.pcap", "run.mcap")
+        self.assertIn("--sensor VLP-16, for example", self.refused("decode", "scan.pcap", "-o", "a.pcd"))
+        self.assertIn("there is no -o", self.refused("decode", "scan.pcap", "--sensor", "VLP-16"))
+        self.assertIn("no packet is valid", self.refused("decode", "scan.pcap", "--sensor", "VLP-32C", "-o", "a.pcd"))
+        self.assertIn("manufacturer", self.refused("decode", "scan.pcap", "--sensor", "D435", "-o", "a.pcd"))
+        self.assertIn("/lidar/points", self.refused("decode", "run.mcap", "--topic", "/other", "-o", "a.pcd"))
+        self.assertIn("given for clouds of a bag", self.refused("decode", "run.mcap", "--columns", "xyz", "-o", "a.pcd"))
+        self.assertIn("a format without", self.refused("decode", "run.mcap", "-o", "a.png"))
+        self.assertIn("missing.pcap", self.refused("decode", "missing.pcap", "--sensor", "VLP-16", "-o", "a.pcd"))
+
+
+if __name__ == "__main__":
+    unittest.main()
