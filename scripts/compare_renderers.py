@@ -69,7 +69,7 @@ OPTICAL_FROM_SCANNER = np.array([[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0,
 def pose_of(sensor, eye, at):
     """The sensor looks at a point."""
     pose = np.asarray(glidar.look_at(eye, at))
-    return pose if sensor.boresight[2] == 1 else pose @ OPTICAL_FROM_SCANNER
+    return pose if sensor.boresight == "z" else pose @ OPTICAL_FROM_SCANNER
 
 
 def truth_of(scene, sensor, pose, renderer):
