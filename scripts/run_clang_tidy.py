@@ -6,9 +6,9 @@
 usage: run_clang_tidy.py BUILD_FOLDER JOBS [COMMIT]; exit status 1 when it finds something.
 With a COMMIT, only sources are checked that differ from it or include, also indirectly, a file that does.
 All are checked if the repository lacks the commit.
-Most of the time goes into the headers of others, so several sources that are compiled alike are checked as one. Sources
-that do not go together, because they define the same name, are in other groups; a group with a finding is split until
-the source is known. A group that passed is not checked again until one of its files, a header of
+Most of the time goes into the headers of others, so several sources of a folder that are compiled alike are
+checked as one, which takes a quarter of the time. Sources that do not go together, as they define the same
+name, are checked one by one. A group that passed is not checked again until one of its files, a header of
 the project or the configuration changes: BUILD_FOLDER/tidy keeps one empty file per hash of them.
 """
 
@@ -26,7 +26,7 @@ from source_groups import groups
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("glidar", "apps", "bench", "examples", "python", "tests")
-GROUP_SIZE = 16
+GROUP_SIZE = 8
 
 
 def own_sources(build):
@@ -46,9 +46,8 @@ def flags_of(file, command):
 
 
 def groups_of(sources, size=GROUP_SIZE):
-    """Sources with the same settings and flags, at most `size` together, none of which define the same names."""
-    return groups(sources, size, lambda source: (source[0].relative_to(ROOT).parts[0], source[1],
-                                                 flags_of(source[0], source[2])))
+    """Sources of one folder with the same flags, at most `size` together, none of which define the same names."""
+    return groups(sources, size, lambda source: (source[0].parent, source[1], flags_of(source[0], source[2])))
 
 
 def hash_of_shared():
@@ -70,28 +69,23 @@ def run(database, file, *options):
     return done.returncode, done.stdout + (done.stderr if "error:" not in done.stdout else "")
 
 
-def findings(build, members, key):
-    """The findings of clang-tidy for a group of files: of its halves, if it does not pass as a whole. Some may not compile
-    together, and findings are clearest for a single file."""
-    if len(members) == 1:
-        status, text = run(build, members[0][0])
-        return text if status != 0 else ""
-    if check_together(build, members, key):
-        return ""
-    half = len(members) // 2
-    return findings(build, members[:half], key) + findings(build, members[half:], key)
+def check_each(build, members):
+    """The findings of clang-tidy for the files, one at a time."""
+    results = [run(build, file) for file, _, _ in members]
+    return "".join(text for status, text in results if status != 0)
 
 
 def check(build, members, key):
     """The findings of clang-tidy for a group of files; writes a stamp when there are none."""
-    text = findings(build, members, key)
+    text = check_each(build, members) if len(members) == 1 or not check_together(build, members, key) else ""
     if not text:
         (build / "tidy" / key).touch()
     return text
 
 
 def check_together(build, members, key):
-    """Whether a source that includes all files passes."""
+    """Whether a source that includes all files passes. If not, they are to be checked one by one: some may not go
+    together, and findings are clearest for a single file."""
     first, directory, command = members[0]
     # below a folder with the settings of the tests, if they are tests
     folder = build / "tidy" / first.relative_to(ROOT).parts[0] / key
