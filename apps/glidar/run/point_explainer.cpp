@@ -18,6 +18,9 @@ namespace {
 /// Frames of each sensor that viewers may still show.
 constexpr std::size_t kKnownFrames = 100;
 
+/// Ends an explanation.
+struct Cancelled {};
+
 }  // namespace
 
 PointExplainer::PointExplainer(const RenderFlags& flags, const PreparedScene& prepared,
@@ -69,6 +72,8 @@ void PointExplainer::run() {
     std::string text;
     try {
       text = explanation(question.point);
+    } catch (const Cancelled&) {
+      return;
     } catch (const std::exception& error) {
       text = error.what();
     }
@@ -103,7 +108,10 @@ std::string PointExplainer::explanation(const PublishedPoint& point) {
   const auto pick = [&](const Frame& repeated) {
     return entry_of(point, known.sensor_index, repeated, *simulator.beams(known.number));
   };
-  const PointTrace trace = glidar::explain(simulator, *known.motion, pick, frame);
+  const auto check_end = [this](double /*fraction_done*/) {
+    if (is_ending_) throw Cancelled{};
+  };
+  const PointTrace trace = glidar::explain(simulator, *known.motion, pick, frame, check_end);
   return format_trace(trace, simulator, frame);
 }
 

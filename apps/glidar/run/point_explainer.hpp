@@ -6,6 +6,7 @@
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/io/ros/rig_publisher.hpp>
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -35,7 +36,7 @@ class PointExplainer {
   /// All must outlive it.
   PointExplainer(const RenderFlags& flags, const PreparedScene& prepared,
                  const ros::RigPublisher& publisher);
-  /// Finishes the explanation that is being computed; the other points get no reply.
+  /// Ends the explanation that is being computed; points without a reply get none.
   ~PointExplainer();
   PointExplainer(const PointExplainer&) = delete;
   PointExplainer& operator=(const PointExplainer&) = delete;
@@ -78,7 +79,7 @@ class PointExplainer {
   std::condition_variable changed_;
   std::deque<KnownFrame> frames_;  ///< the newest last
   std::deque<Question> questions_;
-  bool is_ending_ = false;
+  std::atomic<bool> is_ending_ = false;
   std::thread thread_;
 };
 

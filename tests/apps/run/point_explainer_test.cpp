@@ -90,5 +90,24 @@ TEST(PointExplainer, ReportsPointsAndFramesThatDoNotExist) {
   EXPECT_THAT(explained(explainer, {"/other", stamp_ns, 0}), HasSubstr("is not known"));
 }
 
+TEST(PointExplainer, EndsWithPointsThatWait) {
+  LiveScene scene;
+  ros::MemorySink sink;
+  const auto publisher =
+      make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion, true);
+  const MeasuredFrame measured = scene.measure(0);
+  const std::int64_t stamp_ns = ros::first_firing_ns(measured.frame, *measured.beams);
+  constexpr int kPoints = 200;
+  int replies = 0;
+  {
+    PointExplainer explainer(scene.flags, scene.prepared, *publisher);
+    explainer.add_frame(measured);
+    for (int i = 0; i < kPoints; ++i) {
+      explainer.explain({"/lidar/points", stamp_ns, 0}, [&](const std::string&) { ++replies; });
+    }
+  }
+  EXPECT_LT(replies, kPoints);
+}
+
 }  // namespace
 }  // namespace glidar::app
