@@ -71,6 +71,17 @@ class Imus(CliTest):
         smooth = self.succeed(*options, "--trajectory-interpolation", "spline")
         self.assertNotIn("velocities jump", smooth.stderr)
 
+    def test_streams_and_replays_write_the_same_samples(self):
+        self.write("scene.yaml", SCENE)
+        self.succeed("render", "scene.yaml", "--duration", "0.2", "-o", "a.imu.csv")
+        self.succeed("stream", "scene.yaml", "--duration", "0.2", "--rate", "max", "-o", "b.imu.csv", "--record", "r.jsonl")
+        self.succeed("replay", "r.jsonl", "-o", "c.imu.csv")
+        for imu in ("front", "ideal"):
+            samples = self.bytes_of(f"a_{imu}.imu.csv")
+            self.assertEqual(self.bytes_of(f"b_{imu}.imu.csv"), samples)
+            self.assertEqual(self.bytes_of(f"c_{imu}.imu.csv"), samples)
+        self.assertIn("there is no IMU", self.refused("stream", *BOX[1:], "--frames", "1", "-o", "a.imu.csv"))
+
     def test_errors_state_what_is_missing(self):
         self.assertIn("--duration", self.refused(*BOX, "--imu", "BMI088", "-o", "a.imu.csv"))
         self.assertIn("there is no IMU", self.refused(*BOX, "--duration", "0.1", "-o", "a.imu.csv"))

@@ -226,7 +226,9 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
   try {
     measure_all(job, console);
     finish_recordings(job);
-    write_imu_outputs(flags, prepared, console, job.written);
+    if (!flags.output.imu_paths.empty()) {
+      write_imu_outputs(flags, prepared, imu_end_ns(flags, prepared), console, job.written);
+    }
   } catch (const Error& error) {
     if (job.written.empty()) throw;
     throw after_writing(error, job.written);

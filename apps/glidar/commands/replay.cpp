@@ -71,6 +71,7 @@ void make_absolute(StreamFlags& flags) {
   absolute(flags.stats);
   absolute(flags.render.output.legacy_name);
   for (std::string& path : flags.render.output.recording_paths) absolute(path);
+  for (std::string& path : flags.render.output.imu_paths) absolute(path);
   for (std::string& path : flags.render.output.paths) {
     if (path != kStandardOutput) absolute(path);
   }

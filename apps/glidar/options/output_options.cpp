@@ -139,7 +139,7 @@ std::string output_names_text() {
   for (const FileFormat& format : file_formats()) {
     text += fmt::format("  {:<17} {}\n", format.suffix, format.description);
   }
-  text += fmt::format("  {:<17} {}\n", ".imu.csv", "samples of IMUs, text (render --duration)");
+  text += fmt::format("  {:<17} {}\n", ".imu.csv", "samples of IMUs, text");
   text += fmt::format("  {:<17} {}\n", ".imu.npz", "samples of IMUs, NumPy archive");
   text += fmt::format("  {:<17} {}\n", ".mcap", "ROS bag of all frames and sensors");
   text +=

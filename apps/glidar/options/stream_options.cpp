@@ -248,13 +248,8 @@ void check(const CLI::App& command, const StreamFlags& flags) {
     throw Error(
         {"--lockstep and --rate max", "requests give the times of frames", "", "leave --rate out"});
   }
-  if (!flags.render.output.imu_paths.empty()) {
-    throw Error({"--output, " + flags.render.output.imu_paths.front(),
-                 "samples of IMUs, which glidar stream does not write", "files of clouds",
-                 "use glidar render with --duration"});
-  }
   const bool has_clouds = has_outputs(flags.render.output) ||
-                          !flags.render.output.recording_paths.empty() || flags.foxglove ||
+                          has_run_outputs(flags.render.output) || flags.foxglove ||
                           !flags.udp.empty() || flags.ros2.publishes;
   if (!has_clouds) {
     if (!flags.port && flags.record.empty()) {

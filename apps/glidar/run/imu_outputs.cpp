@@ -22,14 +22,17 @@ ImuRun run_of(const RenderFlags& flags, const PreparedScene& prepared, std::size
           .gravity_m_s2 = prepared.gravity_m_s2};
 }
 
-/// The end of the last frame, or of the duration.
-std::int64_t end_ns(const RenderFlags& flags, const PreparedScene& prepared) {
+}  // namespace
+
+std::int64_t imu_end_ns(const RenderFlags& flags, const PreparedScene& prepared) {
   std::int64_t end = std::llround(*flags.duration_s * 1e9);
   for (const ActiveSensor& active : prepared.sensors) {
     end = std::max(end, frame_interval(active.sensor, active.frames - 1).end_ns);
   }
   return end;
 }
+
+namespace {
 
 std::string labelled(const std::string& path, const std::string& label) {
   std::string result = path;
@@ -72,20 +75,23 @@ RigImuSampler imu_sampler(const RenderFlags& flags, const PreparedScene& prepare
   };
 }
 
-void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, Console& console,
-                       std::vector<std::filesystem::path>& written) {
-  if (flags.output.imu_paths.empty()) return;
-  if (prepared.imus.empty()) {
+void check_imus(const RenderFlags& flags, const PreparedScene& prepared) {
+  if (!flags.output.imu_paths.empty() && prepared.imus.empty()) {
     throw Error({"--output, " + flags.output.imu_paths.front(), "there is no IMU",
                  "a scene file with 'imus', or --imu", "add --imu BMI088, for example"});
   }
-  const std::int64_t until_ns = end_ns(flags, prepared) + 1;
+}
+
+void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, std::int64_t end_ns,
+                       Console& console, std::vector<std::filesystem::path>& written) {
+  if (flags.output.imu_paths.empty()) return;
+  check_imus(flags, prepared);
   warn_linear_interpolation(prepared.motion.world_from_rig, prepared.imus.front().name,
                             console.report());
   const RigImuSampler sample = imu_sampler(flags, prepared);
   for (std::size_t i = 0; i < prepared.imus.size(); ++i) {
     const RigImu& on_rig = prepared.imus[i];
-    const ImuSamples samples = sample(i, 0, until_ns);
+    const ImuSamples samples = sample(i, 0, end_ns + 1);
     const ImuDescription description{.name = on_rig.name,
                                      .imu = on_rig.imu,
                                      .run = run_of(flags, prepared, i),

@@ -22,9 +22,15 @@ using RigImuSampler =
     std::function<ImuSamples(std::size_t imu, std::int64_t from_ns, std::int64_t until_ns)>;
 RigImuSampler imu_sampler(const RenderFlags& flags, const PreparedScene& prepared);
 
-/// Writes the samples of every IMU from time 0 to the end of the last frame of all sensors, both
-/// included: NAME_imu.imu.csv for NAME.imu.csv if there are several. Adds the files to `written`.
-void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, Console& console,
-                       std::vector<std::filesystem::path>& written);
+/// Throws Error if IMU samples are requested but there is no IMU.
+void check_imus(const RenderFlags& flags, const PreparedScene& prepared);
+
+/// The end of the last frame of all sensors, or of the duration.
+std::int64_t imu_end_ns(const RenderFlags& flags, const PreparedScene& prepared);
+
+/// Writes the samples of every IMU from time 0 to a time, both included: NAME_imu.imu.csv for
+/// NAME.imu.csv if there are several. Adds the files to `written`. Throws Error.
+void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, std::int64_t end_ns,
+                       Console& console, std::vector<std::filesystem::path>& written);
 
 }  // namespace glidar::app

@@ -139,7 +139,7 @@ void StreamRun::open_sinks(std::unique_ptr<NumberedFiles> files,
     files->begin(reserved);
     sinks_.push_back(std::move(files));
   }
-  for (auto& sink : make_stream_sinks(flags_, prepared_, reserved, errors_)) {
+  for (auto& sink : make_stream_sinks(flags_, prepared_, reserved, errors_, console_)) {
     sinks_.push_back(std::move(sink));
   }
   if (flags_.ros2.publishes)

@@ -3,6 +3,7 @@
 #include <apps/glidar/run/stream_sinks.hpp>
 
 #include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/run/imu_sink.hpp>
 #include <apps/glidar/run/packet_sinks.hpp>
 #include <apps/glidar/run/recording_sinks.hpp>
 
@@ -21,10 +22,14 @@ double time_speed(const StreamFlags& flags, const Sensor& first_sensor) {
 std::vector<std::unique_ptr<FrameSink>> make_stream_sinks(const StreamFlags& flags,
                                                           const PreparedScene& prepared,
                                                           const std::vector<std::string>& read,
-                                                          link::ErrorLog& errors) {
+                                                          link::ErrorLog& errors,
+                                                          Console& console) {
   const PoseOrigin origin = pose_origin(flags);
   std::vector<std::unique_ptr<FrameSink>> sinks =
       make_recording_sinks(flags.render, prepared, read, origin);
+  if (!flags.render.output.imu_paths.empty()) {
+    sinks.push_back(make_imu_sink(flags.render, prepared, origin, console));
+  }
   const double speed = time_speed(flags, prepared.sensors.front().sensor);
   with_option_name("--udp", [&] {
     for (const PacketTarget& target : flags.udp) {

@@ -20,13 +20,13 @@ PoseOrigin pose_origin(const StreamFlags& flags);
 /// time.
 double time_speed(const StreamFlags& flags, const Sensor& first_sensor);
 
-/// The bags, packet captures and receivers of packets of the flags, which must
-/// outlive them like the scene and the log. No file may replace one of those that were
+/// The bags, packet captures, samples of IMUs and receivers of packets of the flags, which must
+/// outlive them like the scene, the log and the console. No file may replace one of those that were
 /// read. Throws Error.
 std::vector<std::unique_ptr<FrameSink>> make_stream_sinks(const StreamFlags& flags,
                                                           const PreparedScene& prepared,
                                                           const std::vector<std::string>& read,
-                                                          link::ErrorLog& errors);
+                                                          link::ErrorLog& errors, Console& console);
 
 /// The columns of ground truth that the sinks need of all sensors.
 HitColumnMask needed_hit_columns(const std::vector<std::unique_ptr<FrameSink>>& sinks,
