@@ -201,7 +201,12 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
 /// oldest.
 void advance(const HitWriter& w, PixelBatchQueue& queue) {
   decode_triangles(w, queue.filling());
-  w.resolver.prefetch_corners(queue.previous().block, w.request.hit_columns);
+  const PixelBatch& previous = queue.previous();
+  HitColumnMask hit_columns = w.request.hit_columns;
+  // To find its uncertain lanes.
+  hit_columns.barycentrics =
+      hit_columns.barycentrics || (previous.block.mask & ~previous.certain) != 0;
+  w.resolver.prefetch_corners(previous.block, hit_columns);
   ++queue.started;
   finish(w, queue.filling());
 }

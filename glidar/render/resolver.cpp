@@ -75,6 +75,18 @@ bool needs_normals(const HitColumnMask& hit_columns) {
   return hit_columns.shading_normal || hit_columns.shading;
 }
 
+/// True when some of the columns depend on the position of a hit within its triangle.
+bool needs_corners(const HitColumnMask& hit_columns) {
+  return hit_columns.barycentrics || needs_normals(hit_columns) ||
+         SurfaceColours::needed(hit_columns);
+}
+
+bool may_store_planes(const Scene& scene) {
+  std::size_t triangles = 0;
+  for (const Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
+  return triangles <= kMaxStoredPlanes;
+}
+
 }  // namespace
 
 bool has_mask(const Scene& scene, const Instance& instance) {
@@ -82,13 +94,11 @@ bool has_mask(const Scene& scene, const Instance& instance) {
                      [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
 }
 
-bool needs_corners(const HitColumnMask& hit_columns) {
-  return hit_columns.barycentrics || needs_normals(hit_columns) ||
-         SurfaceColours::needed(hit_columns);
-}
-
 Resolver::Resolver(const Scene& scene)
-    : scene_(scene), kernel_(select_block_kernel()), colours_(scene) {
+    : scene_(scene),
+      kernel_(select_block_kernel()),
+      may_store_planes_(may_store_planes(scene)),
+      colours_(scene) {
   for (const Mesh& mesh : scene.meshes) {
     first_coincident_.push_back(find_first_coincident(mesh));
     distinct_.push_back(distinct_triangles(mesh, first_coincident_.back()));
@@ -129,9 +139,10 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
   }
 }
 
-void Resolver::use_stored_planes(ThreadPool& thread_pool) {
+void Resolver::use_stored_planes(const HitColumnMask& hit_columns, ThreadPool& thread_pool) {
   constexpr std::size_t kTrianglesPerTask = 4096;
-  uses_planes_ = true;
+  uses_planes_ = may_store_planes_ && !needs_corners(hit_columns);
+  if (!uses_planes_) return;
   if (!planes_.empty()) return;
   planes_.resize(scene_.meshes.size());
   for (std::size_t i = 0; i < planes_.size(); ++i) {
@@ -149,7 +160,7 @@ void Resolver::use_stored_planes(ThreadPool& thread_pool) {
 
 /// Positions of the first corners only: most others are the first ones of neighbours, or near them.
 void Resolver::prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const {
-  if (uses_planes_) return;
+  if (uses_planes_ && !needs_corners(hit_columns)) return;
   const bool with_normals = needs_normals(hit_columns);
   const std::uint32_t lowest = block.mask & (~block.mask + 1U);
   for_lanes(block.is_one_triangle ? lowest : block.mask, [&](unsigned i) {
@@ -177,6 +188,14 @@ void Resolver::gather_corners(const HitBlock& block, ExactHits& exact) const {
 /// Sets the triangles of lanes of any instances.
 void Resolver::set_triangles(const HitBlock& block, ExactHits& exact) const {
   exact.has_corners = false;
+  if (uses_planes_) {
+    for (unsigned i = 0; i < kLanes; ++i) {
+      const TrianglePlane& plane = planes_of(block.instance[i])[block.primitive[i]];
+      exact.normal.set(i, plane.normal);
+      exact.offset[i] = plane.offset;
+    }
+    return;
+  }
   gather_corners(block, exact);
   kernel_.find_planes(exact.corners, exact.normal, exact.offset);
 }

@@ -23,9 +23,6 @@ struct BlockKernel;
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
 
-/// True when some of the columns depend on the position of a hit within its triangle.
-bool needs_corners(const HitColumnMask& hit_columns);
-
 /// Distance along the ray to the plane, object units: t = (offset - n.o) / (n.d).
 inline double distance_to(const TrianglePlane& plane, const ObjectRay& ray) {
   return (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
@@ -50,6 +47,9 @@ struct HitBatch {
   ExactHits exact;
 };
 
+/// 4 MiB of planes.
+inline constexpr std::size_t kMaxStoredPlanes = 128 * 1024;
+
 /// Computes hit columns from (beam, instance, primitive) in double. All renderers share it, so the
 /// results do not depend on how a triangle was found.
 class Resolver {
@@ -60,10 +60,10 @@ class Resolver {
   /// Sets the poses of the next cast; empty `world_from_instance`: the scene's own.
   void set_poses(const Pose& world_from_sensor, std::span<const Pose> world_from_instance);
 
-  /// Stores the planes of all triangles (32 bytes each), and uses them until the next set_poses():
-  /// gathering planes is faster than computing them. For casts whose columns need no corners, from
-  /// which planes are computed otherwise.
-  void use_stored_planes(ThreadPool& thread_pool);
+  /// Stores planes, and uses them until the next set_poses(), for casts whose columns need no
+  /// corners, from which planes are computed otherwise. Only in scenes of at most
+  /// kMaxStoredPlanes triangles, where gathering planes is faster: more do not fit into caches.
+  void use_stored_planes(const HitColumnMask& hit_columns, ThreadPool& thread_pool);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const InstanceView& view(std::uint32_t instance) const { return views_[instance]; }
@@ -123,7 +123,8 @@ class Resolver {
   /// Gathers the corners of a block's triangles, unless intersect() did.
   void gather_corners(const HitBlock& block, ExactHits& exact) const;
 
-  /// Prefetches corners of a block's triangles, and their normals if the columns need them.
+  /// Prefetches corners of a block's triangles, unless only their planes are used, and the normals
+  /// if the columns need them.
   void prefetch_corners(const HitBlock& block, const HitColumnMask& hit_columns) const;
 
   /// Computes distance and incidence of a block with at least one hit. Lanes without a hit get the
@@ -175,7 +176,8 @@ class Resolver {
 
   const Scene& scene_;
   const BlockKernel& kernel_;
-  bool uses_planes_ = false;
+  bool may_store_planes_;
+  bool uses_planes_ = false;                                  ///< in the current cast
   std::vector<std::vector<TrianglePlane>> planes_;            ///< per mesh; empty: not stored
   std::vector<std::vector<std::uint32_t>> first_coincident_;  ///< per mesh
   std::vector<std::vector<std::uint32_t>> distinct_;          ///< per mesh, see distinct()

@@ -131,7 +131,7 @@ TEST(RandomScenes, CamerasSeeTheSameBitsByEveryRenderer) {
   EXPECT_GT(hits, 100'000U);
 }
 
-// Without corners, the raster stores planes; with them, it computes planes from corners.
+// Without corners, planes are stored; with them, planes are computed from corners.
 TEST(RandomScenes, ColumnsHaveTheSameBitsAloneAndWithAllOthers) {
   std::size_t hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {

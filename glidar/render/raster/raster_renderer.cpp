@@ -84,9 +84,7 @@ class RasterRenderer final : public Renderer {
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
     if (is_on_surface(request)) return cast_rays(request, hits);
-    if (!needs_corners(request.hit_columns)) {
-      base_->resolver.use_stored_planes(base_->thread_pool);
-    }
+    base_->resolver.use_stored_planes(request.hit_columns, base_->thread_pool);
     if (!overlaps_) overlaps_.emplace(base_->resolver, base_->search.trees());
     overlaps_->prepare(request);
     find_plane_points(request.beams, points_);

@@ -173,6 +173,7 @@ class RaysRenderer final : public Renderer {
       return;
     }
     resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+    resolver.use_stored_planes(request.hit_columns, base_->thread_pool);
     base_->search.prepare(request);
     find_plane_points(request.beams, points_);
     const Job job{

@@ -11,7 +11,7 @@
 namespace glidar::rays {
 
 /// The maximum number of references that sweep_split() divides.
-inline constexpr std::uint32_t kMaxSweep = 64;
+inline constexpr std::uint32_t kMaxSweep = 32;
 
 /// Divides references, at least two, into two sides by the surface area heuristic: sorts them along
 /// each axis and tries all positions. The cost of a side is its area times its number of blocks of

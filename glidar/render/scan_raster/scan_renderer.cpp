@@ -118,6 +118,7 @@ void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
     return;
   }
   base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+  base_->resolver.use_stored_planes(request.hit_columns, base_->thread_pool);
   base_->search.prepare(request);
   cast_prepared(request, hits);
 }
