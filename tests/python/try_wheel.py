@@ -32,7 +32,7 @@ def run(*arguments):
     return done.stdout
 
 
-assert run("--version").strip().endswith(glidar.__version__)
+assert run("--version").splitlines()[0].endswith(glidar.__version__)
 assert "VLP-16" in run("sensors")
 assert "--executor" in run("campaign", "run", "--help")  # by glidar-campaign, next to the program
 run("render", str(package / "share/glidar/models/satellite/satellite.obj"), "-o", "cloud.pcd")

@@ -26,7 +26,7 @@ void add_ros2_options(CLI::App& command, Ros2Flags& flags) {
               return text;
             });
   group.add("--ros2-interface", "NAME",
-            "Network interface; auto: chosen by Cyclone DDS and CYCLONEDDS_URI [lo]",
+            "Network interface; auto: the choice of Cyclone DDS [lo]",
             flags.interface_name);
 }
 

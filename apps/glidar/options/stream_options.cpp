@@ -149,7 +149,7 @@ void add_packet_option(CLI::App& command, StreamFlags& flags) {
 void add_pose_source_options(CLI::App& command, StreamFlags& flags) {
   const OptionGroup group(command, "Poses by the protocol of Woods 2016 (ZeroMQ), or by ROS 2");
   group.add("--pose-source", "SOURCE",
-            "tcp://HOST:PORT, ros2:/odom, ros2:/tf:PARENT:CHILD or ros2:/clock [none]",
+            "tcp://HOST:PORT, ros2:/odom, ros2:/tf:A:B, ros2:/clock [none]",
             [&flags](const std::string& text) {
               if (text.starts_with(kRos2Prefix)) return set_ros2_pose_source(text, flags.ros2);
               flags.pose_source = parse_pose_source(text);
