@@ -48,7 +48,7 @@ struct HitBatch {
 };
 
 /// 4 MiB of planes.
-inline constexpr std::size_t kMaxStoredPlanes = 128 * 1024;
+inline constexpr std::size_t kMaxStoredPlanes = std::size_t{128} * 1024;
 
 /// Computes hit columns from (beam, instance, primitive) in double. All renderers share it, so the
 /// results do not depend on how a triangle was found.

@@ -25,8 +25,7 @@ void add_ros2_options(CLI::App& command, Ros2Flags& flags) {
               (void)dds::full_topic_name("topic", text);
               return text;
             });
-  group.add("--ros2-interface", "NAME",
-            "Network interface; auto: the choice of Cyclone DDS [lo]",
+  group.add("--ros2-interface", "NAME", "Network interface; auto: the choice of Cyclone DDS [lo]",
             flags.interface_name);
 }
 
