@@ -73,6 +73,7 @@ class Decode(CliTest):
         self.assertIn("/lidar/points", self.refused("decode", "run.mcap", "--topic", "/other", "-o", "a.pcd"))
         self.assertIn("given for clouds of a bag", self.refused("decode", "run.mcap", "--columns", "xyz", "-o", "a.pcd"))
         self.assertIn("a format without", self.refused("decode", "run.mcap", "-o", "a.png"))
+        self.assertIn("no such file", self.refused("decode", "missing.pcap", "-o", "a.pcd").lower())
         self.assertIn("missing.pcap", self.refused("decode", "missing.pcap", "--sensor", "VLP-16", "-o", "a.pcd"))
 
 

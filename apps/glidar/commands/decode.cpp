@@ -125,8 +125,10 @@ class Written {
 };
 
 void decode_packets(const DecodeFlags& flags, Console& console, Written& written) {
+  // before the sensor is sought, so that a missing file is reported as such
+  auto packets = open_packets(flags.input, flags.topic);
   Sender sender = sender_of(flags);
-  PacketFrames frames(open_packets(flags.input, flags.topic), std::move(sender.decoder));
+  PacketFrames frames(std::move(packets), std::move(sender.decoder));
   const Scene nothing;
   DecodedFrame decoded;
   while (!written.is_enough() && frames.next(decoded)) {
