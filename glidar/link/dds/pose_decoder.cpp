@@ -32,7 +32,8 @@ std::string frame_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
 
-FramedPose checked_pose(const ros::Header& header, const std::string* child, TimedPose pose) {
+FramedPose checked_pose(const ros::Header& header, const std::string* child,
+                        const TimedPose& pose) {
   require_stamp(header.stamp);
   FramedPose framed{.frames = {frame_name(header.frame_id), ""}, .pose = pose};
   require_name(framed.frames.parent, "frame_id of a pose");
