@@ -87,6 +87,17 @@ bool may_store_planes(const Scene& scene) {
   return triangles <= kMaxStoredPlanes;
 }
 
+std::vector<TrianglePlane> compute_planes(const Mesh& mesh, ThreadPool& thread_pool) {
+  constexpr std::size_t kTrianglesPerTask = 4096;
+  std::vector<TrianglePlane> planes(mesh.triangles.size());
+  thread_pool.parallel_for(planes.size(), kTrianglesPerTask,
+                           [&](std::size_t begin, std::size_t end) {
+                             for (std::size_t t = begin; t < end; ++t)
+                               planes[t] = plane_of(mesh, static_cast<std::uint32_t>(t));
+                           });
+  return planes;
+}
+
 }  // namespace
 
 bool has_mask(const Scene& scene, const Instance& instance) {
@@ -140,22 +151,10 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
 }
 
 void Resolver::use_stored_planes(const HitColumnMask& hit_columns, ThreadPool& thread_pool) {
-  constexpr std::size_t kTrianglesPerTask = 4096;
   uses_planes_ = may_store_planes_ && !needs_corners(hit_columns);
   if (!uses_planes_) return;
   if (!planes_.empty()) return;
-  planes_.resize(scene_.meshes.size());
-  for (std::size_t i = 0; i < planes_.size(); ++i) {
-    const Mesh& mesh = scene_.meshes[i];
-    std::vector<TrianglePlane>& planes = planes_[i];
-    planes.resize(mesh.triangles.size());
-    thread_pool.parallel_for(planes.size(), kTrianglesPerTask,
-                             [&](std::size_t begin, std::size_t end) {
-                               for (std::size_t t = begin; t < end; ++t) {
-                                 planes[t] = plane_of(mesh, static_cast<std::uint32_t>(t));
-                               }
-                             });
-  }
+  for (const Mesh& mesh : scene_.meshes) planes_.push_back(compute_planes(mesh, thread_pool));
 }
 
 /// Positions of the first corners only: most others are the first ones of neighbours, or near them.

@@ -38,7 +38,8 @@ void find_cut_along(std::span<const BoxReference> references, const SweepOrder& 
     return references[static_cast<std::uint32_t>(order[i])];
   };
   const auto cost_of = [block_size](const SplitBox& box, std::uint32_t size) {
-    return box.area() * static_cast<float>((size + block_size - 1) / block_size);
+    const std::uint32_t blocks = (size + block_size - 1) / block_size;
+    return box.area() * static_cast<float>(blocks);
   };
   std::array<float, kMaxSweep> second_cost;
   SplitBox box;
