@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rate of clouds published as a topic of ROS 2, relative to measurements without publishing. The
 // reader is a process of its own, which shares the processor.
+#include "deliver_frames.hpp"
 #include "model_view.hpp"
 #include "ratio_reporter.hpp"
 
@@ -96,15 +97,7 @@ void publish_topic(benchmark::State& state, const ModelView& view) {
                            ros::to_point_cloud2(cloud, {slot.frame, view.sensor, *slot.beams}));
       },
       [] {}, [] {});
-  std::uint32_t number = 0;
-  for (auto _ : state) {
-    app::MeasuredFrame& slot = delivery.next_slot();
-    slot.beams = beams;
-    slot.frame.number = number++;
-    view.measure(slot.frame);
-    delivery.submit();
-  }
-  delivery.finish();
+  deliver_frames(state, view, beams, delivery);
   state.SetItemsProcessed(state.iterations());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Rate of clouds published over a socket, relative to measurements without publishing.
+#include "deliver_frames.hpp"
 #include "model_view.hpp"
 #include "ratio_reporter.hpp"
 
@@ -73,15 +74,7 @@ void publish(benchmark::State& state, const ModelView& view, bool is_read) {
         publisher.write(cloud, slot.frame);
       },
       [&] { publisher.serve(); }, [] {});
-  std::uint32_t number = 0;
-  for (auto _ : state) {
-    app::MeasuredFrame& slot = delivery.next_slot();
-    slot.beams = beams;
-    slot.frame.number = number++;
-    view.measure(slot.frame);
-    delivery.submit();
-  }
-  delivery.finish();
+  deliver_frames(state, view, beams, delivery);
   state.counters["missed"] = static_cast<double>(publisher.counts().missed);
 }
 

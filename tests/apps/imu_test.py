@@ -50,8 +50,8 @@ class Imus(CliTest):
         rows = self.rows("a.imu.csv")
         with np.load(os.path.join(self.folder, "a.imu.npz")) as arrays:
             for name in ("gyro", "accel", "true_gyro", "true_accel", "gyro_bias", "accel_bias", "velocity"):
-                told = [[row[f"{name}_{axis}"] for axis in "xyz"] for row in rows]
-                self.assertTrue(np.array_equal(arrays[name], told), name)
+                expected = [[row[f"{name}_{axis}"] for axis in "xyz"] for row in rows]
+                self.assertTrue(np.array_equal(arrays[name], expected), name)
             self.assertEqual(arrays["t_ns"].tolist(), [row["t_ns"] for row in rows])
             self.assertEqual(arrays["world_from_imu"].shape, (len(rows), 4, 4))
 

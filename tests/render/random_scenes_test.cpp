@@ -117,15 +117,27 @@ std::size_t compare(const Scene& scene, const Beams& beams, const Pose& pose,
 
 constexpr std::uint64_t kScenes = 120;
 
+/// A random scene, every third far from the origin, and a camera that looks at it.
+struct CameraView {
+  Scene scene;
+  Beams beams;
+  Pose pose;
+};
+
+CameraView random_camera_view(std::uint64_t seed) {
+  Draws draws(seed);
+  const Eigen::Vector3d centre = (seed % 3 == 0 ? 1e6 : 0.0) * draws.direction();
+  const Scene scene = random_scene(draws, centre);
+  const Beams beams = camera_beams(96, 64, std::pow(10.0, between(draws, 1.5, 3.0)));
+  return {scene, beams, random_view(draws, scene, centre)};
+}
+
 TEST(RandomScenes, CamerasSeeTheSameBitsByEveryRenderer) {
   std::size_t hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
-    Draws draws(seed);
-    const Eigen::Vector3d centre = (seed % 3 == 0 ? 1e6 : 0.0) * draws.direction();
-    const Scene scene = random_scene(draws, centre);
-    const Beams beams = camera_beams(96, 64, std::pow(10.0, between(draws, 1.5, 3.0)));
-    hits += compare(scene, beams, random_view(draws, scene, centre), {"raster", "auto"});
+    const auto [scene, beams, pose] = random_camera_view(seed);
+    hits += compare(scene, beams, pose, {"raster", "auto"});
     if (HasFailure()) return;
   }
   EXPECT_GT(hits, 100'000U);
@@ -136,11 +148,7 @@ TEST(RandomScenes, ColumnsHaveTheSameBitsAloneAndWithAllOthers) {
   std::size_t hits = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
-    Draws draws(seed);
-    const Eigen::Vector3d centre = (seed % 3 == 0 ? 1e6 : 0.0) * draws.direction();
-    const Scene scene = random_scene(draws, centre);
-    const Beams beams = camera_beams(96, 64, std::pow(10.0, between(draws, 1.5, 3.0)));
-    const Pose pose = random_view(draws, scene, centre);
+    const auto [scene, beams, pose] = random_camera_view(seed);
     CastRequest request{.beams = beams, .world_from_sensor = pose, .hit_columns = {.normal = true}};
     for (const char* kind : {"raster", "rays"}) {
       SCOPED_TRACE(kind);
