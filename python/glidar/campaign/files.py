@@ -27,6 +27,7 @@ MAX_JSON_BYTES = 1 << 30
 MAX_JSON_LEVELS = 64
 STRING = re.compile(rb'"(?:[^"\\]|\\.)*"')
 NO_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
+MAX_FOLDER_TRIES = 100  # each fails only if another process ends between two system calls of this one
 
 
 def write_error(path, error):
@@ -54,7 +55,7 @@ class TempFolder:
         try:
             if self.folders:
                 self.folders.record_new_folders()
-            self.folder.mkdir(parents=True, exist_ok=True)
+            _make_folders(self.folder)
         except OSError as error:
             raise write_error(self.folder, error) from None
         self._count += 1
@@ -69,6 +70,16 @@ class TempFolder:
     def remove(self):
         shutil.rmtree(self.folder, ignore_errors=True)
         _remove_empty(self.folder.parent)
+
+
+def _make_folders(folder):
+    """Creates a folder in a campaign's `tmp`, which other processes remove whenever it is empty: also between the system
+    calls of mkdir()."""
+    for _ in range(MAX_FOLDER_TRIES - 1):
+        with contextlib.suppress(FileNotFoundError, FileExistsError):
+            folder.mkdir(parents=True, exist_ok=True)
+            return
+    folder.mkdir(parents=True, exist_ok=True)
 
 
 def _is_running(pid):
@@ -96,7 +107,10 @@ def temp_folder(root, durable=False):
 def remove_stale_files(root):
     """Removes partial files that killed processes of this machine left; other processes may be writing."""
     tmp = Path(root) / "tmp"
-    for folder in tmp.glob(f"{glob.escape(socket.gethostname())}-*-*"):
+    folders = []
+    with contextlib.suppress(FileNotFoundError):  # another process has removed `tmp`
+        folders = list(tmp.glob(f"{glob.escape(socket.gethostname())}-*-*"))
+    for folder in folders:
         pid = folder.name.rsplit("-", 2)[1]
         if pid.isdigit() and not _is_running(int(pid)):
             shutil.rmtree(folder, ignore_errors=True)

@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from waiting import MAX_WAIT_S, pauses, wait_until
@@ -70,6 +71,40 @@ def test_a_finished_run_keeps_temporary_files_of_another_run(campaign):
     assert not (root / "tmp").exists()
 
 
+def remove_tmp_before(monkeypatch, name, is_in_tmp):
+    """Another process removes the empty `tmp` before the first two calls of a function of `os` that use it."""
+    function, calls = getattr(os, name), itertools.count()
+
+    def call(path, *more):
+        tmp = Path(path).parent if is_in_tmp else Path(path)
+        if tmp.name == "tmp" and tmp.exists() and next(calls) < 2:
+            tmp.rmdir()
+        return function(path, *more)
+
+    monkeypatch.setattr(os, name, call)
+    return calls
+
+
+def test_a_temporary_folder_is_made_although_another_process_removes_the_folder_above_it(campaign, monkeypatch):
+    calls = remove_tmp_before(monkeypatch, "mkdir", is_in_tmp=True)
+    with files.temp_folder(campaign.folder / "out") as temp:
+        temp.path("half.npz").write_text("half")
+    assert next(calls) > 2 and not (campaign.folder / "out" / "tmp").exists()
+
+
+def test_stale_files_are_removed_although_another_process_removes_their_folder(campaign, monkeypatch):
+    (campaign.folder / "tmp").mkdir()
+    calls = remove_tmp_before(monkeypatch, "scandir", is_in_tmp=False)
+    files.remove_stale_files(campaign.folder)
+    assert next(calls) == 1 and not (campaign.folder / "tmp").exists()
+
+
+def test_a_file_in_place_of_the_temporary_folder_is_reported(campaign):
+    campaign.write("tmp", "in the way")
+    with pytest.raises(Error, match="cannot be written"), files.temp_folder(campaign.folder) as temp:
+        temp.path("half.npz")
+
+
 def slow(campaign):
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
                    .replace("trials: 40", "trials: 4000"))
@@ -78,9 +113,10 @@ def slow(campaign):
 def count_temporary(root):
     """The number of temporary files of all workers, which may remove any at any time."""
     count = 0
-    for folder in root.glob("tmp/*"):
-        with contextlib.suppress(FileNotFoundError, NotADirectoryError):
-            count += len(os.listdir(folder))
+    with contextlib.suppress(FileNotFoundError):
+        for folder in list((root / "tmp").iterdir()):
+            with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+                count += len(os.listdir(folder))
     return count
 
 
