@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/placed_motion.hpp>
 
+#include <glidar/motion/timed_poses.hpp>
+
 #include <algorithm>
 #include <variant>
 
@@ -22,6 +24,12 @@ Trajectory trajectory_of(const lockstep::Body& body, std::int64_t t_ns) {
 
 lockstep::Body body_of(const Trajectory& still) {
   return {.world_from_body = std::get<ConstantPose>(still).pose};
+}
+
+bool is_trajectory_within_reach(const Trajectory& trajectory) {
+  const auto* still = std::get_if<ConstantPose>(&trajectory);
+  return still == nullptr || !find_error(nullptr, {.position_m = still->pose.translation(),
+                                                   .orientation = Eigen::Quaterniond::Identity()});
 }
 
 }  // namespace
@@ -47,6 +55,11 @@ lockstep::Moment static_moment(const RigMotion& motion) {
     moment.objects.push_back(body_of(instance));
   }
   return moment;
+}
+
+bool is_within_reach(const Motion& motion) {
+  return is_trajectory_within_reach(motion.world_from_sensor) &&
+         std::ranges::all_of(motion.world_from_instance, is_trajectory_within_reach);
 }
 
 }  // namespace glidar::app

@@ -15,4 +15,8 @@ RigMotion motion_at(const lockstep::Moment& moment, const PreparedScene& prepare
 /// moves.
 lockstep::Moment static_moment(const RigMotion& motion);
 
+/// Whether a sensor and the instances of a motion with constant poses are within kMaxCoordinate_m;
+/// what moves is not checked.
+bool is_within_reach(const Motion& motion);
+
 }  // namespace glidar::app

@@ -5,6 +5,7 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/peer_wait.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/placement.hpp>
 #include <apps/glidar/run/recorded_source.hpp>
@@ -28,9 +29,6 @@ const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
 
 /// How often the status line changes.
 constexpr std::chrono::milliseconds kStatusInterval{200};
-
-/// How often the handshakes of peers are polled.
-constexpr std::chrono::milliseconds kPeerPollInterval{20};
 
 woods2016::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
   return {.endpoint = {flags.bind, *flags.port},
@@ -229,7 +227,7 @@ int StreamRun::run() {
   StopRequest stop;
   try {
     const std::unique_ptr<PoseSource> source = make_source(stop);
-    if (wait_for_peers(stop)) stream(*source, stop);
+    if (has_all_peers(stop)) stream(*source, stop);
     if (const auto* motion = dynamic_cast<const MotionSource*>(source.get())) {
       late_ = motion->late();
     }
@@ -253,43 +251,14 @@ int StreamRun::run() {
   return exit_code_;
 }
 
-bool StreamRun::has_peers() {
-  if (publisher_) publisher_->serve();
-  const bool has_simulator = !receiver_ || receiver_->is_ready();
-  return has_simulator && (!publisher_ || publisher_->has(flags_.subscribers));
-}
-
-/// Prints the number of subscribers when it changes.
-void StreamRun::show_peers(std::uint64_t& shown) {
-  const std::uint64_t ready = publisher_ ? publisher_->ready() : 0;
-  if (flags_.subscribers == 0 || std::exchange(shown, ready) == ready) return;
-  console_.info(ready_text(ready, flags_.subscribers));
-}
-
-/// Whether the simulator has not shaken hands within --pose-timeout.
-bool StreamRun::lacks_simulator(StreamStats::Clock::time_point begin) {
-  if (!receiver_ || !flags_.pose_timeout_s || receiver_->is_ready()) return false;
-  const std::chrono::duration<double> waited = StreamStats::Clock::now() - begin;
-  return waited.count() > *flags_.pose_timeout_s;
-}
-
-bool StreamRun::wait_for_peers(const StopRequest& stop) {
-  const auto begin = StreamStats::Clock::now();
-  bool is_announced = false;
-  std::uint64_t ready = 0;
-  while (!has_peers() && !stop.is_requested()) {
-    if (lacks_simulator(begin)) {
-      ending_ = fmt::format("no simulator answered for {} s", *flags_.pose_timeout_s);
-      exit_code_ = kNoPoses;
-      return false;
-    }
-    if (!std::exchange(is_announced, true)) console_.info(waiting_text(flags_));
-    show_peers(ready);
-    link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
-                    receiver_ ? &receiver_->handshake_socket() : nullptr},
-                   stop.descriptor(), kPeerPollInterval);
+bool StreamRun::has_all_peers(const StopRequest& stop) {
+  const PeerWaitResult result =
+      wait_for_peers({publisher_.get(), receiver_.get()}, flags_, stop, console_);
+  if (result == PeerWaitResult::timed_out) {
+    ending_ = fmt::format("no simulator answered for {} s", *flags_.pose_timeout_s);
+    exit_code_ = kNoPoses;
   }
-  return !stop.is_requested();
+  return result == PeerWaitResult::complete;
 }
 
 void StreamRun::stream(PoseSource& source, StopRequest& stop) {
@@ -299,19 +268,24 @@ void StreamRun::stream(PoseSource& source, StopRequest& stop) {
   while (!stop.is_requested()) {
     const std::optional<FrameRequest> request = source.next();
     if (!request) break;
-    if (request->motion) move(*request->motion);
-    if (!is_wanted(request->index)) continue;
+    if (request->motion) is_within_reach_ = move(*request->motion);
+    if (!is_within_reach_ || !is_wanted(request->index)) continue;
     measure(*request, delivery.next_slot());
     delivery.submit();
   }
   delivery.finish();
 }
 
-void StreamRun::move(const RigMotion& motion) {
+/// Whether all sensors and instances are within reach; if not, the received pose is reported.
+bool StreamRun::move(const RigMotion& motion) {
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     motions_[i] = std::make_shared<const Motion>(motion_of(motion, prepared_.sensors[i]));
+    if (is_within_reach(*motions_[i])) continue;
+    errors_.report("pose out of reach", "a sensor or an instance is over 1e15 m from the origin");
+    return false;
   }
   if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(motion));
+  return true;
 }
 
 void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {

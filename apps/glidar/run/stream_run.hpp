@@ -44,14 +44,11 @@ class StreamRun {
   [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
-  bool wait_for_peers(const StopRequest& stop);
-  [[nodiscard]] bool has_peers();
-  [[nodiscard]] bool lacks_simulator(StreamStats::Clock::time_point begin);
-  void show_peers(std::uint64_t& shown);
+  [[nodiscard]] bool has_all_peers(const StopRequest& stop);
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const FrameRequest& request, MeasuredFrame& measured);
   [[nodiscard]] bool is_wanted(std::uint64_t index) const;
-  void move(const RigMotion& motion);
+  [[nodiscard]] bool move(const RigMotion& motion);
   void deliver(const MeasuredFrame& measured);
   void publish(const MeasuredFrame& measured);
   void serve_peers();
@@ -70,6 +67,7 @@ class StreamRun {
   double duration_s_ = 0.0;
   PreparedScene prepared_;
   std::vector<std::shared_ptr<const Motion>> motions_;  ///< of each sensor, now
+  bool is_within_reach_ = true;                         ///< all sensors and instances, now
   std::unique_ptr<Playback> playback_;                  ///< of a replay with a live view
   std::unique_ptr<LiveView> live_view_;                 ///< until it is one of the sinks
   std::unique_ptr<Ros2Link> ros2_;

@@ -83,6 +83,21 @@ class Stream(DdsTest):
         for expected in ("7000000000", "8000000000", "9000000000", "4.5"):
             self.assertIn(expected, text)
 
+    def test_leaves_out_poses_that_are_out_of_reach(self):
+        scene = {"models": [{"name": "box", "model": "builtin:box"}], "sensors": [
+            {"name": name, "sensor": "VLP-16", "pose": {"position": [5, 0, 0]}} for name in ("front", "rear")]}
+        (self.folder / "scene.yaml").write_text(json.dumps(scene))
+        program = self.start("glidar", "stream", "scene.yaml", "--pose-source", "ros2:/odom", "--rate", "max",
+                             "--pose-queue", "10", "--frames", "3", "--record", "poses.jsonl")
+        writer = self.peer("write", "/odom", ODOMETRY)
+        wait_for_line(writer.stdout, "matched")
+        for sec, x in ((7, 0.0), (8, 1e15), (9, 1.0)):
+            self.order(writer, odometry(sec, x))
+        self.assertEqual(program.wait(), 0)
+        text = (self.folder / "poses.jsonl").read_text()
+        self.assertIn("9000000000", text)
+        self.assertNotIn("8000000000", text)
+
     def test_replays_what_ros_gave(self):
         program = self.stream("--pose-source", "ros2:/odom", "--rate", "max", "--pose-queue", "10", "--frames", "2",
                               "--record", "poses.jsonl", "-o", "a.csv")
