@@ -19,6 +19,9 @@ target_compile_options(
             $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>
             # GCC 14 takes references that outlive an argument for references into it; GCC 12 has no such warning
             $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
+  target_compile_options(glidar_settings INTERFACE "SHELL:-include ${CMAKE_CURRENT_LIST_DIR}/neon_without_fma.h")
+endif()
 glidar_harden(glidar_settings INTERFACE)
 
 # glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,

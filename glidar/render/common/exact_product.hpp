@@ -49,7 +49,7 @@ struct DekkerProduct {
 };
 
 /// The faster of the two on the target processor.
-#if defined(__FMA__) || defined(__ARM_FEATURE_FMA)
+#if defined(__FMA__) || defined(__aarch64__)
 using ExactProduct = FusedProduct;
 #else
 using ExactProduct = DekkerProduct;
