@@ -36,6 +36,9 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libtbb-dev, libyaml-cpp-dev, libfmt-dev, libpng-dev, libzip-dev, \
 liblzf-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, zlib1g-dev, libtiff-dev, libxxhash-dev, libepoxy-dev, libzmq3-dev, pkg-config")
+if(GLIDAR_HAS_OPENEXR)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenexr-dev")
+endif()
 if(GLIDAR_HAS_CYCLONEDDS)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", cyclonedds-dev")
 endif()

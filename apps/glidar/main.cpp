@@ -8,6 +8,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/formats/exr_encoder.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/foxglove/server.hpp>
 
@@ -145,6 +146,7 @@ std::string version_text() {
   std::vector<std::string> parts;
   if (foxglove::has_foxglove_server()) parts.emplace_back("Foxglove server");
   if (dds::has_dds()) parts.emplace_back("ROS 2 (DDS)");
+  if (has_openexr()) parts.emplace_back("OpenEXR");
   if (parts.empty()) parts.emplace_back("none");
   return fmt::format("glidar {}\noptional parts: {}", version(), fmt::join(parts, ", "));
 }

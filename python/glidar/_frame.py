@@ -231,8 +231,8 @@ class Frame(Immutable):
         view_target: npt.ArrayLike | None = None,
     ) -> None:
         """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv
-        .las .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .png .bev.png
-        .view.png .transform.
+        .las .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .exr .png
+        .bev.png .view.png .transform.
 
         Args:
             columns, frame, drop_invalid, deskew: as for ``cloud``.

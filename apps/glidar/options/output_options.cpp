@@ -137,7 +137,8 @@ void hide_standard_output(CLI::App& command) {
 std::string output_names_text() {
   std::string text = "Output files by suffix:\n";
   for (const FileFormat& format : file_formats()) {
-    text += fmt::format("  {:<17} {}\n", format.suffix, format.description);
+    text += fmt::format("  {:<17} {}{}\n", format.suffix, format.description,
+                        format.missing.empty() ? "" : "; not in this build");
   }
   text += fmt::format("  {:<17} {}\n", ".imu.csv", "samples of IMUs, text");
   text += fmt::format("  {:<17} {}\n", ".imu.npz", "samples of IMUs, NumPy archive");

@@ -54,6 +54,12 @@ void check_folder(const std::filesystem::path& path, const Format& format) {
                  "choose another name, or -o - for standard output"});
 }
 
+void check_available(const std::filesystem::path& path, const FileFormat& format) {
+  if (format.missing.empty()) return;
+  throw Error({path.string(), fmt::format("this build does not write {} files", format.suffix), "",
+               fmt::format("install {} and build again", format.missing)});
+}
+
 void check_column_sizes(const PointCloud& cloud, const std::filesystem::path& path) {
   for (const Column& column : cloud.columns) {
     const std::size_t wanted = cloud.size() * column.components.size();
@@ -240,6 +246,7 @@ std::unique_ptr<FileSink> make_file_sink(const std::filesystem::path& path,
                                          const FileSinkOptions& options,
                                          const SidecarContext& context, Report report) {
   const Format& format = find_format(path);
+  check_available(path, format.info);
   const std::filesystem::path output = output_path(path);
   check_folder(output, format);
   check(options);
@@ -250,6 +257,7 @@ std::unique_ptr<FileSink> make_stream_sink(int descriptor, const std::filesystem
                                            const FileSinkOptions& options,
                                            const SidecarContext& context, Report report) {
   const Format& format = find_format(name);
+  check_available(name, format.info);
   check(options);
   if (format.info.is_folder) {
     throw Error({name.string(), "is a folder of several files", "a format of one file",

@@ -77,6 +77,7 @@ struct FileFormat {
   /// instance and class for labels).
   std::vector<std::string> optional_columns = {};
   bool reads_framebuffer = false;  ///< requires Frame::framebuffer
+  std::string missing = {};  ///< library without which this build cannot write it; empty: it can
 };
 
 /// All formats, for help and errors.
@@ -93,7 +94,7 @@ const FileFormat& format_for(const std::filesystem::path& path);
 /// The suffixes of all formats, with spaces between.
 std::string all_suffixes();
 
-/// The suffixes of formats that store any column: ".pcd .ply .npz .csv .las".
+/// The suffixes of formats that store any column: ".pcd .ply .npz .csv .las .exr".
 std::string suffixes_with_columns();
 
 /// All columns that a format may read.

@@ -9,6 +9,7 @@
 #include <glidar/io/formats/csv_file.hpp>
 #include <glidar/io/formats/depth_png_file.hpp>
 #include <glidar/io/formats/depth_tiff_file.hpp>
+#include <glidar/io/formats/exr_file.hpp>
 #include <glidar/io/formats/kitti_file.hpp>
 #include <glidar/io/formats/kitti_folder.hpp>
 #include <glidar/io/formats/las_file.hpp>
@@ -49,6 +50,7 @@ const std::vector<Format>& formats() {
       normal_png_format(),
       instance_png_format(),
       class_png_format(),
+      exr_format(),
   };
   // clang-format on
   return kFormats;

@@ -96,7 +96,8 @@ def columns_of(outputs):
     names = ["range"] + (["depth", "instance"] if outputs.bop else [])
     names += ["xyz", "intensity", "range", "instance", "class"] if outputs.kitti else []
     names += outputs.npz.columns if outputs.npz else []
-    for cloud in (outputs.pcd, outputs.ply):
+    names += ["depth"] if outputs.exr else []
+    for cloud in (outputs.pcd, outputs.ply, outputs.exr):
         if cloud:
             names += cloud.columns or ["xyz", "intensity", "range", "normal", "instance", "class"]
     return list(dict.fromkeys(names))

@@ -41,6 +41,7 @@ class Outputs:
     npz: Npz | None = None
     pcd: Cloud | None = None
     ply: Cloud | None = None
+    exr: Cloud | None = None
     kitti: bool = False
     tum: bool = False
     bop: Bop | None = None
@@ -95,12 +96,13 @@ def _bop(field):
 
 
 def read_outputs(field):
-    found = yf.require_keys(field, ["npz", "pcd", "ply", "kitti", "tum", "bop"])
+    found = yf.require_keys(field, ["npz", "pcd", "ply", "exr", "kitti", "tum", "bop"])
     outputs = Outputs(yf.optional(found, "npz", _npz, None), yf.optional(found, "pcd", _cloud, None),
                       yf.optional(found, "ply", _cloud, None),
+                      yf.optional(found, "exr", _cloud, None),
                       yf.optional(found, "kitti", yf.boolean, False),
                       yf.optional(found, "tum", yf.boolean, False),
                       yf.optional(found, "bop", _bop, None))
     if outputs == Outputs():
-        yf.reject(field, "no output is selected", "at least one of npz, pcd, ply, kitti, tum, bop")
+        yf.reject(field, "no output is selected", "at least one of npz, pcd, ply, exr, kitti, tum, bop")
     return outputs

@@ -40,8 +40,10 @@ void write_all(const CloudFixture& made, const std::filesystem::path& folder) {
   compressed.pcd = PcdEncoding::binary_compressed;
   CloudFixture full = made;
   fixture::add_image_columns(full.cloud);
-  for (const FileFormat& format : file_formats())
+  for (const FileFormat& format : file_formats()) {
+    if (!format.missing.empty()) continue;  // an optional library is not installed
     write_cloud(format.takes_more ? made : full, folder / ("a" + format.suffix));
+  }
   write_layouts(made, folder);
   write_cloud(made, folder / "ascii.pcd", ascii);
   write_cloud(made, folder / "ascii.ply", ascii);
