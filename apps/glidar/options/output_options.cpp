@@ -8,6 +8,7 @@
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/imu_samples_file.hpp>
+#include <glidar/io/osi/osi_trace.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
 
 #include <fmt/format.h>
@@ -60,7 +61,9 @@ std::vector<std::string> stream_formats() {
 /// The list for an output of this name.
 std::vector<std::string>& paths_for(const std::string& path, OutputFlags& flags) {
   if (is_imu_samples_path(path)) return flags.imu_paths;
-  return bags::is_bag_name(path) || is_capture_name(path) ? flags.recording_paths : flags.paths;
+  const bool is_recording =
+      bags::is_bag_name(path) || is_capture_name(path) || osi::is_osi_trace_name(path);
+  return is_recording ? flags.recording_paths : flags.paths;
 }
 
 void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
@@ -147,6 +150,7 @@ std::string output_names_text() {
       fmt::format("  {:<17} {}\n", ".rosbag2", "the same as a folder with SQLite, for ros2 bag");
   text += fmt::format("  {:<17} {}\n", ".bag", "the same for ROS 1");
   text += fmt::format("  {:<17} {}\n", ".pcap", "UDP packets as the sensor sends them");
+  text += fmt::format("  {:<17} {}\n", ".osi", "OSI trace of all frames and sensors");
   text += "\nColumns of clouds (* by default):\n";
   std::string names;
   for (const std::string& name : cloud_column_names()) {

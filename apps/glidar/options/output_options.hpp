@@ -16,7 +16,7 @@ namespace glidar::app {
 struct OutputFlags {
   std::vector<std::string> paths;            ///< "-": standard output
   std::vector<std::string> imu_paths;        ///< of IMU samples
-  std::vector<std::string> recording_paths;  ///< bags and packet captures
+  std::vector<std::string> recording_paths;  ///< bags, OSI traces, packet captures
   std::string format;                ///< of standard output, without the dot; empty: not given
   std::string legacy_name;           ///< --legacy-output NAME; empty: not given
   std::vector<std::string> columns;  ///< of clouds; empty: default_columns()
@@ -54,7 +54,8 @@ bool writes_standard_output(const OutputFlags& flags);
 /// Whether any file of a single frame is written.
 bool has_outputs(const OutputFlags& flags);
 
-/// Whether any file of a whole run is written: samples of IMUs, bags, packet captures.
+/// Whether any file of a whole run is written: samples of IMUs, bags, OSI traces, packet
+/// captures.
 bool has_run_outputs(const OutputFlags& flags);
 
 }  // namespace glidar::app

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/osi/osi_trace.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/text.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/osi/osi_values.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <utility>
+#include <variant>
+
+namespace glidar::osi {
+namespace {
+
+/// What the messages of one frame have in common.
+struct FrameContext {
+  const OsiSensor& sensor;
+  const Frame& frame;
+  Pose rig_from_cloud;  ///< of the sensor's axes x forward, y left, z up
+  Pose world_from_rig;
+};
+
+FrameContext context_of(const OsiSensor& sensor, const Frame& frame, const OutputFrame& target) {
+  return {.sensor = sensor,
+          .frame = frame,
+          .rig_from_cloud = sensor.rig_from_sensor * target.cloud_from_sensor.inverse(),
+          .world_from_rig = frame.world_from_sensor * sensor.rig_from_sensor.inverse()};
+}
+
+template <class T>
+const std::vector<T>& column_of(const PointCloud& cloud, std::string_view name) {
+  return std::get<std::vector<T>>(find_column(cloud, name)->values);
+}
+
+/// The columns of a frame's detections.
+struct Detections {
+  const std::vector<double>& xyz_m;
+  const std::vector<float>& sigma_m;
+  const std::vector<std::uint32_t>& instances;
+  const std::vector<std::uint8_t>& sources;
+  const std::vector<std::uint16_t>& rings;
+  std::vector<float> intensities;  ///< 0 to 1
+
+  Detections(const PointCloud& cloud, const Sensor& sensor, const Beams& beams)
+      : xyz_m(column_of<double>(cloud, "xyz")),
+        sigma_m(column_of<float>(cloud, "sigma")),
+        instances(column_of<std::uint32_t>(cloud, "instance")),
+        sources(column_of<std::uint8_t>(cloud, "return_source")),
+        rings(column_of<std::uint16_t>(cloud, "ring")),
+        intensities(unit_intensities(cloud, sensor, beams)) {}
+};
+
+/// Whether a return comes from the surface of the ground truth.
+bool is_of_surface(ReturnSource source) {
+  return source == ReturnSource::surface || source == ReturnSource::mixed_pixel;
+}
+
+/// LidarDetection
+ProtobufMessage detection(const Detections& all, std::size_t i) {
+  constexpr std::uint64_t kOther = 1;    // of DetectionClassification
+  constexpr std::uint64_t kInvalid = 2;  // no surface at this place
+  constexpr std::uint64_t kClutter = 3;  // noise, rain, snow, fog
+  constexpr double kPercent = 100.0;
+  const auto source = static_cast<ReturnSource>(all.sources[i]);
+  const bool is_ghost = source == ReturnSource::ghost;
+  const bool has_object = is_of_surface(source) || is_ghost;
+  const double sigma_m = double{all.sigma_m[i]};
+  ProtobufMessage made;
+  made.real(1, 1.0)
+      .message(2, identifier(has_object && all.instances[i] != kInvalidId ? all.instances[i]
+                                                                          : kNoObject))
+      .message(3, spherical(Eigen::Map<const Eigen::Vector3d>(&all.xyz_m[3 * i])));
+  if (sigma_m > 0.0) made.message(4, ProtobufMessage().real(1, sigma_m));
+  return made.real(7, kPercent * double{all.intensities[i]})
+      .integer(9, is_ghost                ? kInvalid
+                  : is_of_surface(source) ? kOther
+                                          : kClutter)
+      .message(13, identifier(all.rings[i]));
+}
+
+/// SensorDetectionHeader
+ProtobufMessage detection_header(const FrameContext& context, std::size_t count) {
+  constexpr std::uint64_t kAvailable = 2;
+  constexpr std::uint64_t kNormalOperation = 2;
+  return ProtobufMessage()
+      .message(1, timestamp(context.frame.stamp_ns))
+      .integer(2, std::uint64_t{context.frame.number})
+      .message(3, mounting_position(context.rig_from_cloud))
+      .integer(5, kAvailable)
+      .integer(6, std::uint64_t{count})
+      .message(7, identifier(context.sensor.id))
+      .integer(8, kNormalOperation);
+}
+
+/// FeatureData
+ProtobufMessage feature_data(const FrameContext& context, const PointCloud& cloud,
+                             const Beams& beams) {
+  const Detections all(cloud, context.sensor.sensor, beams);
+  ProtobufMessage lidar;
+  lidar.message(1, detection_header(context, cloud.size()));
+  for (std::size_t i = 0; i < cloud.size(); ++i) lidar.message(2, detection(all, i));
+  return ProtobufMessage().message(1, interface_version()).message(3, lidar);
+}
+
+/// SensorView: the ground truth from which the detections were made.
+ProtobufMessage sensor_view(const FrameContext& context, const ProtobufMessage& ground_truth) {
+  return ProtobufMessage()
+      .message(1, interface_version())
+      .message(2, timestamp(context.frame.stamp_ns))
+      .message(3, identifier(context.sensor.id))
+      .message(4, mounting_position(context.rig_from_cloud))
+      .message(7, ground_truth)
+      .message(8, identifier(kHostVehicleId));
+}
+
+ProtobufMessage sensor_data(const FrameContext& context, const ProtobufMessage& view,
+                            const ProtobufMessage& features) {
+  return ProtobufMessage()
+      .message(1, interface_version())
+      .message(2, timestamp(context.frame.stamp_ns))
+      .message(5, identifier(context.sensor.id))
+      .message(6, mounting_position(context.rig_from_cloud))
+      .message(8, view)
+      .message(9, timestamp(context.frame.stamp_ns))
+      .message(26, features);
+}
+
+void write_message(const std::string& bytes, AtomicFile& file) {
+  constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
+  if (bytes.size() > kMaxBytes) {
+    throw Error({file.path().string(), fmt::format("a frame of {} bytes", bytes.size()),
+                 fmt::format("messages of up to {} bytes", kMaxBytes),
+                 "measure frames with fewer beams"});
+  }
+  std::array<std::byte, 4> size{};
+  for (std::size_t k = 0; k < size.size(); ++k)
+    size[k] = static_cast<std::byte>(bytes.size() >> (8 * k) & 0xFFU);
+  file.write(size);
+  file.write(bytes);
+}
+
+}  // namespace
+
+bool is_osi_trace_name(const std::filesystem::path& path) {
+  return lower_case(path.extension().string()) == ".osi";
+}
+
+OsiTraceWriter::OsiTraceWriter(const std::filesystem::path& path, OsiRig rig)
+    : rig_(std::move(rig)), ground_truth_(rig_), file_(path) {}
+
+const std::vector<std::string>& OsiTraceWriter::columns() {
+  static const std::vector<std::string> kOsiColumns = {
+      "xyz", "intensity", "range", "sigma", "instance", "return_source", "ring"};
+  return kOsiColumns;
+}
+
+void OsiTraceWriter::write(std::size_t sensor_index, const Frame& frame, const Beams& beams) {
+  const OutputFrame target = output_frame("ros", beams, frame.world_from_sensor);
+  const FrameContext context = context_of(rig_.sensors[sensor_index], frame, target);
+  make_point_cloud(frame, beams, rig_.scene, target, columns(), cloud_);
+  remove_invalid_points(cloud_, detected_);
+  const ProtobufMessage view =
+      sensor_view(context, ground_truth_.at(frame, context.world_from_rig));
+  write_message(sensor_data(context, view, feature_data(context, detected_, beams)).bytes(), file_);
+}
+
+void OsiTraceWriter::finish() {
+  file_.commit();
+}
+
+}  // namespace glidar::osi
