@@ -5,6 +5,7 @@
 
 #include "io/packets/packet_fixture.hpp"
 #include "support/error_text.hpp"
+#include "support/parameter_name.hpp"
 #include "support/waiting.hpp"
 
 #include <arpa/inet.h>
@@ -99,7 +100,8 @@ TEST_P(PacketSenderOf, ReceivedPacketsAreTheFrameWithinTheUnit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Presets, PacketSenderOf, ::testing::Values("VLP-16", "OS1-32", "XT32"));
+INSTANTIATE_TEST_SUITE_P(Presets, PacketSenderOf, ::testing::Values("VLP-16", "OS1-32", "XT32"),
+                         testing::parameter_name<const char*>);
 
 TEST(PacketSender, SendsEveryPacketInOrderAndNotBeforeItsTime) {
   Receiving receiving;

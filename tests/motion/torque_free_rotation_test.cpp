@@ -28,6 +28,10 @@ struct Case {
   Vector3d rate;
 };
 
+void PrintTo(const Case& body, std::ostream* out) {
+  *out << body.name;
+}
+
 const Case kBodies[] = {
     {"AboutTheLargest", {1.0, 2.0, 2.5}, {0.1, 0.2, 1.0}},
     {"AboutTheSmallest", {1.0, 2.0, 2.5}, {-1.0, 0.2, 0.1}},

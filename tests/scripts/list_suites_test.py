@@ -36,6 +36,11 @@ def is_skipped(output):
 
 
 class ListSuites(unittest.TestCase):
+    def test_parameters_printed_as_bytes_or_addresses_are_found(self):
+        self.assertEqual(list_suites.unprinted(LISTED), [])
+        unprinted = "  A/0  # GetParam() = 24-byte object <B0-1A F1-60>\n  B/1  # GetParam() = 0x564e6a28b360\n"
+        self.assertEqual(list_suites.unprinted(LISTED + unprinted), ["A/0", "B/1"])
+
     def test_every_case_is_in_one_test(self):
         with tempfile.TemporaryDirectory() as folder:
             program, listed, output = (Path(folder, name) for name in ("program", "listed", "list.cmake"))

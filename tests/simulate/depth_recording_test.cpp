@@ -5,6 +5,7 @@
 #include <glidar/sensor/noise/noise.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 #include <support/data.hpp>
+#include <support/parameter_name.hpp>
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -131,6 +132,10 @@ struct Recording {
   double k_m;  ///< of this camera
 };
 
+void PrintTo(const Recording& recording, std::ostream* out) {
+  *out << recording.file;
+}
+
 class DepthRecording : public ::testing::TestWithParam<Recording> {};
 
 TEST_P(DepthRecording, HasTheModelsLevelsAndNoiseOfDisparity) {
@@ -152,8 +157,8 @@ TEST_P(DepthRecording, HasTheModelsLevelsAndNoiseOfDisparity) {
 INSTANTIATE_TEST_SUITE_P(Cameras, DepthRecording,
                          ::testing::Values(Recording{"depth/00000.png", 1000.0, 281.0},
                                            Recording{"depth/00004.png", 1000.0, 281.0},
-                                           Recording{"other_formats/TUM_depth.png", 5000.0,
-                                                     342.0}));
+                                           Recording{"other_formats/TUM_depth.png", 5000.0, 342.0}),
+                         testing::parameter_name<Recording>);
 
 }  // namespace
 }  // namespace glidar

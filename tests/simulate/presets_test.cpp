@@ -6,6 +6,7 @@
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <support/data.hpp>
+#include <support/parameter_name.hpp>
 #include <support/preset.hpp>
 #include <support/simulate.hpp>
 
@@ -126,7 +127,8 @@ INSTANTIATE_TEST_SUITE_P(
                       SheetPair{"VLS-128", 0.1, 120.0}, SheetPair{"XT32", 0.1, 80.0},
                       SheetPair{"QT64", 0.1, 20.0}, SheetPair{"Livox-Mid-40", 0.8, 260.0},
                       SheetPair{"Livox-Mid-70", 0.8, 260.0}, SheetPair{"Livox-Avia", 0.8, 450.0},
-                      SheetPair{"TiM781", 0.05, 5.0}));
+                      SheetPair{"TiM781", 0.05, 5.0}),
+    testing::parameter_name<SheetPair>);
 
 TEST(Presets, OfOusterDetectNinetyPercentAtTheRangeOfTheDataSheet) {
   for (const SheetPair& pair : {SheetPair{"OS0-64", 0.8, 45.0}, SheetPair{"OS1-64", 0.8, 100.0},
@@ -145,7 +147,6 @@ struct Spread {
   double most_m;
 };
 
-/// The name of a case; without it, GoogleTest prints its bytes, an address among them.
 void PrintTo(const Spread& spread, std::ostream* out) {
   *out << spread.sensor << " at " << spread.range_m << " m, reflectance " << spread.reflectance;
 }
@@ -171,7 +172,8 @@ INSTANTIATE_TEST_SUITE_P(Sheets, PresetSpread,
                                            Spread{"Livox-Mid-40", 20.0, 0.8, 0.019, 0.021},
                                            Spread{"UTM-30LX", 15.0, 0.8, 0.01, 0.03},
                                            Spread{"OS2-32", 10.0, 0.5, 0.005, 0.0076},
-                                           Spread{"flash-128", 100.0, 0.5, 0.05, 0.15}));
+                                           Spread{"flash-128", 100.0, 0.5, 0.05, 0.15}),
+                         testing::parameter_name<Spread>);
 
 TEST(Presets, OfDepthCamerasSpreadAsMeasured) {
   // 0.53 to 0.60 steps of 1 / 345.5 m in recorded frames

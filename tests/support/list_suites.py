@@ -29,6 +29,11 @@ def suites_of(listed):
     return suites
 
 
+def unprinted(listed):
+    """The names of cases whose parameter is printed as its bytes or its address, which change in every run."""
+    return [line.split()[0] for line in listed.splitlines() if re.search(r"# GetParam\(\) = (\d+-byte object <|0x)", line)]
+
+
 def filters_of(suites, separate):
     """(name, --gtest_filter) of every CTest test."""
     for suite, cases in suites.items():
@@ -41,6 +46,8 @@ def filters_of(suites, separate):
 def main():
     program, prefix, output, *separate = sys.argv[1:]
     listed = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True, check=True).stdout
+    if unprinted(listed):
+        sys.exit(f"{program}: parameters without a PrintTo: {', '.join(unprinted(listed))}")
     lines = []
     for name, chosen in filters_of(suites_of(listed), separate):
         lines.append(f"add_test([==[{prefix}: {name}]==] [==[{program}]==] [==[--gtest_filter={chosen}]==])\n"

@@ -6,6 +6,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/math/constants.hpp>
 #include <support/error_text.hpp>
+#include <support/parameter_name.hpp>
 #include <support/preset.hpp>
 
 #include <gtest/gtest.h>
@@ -28,6 +29,10 @@ struct PublishedValues {
   double across_deg;
   double upright_deg;
 };
+
+void PrintTo(const PublishedValues& published, std::ostream* out) {
+  *out << published.name;
+}
 
 // Copied from the manufacturers' data sheets, independently of the sensor files.
 constexpr std::array kPublished = std::to_array<PublishedValues>({
@@ -155,13 +160,8 @@ TEST_P(Preset, TellsTheSourceOfEveryNumber) {
   }
 }
 
-std::string preset_name(const ::testing::TestParamInfo<PublishedValues>& published) {
-  std::string name = published.param.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, Preset, ::testing::ValuesIn(kPublished), preset_name);
+INSTANTIATE_TEST_SUITE_P(All, Preset, ::testing::ValuesIn(kPublished),
+                         testing::parameter_name<PublishedValues>);
 
 /// Beams of the data sheets: full widths at half maximum, across and up; TiM781: in all.
 struct Beam {

@@ -18,6 +18,10 @@ struct Spelling {
   const char* name;  ///< as the model spells it
 };
 
+void PrintTo(const Spelling& spelling, std::ostream* out) {
+  *out << spelling.what;
+}
+
 class TextureSpelling : public ::testing::TestWithParam<Spelling> {};
 
 TEST_P(TextureSpelling, IsFound) {

@@ -3,9 +3,18 @@
 // Filter and rule together equal the rule alone, bit for bit, with every kernel. The
 // library asserts that the rule never rejects a triangle that the filter accepted.
 #include <render/rays/caster.hpp>
+#include <support/parameter_name.hpp>
 
 #include <gtest/gtest.h>
 #include <algorithm>
+
+namespace glidar::rays {
+
+inline void PrintTo(const Kernel* kernel, std::ostream* out) {
+  *out << kernel->name;
+}
+
+}  // namespace glidar::rays
 
 namespace glidar::rays::testing {
 namespace {
@@ -138,7 +147,7 @@ TEST_P(TriangleFilter, LeavesFewTrianglesToTheRule) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, TriangleFilter, ::testing::ValuesIn(usable_kernels()),
-                         [](const auto& kernel) { return std::string(kernel.param->name); });
+                         glidar::testing::parameter_name<const Kernel*>);
 
 TEST(Kernels, AnUnknownNameIsAnErrorThatListsTheUsableOnes) {
   EXPECT_EQ(std::string(find_kernel("baseline").name), "baseline");

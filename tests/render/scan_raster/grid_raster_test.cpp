@@ -30,6 +30,10 @@ struct GridCase {
   Eigen::Matrix3d world_from_forward;  ///< its boresight along +x
 };
 
+void PrintTo(const GridCase& one, std::ostream* out) {
+  *out << one.name;
+}
+
 class GridRaster : public ::testing::TestWithParam<GridCase> {
  protected:
   const Beams& beams() const { return GetParam().beams; }

@@ -3,6 +3,7 @@
 #include <glidar/sensor/lidar/fog.hpp>
 
 #include <gtest/gtest.h>
+#include <support/parameter_name.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,10 @@ struct Golden {
   double exact_peak;  ///< the same, by 2e6 steps of the midpoint rule
 };
 
+void PrintTo(const Golden& golden, std::ostream* out) {
+  *out << "alpha " << golden.alpha;
+}
+
 class SoftReturn : public ::testing::TestWithParam<Golden> {};
 
 TEST_P(SoftReturn, HasThePublishedPeak) {
@@ -93,7 +98,8 @@ INSTANTIATE_TEST_SUITE_P(Hahner, SoftReturn,
                          ::testing::Values(Golden{0.005, 4.56799, 4.70, 4.567969},
                                            Golden{0.02, 4.34657, 4.70, 4.346633},
                                            Golden{0.06, 3.81564, 4.60, 3.815421},
-                                           Golden{0.2, 2.47599, 4.50, 2.475990}));
+                                           Golden{0.2, 2.47599, 4.50, 2.475990}),
+                         testing::parameter_name<Golden>);
 
 TEST(FogReturn, DependsOnNearTargetsAndNotOnFarOnes) {
   const FogReturn fog = fog_return(unit_light(0.06), kUnitBackscatter, kFwhm_s);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <sensor/distribution.hpp>
+#include <support/parameter_name.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +83,8 @@ TEST_P(FogVariation, EchoOfAThinLayerIsGammaDistributedAroundThatOfUniformFog) {
   EXPECT_NEAR(sum / kBeams, 1.0, 4.0 / std::sqrt(1.0 * kBeams * looks));
 }
 
-INSTANTIATE_TEST_SUITE_P(Looks, FogVariation, ::testing::Values(1U, 4U, 64U));
+INSTANTIATE_TEST_SUITE_P(Looks, FogVariation, ::testing::Values(1U, 4U, 64U),
+                         testing::parameter_name<unsigned>);
 
 /// S at a time, by the midpoint rule over the cells.
 double signal_of_cells(const std::vector<FogCell>& cells, double range_m, double end_m) {

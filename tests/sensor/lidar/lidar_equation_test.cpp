@@ -6,6 +6,7 @@
 #include <glidar/math/constants.hpp>
 
 #include <gtest/gtest.h>
+#include <support/parameter_name.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -136,6 +137,10 @@ struct SheetPair {
   double noise_to_signal;  ///< threshold over noise, from the data sheet's pairs
 };
 
+void PrintTo(const SheetPair& pair, std::ostream* out) {
+  *out << pair.name << ", reflectance " << pair.reflectance;
+}
+
 class DetectionOfSheets : public ::testing::TestWithParam<SheetPair> {};
 
 TEST_P(DetectionOfSheets, ReproducesBothRangesOfTheDataSheet) {
@@ -157,7 +162,8 @@ INSTANTIATE_TEST_SUITE_P(Ouster, DetectionOfSheets,
                                            SheetPair{"OS1", 0.1, 55.0, 45.0, 2.6},
                                            SheetPair{"OS1", 0.8, 120.0, 100.0, 2.9},
                                            SheetPair{"OS2", 0.1, 100.0, 80.0, 2.3},
-                                           SheetPair{"OS2", 0.8, 240.0, 210.0, 4.2}));
+                                           SheetPair{"OS2", 0.8, 240.0, 210.0, 4.2}),
+                         testing::parameter_name<SheetPair>);
 
 TEST(ReceivedSignal, HasTheExponentOfTwoReflectances) {
   EXPECT_NEAR(range_exponent(0.8, 120.0, 0.1, 40.0), 1.89, 0.005);   // OS1, first generation

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <support/error_text.hpp>
+#include <support/parameter_name.hpp>
 
 #include <array>
 #include <cmath>
@@ -32,6 +33,11 @@ struct FogRow {
   double last_digit;
 };
 
+void PrintTo(const FogRow& row, std::ostream* out) {
+  *out << (row.model == FogModel::kim ? "Kim" : "Kruse") << ", visibility " << row.visibility_km
+       << " km";
+}
+
 class FogTable : public ::testing::TestWithParam<FogRow> {};
 
 TEST_P(FogTable, ReproducesThePublishedExtinction) {
@@ -50,7 +56,8 @@ INSTANTIATE_TEST_SUITE_P(Fog, FogTable,
                                            FogRow{5.0, FogModel::kruse, 0.475, 0.278, 0.001},
                                            FogRow{10.0, FogModel::kim, 0.205, 0.102, 0.001},
                                            FogRow{10.0, FogModel::kruse, 0.205, 0.102, 0.001},
-                                           FogRow{23.0, FogModel::kim, 0.089, 0.044, 0.001}));
+                                           FogRow{23.0, FogModel::kim, 0.089, 0.044, 0.001}),
+                         testing::parameter_name<FogRow>);
 
 TEST(Fog, HasThePublishedTwoWayTransmissionOver100Metres) {
   const std::vector<std::array<double, 2>> table = {
