@@ -1,176 +1,37 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/help_text.hpp>
+#include <apps/glidar/program.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/viewer/view.hpp>
-#include <glidar/core/error.hpp>
-#include <glidar/core/version.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/formats/exr_encoder.hpp>
-#include <glidar/link/dds/participant.hpp>
-#include <glidar/link/foxglove/server.hpp>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
-
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
-  glidar view builtin:asteroid
-  glidar stream builtin:asteroid --object-rate 0,0.5,0 --port 5555
-  glidar explain asteroid.pcd --index 30000
-  glidar info builtin:torus
-  glidar sensors
-  glidar verify
-More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
-sensors, schema and verify)";
-
-using Commands = std::vector<std::pair<std::string, Command>>;
-
-const CLI::App& chosen(const CLI::App& program) {
-  const std::vector<const CLI::App*> subcommands =
-      program.get_subcommands([](const CLI::App* command) { return command->parsed(); });
-  return subcommands.empty() ? program : *subcommands.front();
+/// A subcommand that needs no arguments of the whole command line.
+Subcommand subcommand(const char* name, Command (*add)(CLI::App&)) {
+  return {name, [add](CLI::App& program, const std::vector<std::string>&) { return add(program); }};
 }
 
-std::vector<std::string> option_names(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return names;
-}
-
-/// The error for a word that is neither an option nor a subcommand, with a suggestion.
-std::string explain_extra(const CLI::App& program, const Commands& commands, std::string word) {
-  const CLI::App& command = chosen(program);
-  word = word.substr(0, word.find('='));
-  if (word.starts_with("-")) {
-    const std::string nearest = closest_match(word, option_names(command));
-    return nearest.empty() ? fmt::format("unknown option {}; see --help", word)
-                           : fmt::format("unknown option {}; did you mean {}?", word, nearest);
-  }
-  if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
-  std::vector<std::string> names = {"--help"};
-  for (const auto& [name, run] : commands) names.push_back(name);
-  const std::string nearest = closest_match(word, names);
-  return nearest.empty()
-             ? fmt::format(
-                   "'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",
-                   word)
-             : fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
-}
-
-/// CLI11's "--fov: 1 required DEG missing" and "--fov: At Most 1 required but received 2" in words.
-std::string explain_mismatch(const std::string& text) {
-  const std::string option = text.substr(0, text.find(':'));
-  if (text.find("received") != std::string::npos) {
-    return fmt::format("{}: given more than once; allowed: once", option);
-  }
-  return fmt::format("{}: there is no value after it; see --help for what it takes", option);
-}
-
-/// CLI11's "--fov excludes --fx" and "--durable requires --record" in words.
-std::string explain_conflict(const std::string& text) {
-  constexpr std::string_view kExcludes = " excludes ";
-  constexpr std::string_view kRequires = " requires ";
-  if (const std::size_t found = text.find(kExcludes); found != std::string::npos) {
-    return fmt::format("{} and {}: both are given; give one of them", text.substr(0, found),
-                       text.substr(found + kExcludes.size()));
-  }
-  const std::size_t found = text.find(kRequires);
-  return fmt::format("{0}: there is no {1}; give {1} too", text.substr(0, found),
-                     text.substr(found + kRequires.size()));
-}
-
-int fail(const std::string& message) {
-  std::fputs(fmt::format("glidar: error: {}\n", message).c_str(), stderr);
-  return kBadInput;
-}
-
-/// The most helpful word that CLI11 did not parse: within a subcommand an option, else the word in
-/// the place of a subcommand.
-std::string first_extra(const CLI::App& program) {
-  const std::vector<std::string> extras = program.remaining(true);
-  const bool options_first = &chosen(program) != &program;
-  const auto best = std::find_if(extras.begin(), extras.end(), [&](const std::string& word) {
-    return (word.size() > 1 && word.starts_with("-")) == options_first;
-  });
-  if (best != extras.end()) return *best;
-  return extras.empty() ? "" : extras.front();
-}
-
-int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** argv) {
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::Success& help_or_version) {
-    return program.exit(help_or_version);
-  } catch (const CLI::ArgumentMismatch& error) {
-    return fail(explain_mismatch(error.what()));
-  } catch (const CLI::ExcludesError& error) {
-    return fail(explain_conflict(error.what()));
-  } catch (const CLI::RequiresError& error) {
-    return fail(explain_conflict(error.what()));
-  } catch (const CLI::ConversionError& error) {
-    return fail(std::string(error.what()) + "; see --help for what it takes");
-  } catch (const CLI::ParseError& error) {
-    const std::string extra = first_extra(program);
-    if (!extra.empty()) return fail(explain_extra(program, commands, extra));
-    return fail(fmt::format("{}; see {}--help", error.what(),
-                            &chosen(program) == &program
-                                ? "glidar "
-                                : fmt::format("glidar {} ", chosen(program).get_name())));
-  }
-  for (const auto& [name, run] : commands) {
-    if (program.got_subcommand(name)) return run();
-  }
-  return kBadInput;  // unreachable: parse() requires a subcommand
-}
-
-/// The version, and the optional parts of this build.
-std::string version_text() {
-  std::vector<std::string> parts;
-  if (foxglove::has_foxglove_server()) parts.emplace_back("Foxglove server");
-  if (dds::has_dds()) parts.emplace_back("ROS 2 (DDS)");
-  if (has_openexr()) parts.emplace_back("OpenEXR");
-  if (parts.empty()) parts.emplace_back("none");
-  return fmt::format("glidar {}\noptional parts: {}", version(), fmt::join(parts, ", "));
-}
-
-int run(int argc, char** argv) {
-  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
-                   "glidar");
-  use_help_layout(program);
-  program.set_version_flag("--version", version_text(), "Print the version and the optional parts");
-  program.require_subcommand(1);
-  program.footer(kExamples);
-  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-  const Commands commands = {{"render", add_render(program, arguments)},
-                             {"view", add_view(program)},
-                             {"stream", add_stream(program, arguments)},
-                             {"replay", add_replay(program)},
-                             {"decode", add_decode(program)},
-                             {"explain", add_explain(program)},
-                             {"info", add_info(program)},
-                             {"campaign", add_campaign(program)},
-                             {"sensors", add_sensors(program)},
-                             {"schema", add_schema(program)},
-                             {"verify", add_verify(program)}};
-  return parse_and_run(program, commands, argc, argv);
+std::vector<Subcommand> all_subcommands() {
+  return {{"render", add_render},
+          subcommand("view", add_view),
+          {"stream", add_stream},
+          subcommand("replay", add_replay),
+          subcommand("decode", add_decode),
+          subcommand("explain", add_explain),
+          subcommand("info", add_info),
+          subcommand("campaign", add_campaign),
+          subcommand("sensors", add_sensors),
+          subcommand("schema", add_schema),
+          subcommand("verify", add_verify)};
 }
 
 }  // namespace
@@ -179,17 +40,17 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     glidar::app::end_cleanly_on_interrupt();
-    const int status = glidar::app::run(argc, argv);
+    const int status = glidar::app::run_program(glidar::app::all_subcommands(), argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      return glidar::app::fail("standard output could not be written; is the disk full?");
+      return glidar::app::report_error("standard output could not be written; is the disk full?");
     }
     return status;
   } catch (const glidar::ClosedPipe&) {
     return glidar::app::kClosedPipe;  // no message: readers such as `| head` close the pipe on
                                       // purpose
   } catch (const std::bad_alloc&) {
-    return glidar::app::fail("out of memory; use a smaller image or a smaller model");
+    return glidar::app::report_error("out of memory; use a smaller image or a smaller model");
   } catch (const std::exception& error) {
-    return glidar::app::fail(error.what());
+    return glidar::app::report_error(error.what());
   }
 }

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/program.hpp>
+
+#include <apps/glidar/options/help_text.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+#include <glidar/io/formats/exr_encoder.hpp>
+#include <glidar/link/dds/participant.hpp>
+#include <glidar/link/foxglove/server.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
+  glidar view builtin:asteroid
+  glidar stream builtin:asteroid --object-rate 0,0.5,0 --port 5555
+  glidar explain asteroid.pcd --index 30000
+  glidar info builtin:torus
+  glidar sensors
+  glidar verify
+More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
+sensors, schema and verify)";
+
+using Commands = std::vector<std::pair<std::string, Command>>;
+
+const CLI::App& chosen(const CLI::App& program) {
+  const std::vector<const CLI::App*> subcommands =
+      program.get_subcommands([](const CLI::App* command) { return command->parsed(); });
+  return subcommands.empty() ? program : *subcommands.front();
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// The error for a word that is neither an option nor a subcommand, with a suggestion.
+std::string explain_extra(const CLI::App& program, const Commands& commands, std::string word) {
+  const CLI::App& command = chosen(program);
+  word = word.substr(0, word.find('='));
+  if (word.starts_with('-')) {
+    const std::string nearest = closest_match(word, option_names(command));
+    return nearest.empty() ? fmt::format("unknown option {}; see --help", word)
+                           : fmt::format("unknown option {}; did you mean {}?", word, nearest);
+  }
+  if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
+  std::vector<std::string> names = {"--help"};
+  for (const auto& [name, run] : commands) names.push_back(name);
+  const std::string nearest = closest_match(word, names);
+  return nearest.empty()
+             ? fmt::format(
+                   "'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",
+                   word)
+             : fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
+}
+
+/// CLI11's "--fov: 1 required DEG missing" and "--fov: At Most 1 required but received 2" in words.
+std::string explain_mismatch(const std::string& text) {
+  const std::string option = text.substr(0, text.find(':'));
+  if (text.find("received") != std::string::npos) {
+    return fmt::format("{}: given more than once; allowed: once", option);
+  }
+  return fmt::format("{}: there is no value after it; see --help for what it takes", option);
+}
+
+/// CLI11's "--fov excludes --fx" and "--durable requires --record" in words.
+std::string explain_conflict(const std::string& text) {
+  constexpr std::string_view kExcludes = " excludes ";
+  constexpr std::string_view kRequires = " requires ";
+  if (const std::size_t found = text.find(kExcludes); found != std::string::npos) {
+    return fmt::format("{} and {}: both are given; give one of them", text.substr(0, found),
+                       text.substr(found + kExcludes.size()));
+  }
+  const std::size_t found = text.find(kRequires);
+  return fmt::format("{0}: there is no {1}; give {1} too", text.substr(0, found),
+                     text.substr(found + kRequires.size()));
+}
+
+/// The most helpful word that CLI11 did not parse: within a subcommand an option, else the word in
+/// the place of a subcommand.
+std::string first_extra(const CLI::App& program) {
+  const std::vector<std::string> extras = program.remaining(true);
+  const bool options_first = &chosen(program) != &program;
+  const auto best = std::find_if(extras.begin(), extras.end(), [&](const std::string& word) {
+    return (word.size() > 1 && word.starts_with('-')) == options_first;
+  });
+  if (best != extras.end()) return *best;
+  return extras.empty() ? "" : extras.front();
+}
+
+int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** argv) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return program.exit(help_or_version);
+  } catch (const CLI::ArgumentMismatch& error) {
+    return report_error(explain_mismatch(error.what()));
+  } catch (const CLI::ExcludesError& error) {
+    return report_error(explain_conflict(error.what()));
+  } catch (const CLI::RequiresError& error) {
+    return report_error(explain_conflict(error.what()));
+  } catch (const CLI::ConversionError& error) {
+    return report_error(std::string(error.what()) + "; see --help for what it takes");
+  } catch (const CLI::ParseError& error) {
+    const std::string extra = first_extra(program);
+    if (!extra.empty()) return report_error(explain_extra(program, commands, extra));
+    return report_error(fmt::format("{}; see {}--help", error.what(),
+                                    &chosen(program) == &program
+                                        ? "glidar "
+                                        : fmt::format("glidar {} ", chosen(program).get_name())));
+  }
+  for (const auto& [name, run] : commands) {
+    if (program.got_subcommand(name)) return run();
+  }
+  return kBadInput;  // unreachable: parse() requires a subcommand
+}
+
+/// The version, and the optional parts of this build.
+std::string version_text() {
+  std::vector<std::string> parts;
+  if (foxglove::has_foxglove_server()) parts.emplace_back("Foxglove server");
+  if (dds::has_dds()) parts.emplace_back("ROS 2 (DDS)");
+  if (has_openexr()) parts.emplace_back("OpenEXR");
+  if (parts.empty()) parts.emplace_back("none");
+  return fmt::format("glidar {}\noptional parts: {}", version(), fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+int report_error(const std::string& message) {
+  std::fputs(fmt::format("glidar: error: {}\n", message).c_str(), stderr);
+  return kBadInput;
+}
+
+int run_program(std::span<const Subcommand> subcommands, int argc, char** argv) {
+  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
+                   "glidar");
+  use_help_layout(program);
+  program.set_version_flag("--version", version_text(), "Print the version and the optional parts");
+  program.require_subcommand(1);
+  program.footer(kExamples);
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  Commands commands;
+  for (const Subcommand& subcommand : subcommands) {
+    commands.emplace_back(subcommand.name, subcommand.add(program, arguments));
+  }
+  return parse_and_run(program, commands, argc, argv);
+}
+
+}  // namespace glidar::app
