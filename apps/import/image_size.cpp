@@ -30,7 +30,7 @@ std::optional<ImageSize> png_size(std::string_view bytes) {
 }
 
 /// Skips white space and comments, which end with their line.
-std::string_view next_word(std::string_view text) {
+std::string_view next_token(std::string_view text) {
   for (;;) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\n\v\f\r"), text.size()));
     if (!text.starts_with('#')) return text;
@@ -40,7 +40,7 @@ std::string_view next_word(std::string_view text) {
 
 /// Takes a decimal number: 0 where there is none, the largest possible one for too many digits.
 std::uint64_t take_number(std::string_view& text) {
-  text = next_word(text);
+  text = next_token(text);
   std::uint64_t number = 0;
   const auto [stop, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (problem == std::errc::result_out_of_range) number = std::numeric_limits<std::uint64_t>::max();

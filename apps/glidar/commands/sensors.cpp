@@ -120,7 +120,7 @@ void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
   summary.upright_deg = kDegreesPerRadian * std::max(0.0, high.y() - low.y());
 }
 
-Summary summarise(const Datasheet& sheet, const Beams& beams) {
+Summary summarise_sensor(const Datasheet& sheet, const Beams& beams) {
   Summary summary;
   summary.kind = kind_of(sheet.sensor.optics);
   summary.rows = beams.rows;
@@ -287,7 +287,7 @@ int list_all(const SensorsFlags& flags) {
   if (!flags.json) print_heading();
   for (const auto& file : preset_files()) {
     const Datasheet sheet = load_datasheet(file);
-    const Summary summary = summarise(sheet, make_beams(sheet.sensor));
+    const Summary summary = summarise_sensor(sheet, make_beams(sheet.sensor));
     if (flags.json) {
       json.push_back(json_of(sheet, summary));
     } else {
@@ -323,7 +323,7 @@ int run_sensors(const SensorsFlags& flags) {
   const std::filesystem::path file = find_sensor_file(flags.name);
   const Datasheet sheet = load_datasheet(file);
   const Beams beams = make_beams(sheet.sensor);
-  const Summary summary = summarise(sheet, beams);
+  const Summary summary = summarise_sensor(sheet, beams);
   if (flags.json) {
     Json json = json_of(sheet, summary);
     json["numbers"] = json_of(sheet.entries);

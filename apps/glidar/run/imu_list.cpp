@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMicroG_m_s2 = 1e-6 * kStandardGravity_m_s2;
 
-void print_heading() {
+void print_imu_heading() {
   fmt::print("{:<12} {:>7} {:>15} {:>15} {:>10} {:>10} {:>9} {:>6}  {}\n", "name", "rate",
              "gyro noise", "accel noise", "gyro bias", "accel bias", "range", "range", "backed");
   fmt::print("{:<12} {:>7} {:>15} {:>15} {:>10} {:>10} {:>9} {:>6}\n", "", "Hz", "deg/s/sqrt(Hz)",
@@ -44,7 +44,7 @@ Json json_of(const ImuDatasheet& sheet) {
           {"backed", values.backed}};
 }
 
-void print_json(const Json& json) {
+void print_imu_json(const Json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
@@ -52,7 +52,7 @@ void print_json(const Json& json) {
 
 void list_imus(bool as_json) {
   Json json = Json::array();
-  if (!as_json) print_heading();
+  if (!as_json) print_imu_heading();
   for (const std::filesystem::path& file : imu_preset_files()) {
     const ImuDatasheet sheet = load_imu_datasheet(file);
     if (as_json) {
@@ -61,7 +61,7 @@ void list_imus(bool as_json) {
       print_row(sheet);
     }
   }
-  if (as_json) print_json(json);
+  if (as_json) print_imu_json(json);
 }
 
 std::optional<std::filesystem::path> imu_preset_named(const std::string& name) {
@@ -73,9 +73,9 @@ std::optional<std::filesystem::path> imu_preset_named(const std::string& name) {
 
 void print_imu(const std::filesystem::path& file, bool as_json) {
   const ImuDatasheet sheet = load_imu_datasheet(file);
-  if (as_json) return print_json(json_of(sheet));
+  if (as_json) return print_imu_json(json_of(sheet));
   fmt::print("{}\n\n", sheet.imu.name);
-  print_heading();
+  print_imu_heading();
   print_row(sheet);
   fmt::print("\n");
   for (const DatasheetEntry& entry : sheet.entries) {

@@ -8,6 +8,14 @@
 
 namespace glidar {
 
+/// The components of an Eigen vector.
+template <class Vector>
+nlohmann::ordered_json vector_json(const Vector& v) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (decltype(v.size()) i = 0; i < v.size(); ++i) list.push_back(v[i]);
+  return list;
+}
+
 /// Writes 0.0 for every -0.0 in the document.
 void remove_negative_zeros(nlohmann::ordered_json& json);
 

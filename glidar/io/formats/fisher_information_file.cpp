@@ -27,13 +27,6 @@ constexpr const char* kConvention =
     "own "
     "frame: map_from_sensor * exp(displacement)";
 
-template <class Vector>
-Json vector_json(const Vector& v) {
-  Json list = Json::array();
-  for (Eigen::Index i = 0; i < v.size(); ++i) list.push_back(v[i]);
-  return list;
-}
-
 Json matrix_json(const Matrix6& matrix) {
   Json rows = Json::array();
   for (Eigen::Index row = 0; row < 6; ++row) rows.push_back(vector_json(matrix.row(row)));

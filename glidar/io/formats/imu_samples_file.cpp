@@ -103,10 +103,6 @@ Json rows_json(const Matrix& matrix) {
   return rows;
 }
 
-Json vector_json(const Eigen::Vector3d& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
 Json columns_json() {
   Json columns = {{"t_ns", {{"unit", "ns"}, {"text", "time of the sample"}}}};
   for (const VectorColumn& column : kVectors) {

@@ -22,10 +22,6 @@ namespace {
 // Keys keep their order. Numbers that JSON cannot represent (NaN, infinity) become null.
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const Eigen::Vector3d& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
 Json pose_json(const Pose& pose) {
   Json matrix = Json::array();
   for (Eigen::Index row = 0; row < 4; ++row) {
