@@ -24,6 +24,25 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
 endif()
 glidar_harden(glidar_settings INTERFACE)
 
+# glidar_gather(LIST REGEX...): moves the sources that include these headers to the front of the list, one regular
+# expression after the other. Unity builds compile neighbours together, so few of them parse these expensive headers.
+function(glidar_gather list)
+  set(gathered)
+  set(others ${${list}})
+  foreach(regex IN LISTS ARGN)
+    foreach(source IN LISTS others)
+      file(STRINGS ${source} found REGEX "^#include [<\"]${regex}" LIMIT_COUNT 1)
+      if(found)
+        list(APPEND gathered ${source})
+      endif()
+    endforeach()
+    if(gathered)
+      list(REMOVE_ITEM others ${gathered})
+    endif()
+  endforeach()
+  set(${list} ${gathered} ${others} PARENT_SCOPE)
+endfunction()
+
 # glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,
 # by default from all sources of the folder of its name.
 function(glidar_layer name)
@@ -31,6 +50,7 @@ function(glidar_layer name)
   if(NOT ARG_SOURCES)
     file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   endif()
+  glidar_gather(ARG_SOURCES nlohmann/ glidar/io/config/\(json|field_json|camera_info\) yaml-cpp/)
   add_library(glidar_${name} ${ARG_SOURCES})
   add_library(glidar::${name} ALIAS glidar_${name})
   set_target_properties(
