@@ -162,7 +162,7 @@ double thread_seconds() {
 
 /// A benchmark of caster->cast() in processor time, which other work on the machine hardly affects.
 template <class Cast>
-void add(const std::string& name, std::shared_ptr<Cast> caster, std::size_t count) {
+void add(const std::string& name, const std::shared_ptr<Cast>& caster, std::size_t count) {
   benchmark::RegisterBenchmark(name.c_str(), [caster, count](benchmark::State& state) {
     for (auto _ : state) {
       const double begin = thread_seconds();

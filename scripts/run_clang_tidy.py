@@ -6,9 +6,10 @@
 usage: run_clang_tidy.py BUILD_FOLDER JOBS [COMMIT]; exit status 1 when it finds something.
 With a COMMIT, only sources are checked that differ from it or include, also indirectly, a file that does.
 All are checked if the repository lacks the commit.
-Most of the time goes into the headers of others, so several sources of a folder that are compiled alike are
-checked as one, which takes a quarter of the time. Sources that do not go together, as they define the same
-name, are checked one by one. A group that passed is not checked again until one of its files, a header of
+It uses the clang-tidy that ./dev installs from PyPI, because it skips the headers of others, in which older versions
+spend most of the time; without that package, the one in PATH. Reading these headers still takes time, so several sources
+that are compiled alike are checked as one. Sources that do not go together, because they define the same name, are in other groups; a group with a finding is split until
+the source is known. A group that passed is not checked again until one of its files, a header of
 the project or the configuration changes: BUILD_FOLDER/tidy keeps one empty file per hash of them.
 """
 
@@ -26,7 +27,9 @@ from source_groups import groups
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("glidar", "apps", "bench", "examples", "python", "tests")
-GROUP_SIZE = 8
+GROUP_SIZE = 16
+PACKAGED = ROOT / "build/venv-lint/bin/clang-tidy"
+CLANG_TIDY = str(PACKAGED) if PACKAGED.exists() else "clang-tidy"
 
 
 def own_sources(build):
@@ -46,13 +49,15 @@ def flags_of(file, command):
 
 
 def groups_of(sources, size=GROUP_SIZE):
-    """Sources of one folder with the same flags, at most `size` together, none of which define the same names."""
-    return groups(sources, size, lambda source: (source[0].parent, source[1], flags_of(source[0], source[2])))
+    """Sources of a layer with the same flags, at most `size` together, none of which define the same names."""
+    return groups(sources, size, lambda source: (source[0].relative_to(ROOT).parts[:-1][:2], source[1],
+                                                 flags_of(source[0], source[2])))
 
 
 def hash_of_shared():
-    """The hash of all that any check depends on: the configuration and the project's headers."""
-    digest = hashlib.sha256()
+    """The hash of all that any check depends on: clang-tidy, its configuration and the project's headers."""
+    version = subprocess.run([CLANG_TIDY, "--version"], capture_output=True, check=True).stdout
+    digest = hashlib.sha256(version)
     files = [*ROOT.glob(".clang-tidy"), *ROOT.glob("tests/.clang-tidy"), Path(__file__)]
     for folder in FOLDERS:
         files += (ROOT / folder).rglob("*.hpp")
@@ -64,28 +69,33 @@ def hash_of_shared():
 def run(database, file, *options):
     """(exit status, output) of clang-tidy."""
     # -w: what the compiler may warn of is decided by the compiler of the build
-    command = ["clang-tidy", "-p", str(database), "--quiet", "--warnings-as-errors=*", "--extra-arg=-w", *options]
+    command = [CLANG_TIDY, "-p", str(database), "--quiet", "--warnings-as-errors=*", "--extra-arg=-w", *options]
     done = subprocess.run([*command, str(file)], capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + (done.stderr if "error:" not in done.stdout else "")
 
 
-def check_each(build, members):
-    """The findings of clang-tidy for the files, one at a time."""
-    results = [run(build, file) for file, _, _ in members]
-    return "".join(text for status, text in results if status != 0)
+def findings(build, members, key):
+    """The findings of clang-tidy for a group of files: of its halves, if it does not pass as a whole. Some may not compile
+    together, and findings are clearest for a single file."""
+    if len(members) == 1:
+        status, text = run(build, members[0][0])
+        return text if status != 0 else ""
+    if check_together(build, members, key):
+        return ""
+    half = len(members) // 2
+    return findings(build, members[:half], key) + findings(build, members[half:], key)
 
 
 def check(build, members, key):
     """The findings of clang-tidy for a group of files; writes a stamp when there are none."""
-    text = check_each(build, members) if len(members) == 1 or not check_together(build, members, key) else ""
+    text = findings(build, members, key)
     if not text:
         (build / "tidy" / key).touch()
     return text
 
 
 def check_together(build, members, key):
-    """Whether a source that includes all files passes. If not, they are to be checked one by one: some may not go
-    together, and findings are clearest for a single file."""
+    """Whether a source that includes all files passes."""
     first, directory, command = members[0]
     # below a folder with the settings of the tests, if they are tests
     folder = build / "tidy" / first.relative_to(ROOT).parts[0] / key

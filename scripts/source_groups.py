@@ -22,6 +22,8 @@ LOCAL_CONSTANTS = re.compile(r"^\s+(?:static )?const(?:expr)? [^(={;\n]*?(\w+)(?
 def signature(line):
     """A function's first line without the names of its parameters."""
     name, _, parameters = line.partition("(")
+    if name == "int main":
+        return "main"
     types = [re.sub(r"(?<=[&*\s])\w+$", "", part.strip(" {)")) for part in parameters.split(",")]
     return f"{name.split()[-1]}({','.join(kind.replace(' ', '') for kind in types)}"
 

@@ -47,7 +47,7 @@ std::vector<std::string> zip_names(std::string_view archive) {
 
 std::string zip_name(std::string_view reference) {
   if (reference.starts_with("./")) reference.remove_prefix(2);
-  while (reference.starts_with("/")) reference.remove_prefix(1);
+  while (reference.starts_with('/')) reference.remove_prefix(1);
   return percent_decoded(std::string(reference));
 }
 

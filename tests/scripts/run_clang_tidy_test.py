@@ -33,14 +33,18 @@ class Grouping(unittest.TestCase):
     def names(self, sources, **words):
         return [[file.stem for file, _, _ in members] for members in run_clang_tidy.groups_of(sources, **words)]
 
-    def test_sources_of_a_folder_go_together_up_to_a_number(self):
+    def test_sources_go_together_up_to_a_number(self):
         sources = [self.source(f"glidar/{name}.cpp", GOOD.format(name)) for name in "abcde"]
         self.assertEqual(self.names(sources, size=3), [["a", "b", "c"], ["d", "e"]])
 
-    def test_sources_of_other_folders_and_options_do_not(self):
-        sources = [self.source("glidar/a.cpp", ""), self.source("glidar/io/b.cpp", ""),
-                   self.source("glidar/c.cpp", "", "-O3")]
-        self.assertEqual(self.names(sources), [["a"], ["b"], ["c"]])
+    def test_sources_of_other_layers_and_options_do_not(self):
+        sources = [self.source("glidar/io/a.cpp", ""), self.source("glidar/link/b.cpp", ""),
+                   self.source("glidar/io/c.cpp", "", "-O3"), self.source("glidar/io/bags/d.cpp", "")]
+        self.assertEqual(self.names(sources), [["a", "d"], ["b"], ["c"]])
+
+    def test_programs_do_not(self):
+        sources = [self.source("bench/a.cpp", "int main() {\n}\n"), self.source("bench/b.cpp", "int main(int n, char** v) {\n}\n")]
+        self.assertEqual(self.names(sources), [["a"], ["b"]])
 
     def test_sources_that_define_the_same_do_not(self):
         for text in ("constexpr double kLimit_m = 1.0;\n", "constexpr int kTable[3] = {1, 2, 3};\n",
@@ -65,7 +69,7 @@ class Grouping(unittest.TestCase):
                    self.source("glidar/b.cpp", "using ::testing::Eq;\nint size(B b) {\n  const int row = 1;\n}\n")]
         self.assertEqual(self.names(sources), [["a", "b"]])
 
-    @unittest.skipIf(shutil.which("clang-tidy") is None, "no clang-tidy")
+    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
     def test_a_fault_of_one_source_is_told_of_it_and_good_ones_pass(self):
         build = self.root / "build"
         (build / "tidy").mkdir(parents=True)
@@ -78,8 +82,8 @@ class Grouping(unittest.TestCase):
         self.assertRegex(reported, r"glidar/c\.cpp:2:22: error: parameter 'unused' is unused")
         self.assertFalse((build / "tidy/1").exists())
 
-    @unittest.skipIf(shutil.which("clang-tidy") is None, "no clang-tidy")
-    def test_sources_that_do_not_compile_together_are_checked_one_by_one(self):
+    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
+    def test_sources_that_do_not_compile_together_are_checked_apart(self):
         build = self.root / "build"
         (build / "tidy").mkdir(parents=True)
         both = [self.source("glidar/a.cpp", "namespace {\nint hidden;\n}\nint glidar_a = hidden;\n"),

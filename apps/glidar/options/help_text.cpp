@@ -39,7 +39,7 @@ std::string indented(std::string_view words) {
       text += line + "\n";
       line = " ";
     }
-    line += " ";
+    line += ' ';
     line += word;
   }
   return text + line + "\n";
