@@ -14,12 +14,12 @@ constexpr double kBend = 0.25;                   // of the distance between two 
 constexpr double kRounding = 1e-6;               // of the range
 constexpr double kSmooth = 0.70710678118654752;  // cosine of 45 degrees
 
-double tolerance_m(const SurfacePoint& a, const SurfacePoint& b, double distance_m) {
+double tolerance_m(const SubRayHit& a, const SubRayHit& b, double distance_m) {
   return kBend * distance_m + kRounding * std::max(a.range_m, b.range_m);
 }
 
 /// Distance of b in front of a's plane, along a's ray, m; negative: behind.
-double in_front_m(const SurfacePoint& a, const Eigen::Vector3d& from_a_to_b) {
+double in_front_m(const SubRayHit& a, const Eigen::Vector3d& from_a_to_b) {
   constexpr double kGrazing = 1e-9;
   return a.normal.dot(from_a_to_b) / std::max(a.cos_incidence, kGrazing);
 }
@@ -54,7 +54,7 @@ void flatten(Labels& sets) {
 
 }  // namespace
 
-bool has_gap(const SurfacePoint& a, const SurfacePoint& b) {
+bool has_gap(const SubRayHit& a, const SubRayHit& b) {
   const Eigen::Vector3d from_a_to_b = b.position_m - a.position_m;
   const double b_front_m = in_front_m(a, from_a_to_b);
   const double a_front_m = in_front_m(b, -from_a_to_b);
@@ -69,7 +69,7 @@ void BeamSurfaces::find(const Beams& rays, const Hits& hits, std::size_t first, 
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = first + k;
     if (hits.instance[i] == kInvalidId) continue;
-    SurfacePoint& point = points_.emplace_back();
+    SubRayHit& point = points_.emplace_back();
     point.position_m = hits.range_m[i] * rays.directions[i];
     if (!rays.origins_m.empty()) point.position_m += rays.origins_m[i];
     point.normal = hits.normal[i].cast<double>();
@@ -80,7 +80,7 @@ void BeamSurfaces::find(const Beams& rays, const Hits& hits, std::size_t first, 
   label();
 }
 
-void BeamSurfaces::find(std::vector<SurfacePoint> points, std::size_t count) {
+void BeamSurfaces::find(std::vector<SubRayHit> points, std::size_t count) {
   points_ = std::move(points);
   of_ray_.assign(count, 0);
   label();
@@ -95,8 +95,8 @@ void BeamSurfaces::label() {
 
 /// A fast test that succeeds for most beams: all points are near the plane of the first.
 bool BeamSurfaces::is_one_face() const {
-  const SurfacePoint& a = points_.front();
-  return std::all_of(points_.begin() + 1, points_.end(), [&](const SurfacePoint& b) {
+  const SubRayHit& a = points_.front();
+  return std::all_of(points_.begin() + 1, points_.end(), [&](const SubRayHit& b) {
     const Eigen::Vector3d from_a_to_b = b.position_m - a.position_m;
     return std::abs(in_front_m(a, from_a_to_b)) <= tolerance_m(a, b, from_a_to_b.norm()) &&
            a.normal.dot(b.normal) >= kSmooth;
@@ -108,8 +108,8 @@ void BeamSurfaces::find_faces() {
   std::iota(face_.begin(), face_.end(), std::uint16_t{0});
   for (std::size_t i = 0; i < points_.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const SurfacePoint& a = points_[j];
-      const SurfacePoint& b = points_[i];
+      const SubRayHit& a = points_[j];
+      const SubRayHit& b = points_[i];
       if (a.normal.dot(b.normal) >= kSmooth && !has_gap(a, b)) join(face_, j, i);
     }
   }

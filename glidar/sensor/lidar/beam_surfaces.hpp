@@ -12,7 +12,7 @@
 namespace glidar {
 
 /// The hit of a sub-ray of a beam, in the sensor frame.
-struct SurfacePoint {
+struct SubRayHit {
   Eigen::Vector3d position_m;
   Eigen::Vector3d normal;      ///< of the triangle, a unit vector towards the sensor
   double cos_incidence = 1.0;  ///< of the sub-ray, 0..1
@@ -29,7 +29,7 @@ struct SurfacePoint {
 /// and back between two sub-rays: such a bend occludes a part of itself only beyond two thirds of
 /// the distance (a cubic from one plane to the other). It is at least 1e-6 of the range, for
 /// single-precision coordinates of adjacent meshes.
-bool has_gap(const SurfacePoint& a, const SurfacePoint& b);
+bool has_gap(const SubRayHit& a, const SubRayHit& b);
 
 /// Finds which sub-rays of a beam hit the same surface. Points without a gap whose normals differ
 /// by at most 45 degrees are on one smooth face. Faces join at an edge if there is no gap between
@@ -40,7 +40,7 @@ class BeamSurfaces {
   void find(const Beams& rays, const Hits& hits, std::size_t first, std::size_t count);
 
   /// Groups these points.
-  void find(std::vector<SurfacePoint> points, std::size_t count);
+  void find(std::vector<SubRayHit> points, std::size_t count);
 
   /// The surface number of a sub-ray: equal for sub-rays on one surface; 0 for a miss.
   [[nodiscard]] std::uint16_t of_ray(std::size_t ray) const { return of_ray_[ray]; }
@@ -51,7 +51,7 @@ class BeamSurfaces {
   void find_faces();
   void join_faces();
 
-  std::vector<SurfacePoint> points_;
+  std::vector<SubRayHit> points_;
   std::vector<std::uint16_t> face_;     ///< per point: representative point of its face
   std::vector<std::uint16_t> surface_;  ///< per point: representative point of its surface
   std::vector<std::uint8_t> apart_;     ///< square matrix: 1 where two faces have a gap

@@ -12,8 +12,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// The intersection of a ray from the origin with a plane through a point.
-SurfacePoint on_plane(const Vector3d& ray, const Vector3d& point, const Vector3d& normal,
-                      std::uint32_t index = 0) {
+SubRayHit on_plane(const Vector3d& ray, const Vector3d& point, const Vector3d& normal,
+                   std::uint32_t index = 0) {
   const Vector3d direction = ray.normalized();
   const double range_m = normal.dot(point) / normal.dot(direction);
   const Vector3d unit = normal.normalized();
@@ -32,8 +32,8 @@ TEST(HasGap, IsFalseWithinAPlaneAtAnyIncidence) {
   for (double tilt = -1.57; tilt < 1.57; tilt += 0.0301) {
     const Vector3d normal(std::sin(tilt), 0.0, std::cos(tilt));
     for (const double range_m : {0.5, 10.0, 200.0}) {
-      const SurfacePoint a = on_plane(ray(0.0), {0.0, 0.0, range_m}, normal);
-      const SurfacePoint b = on_plane(ray(kTilt), {0.0, 0.0, range_m}, normal);
+      const SubRayHit a = on_plane(ray(0.0), {0.0, 0.0, range_m}, normal);
+      const SubRayHit b = on_plane(ray(kTilt), {0.0, 0.0, range_m}, normal);
       if (!(b.range_m > 0.0)) continue;  // the plane ends in the distance between the two
       EXPECT_FALSE(has_gap(a, b)) << tilt;
       EXPECT_FALSE(has_gap(b, a)) << tilt;
@@ -47,9 +47,8 @@ TEST(HasGap, IsTrueBetweenParallelPlanesBeyondTheTolerance) {
   const double spacing_m = 10.0 * kTilt;
   const double limit_m = spacing_m / std::sqrt(15.0);
   for (const double part : {0.5, 0.9, 1.1, 2.0, 30.0}) {
-    const SurfacePoint a = on_plane(ray(0.0), {0.0, 0.0, 10.0}, Vector3d::UnitZ());
-    const SurfacePoint b =
-        on_plane(ray(kTilt), {0.0, 0.0, 10.0 + part * limit_m}, Vector3d::UnitZ());
+    const SubRayHit a = on_plane(ray(0.0), {0.0, 0.0, 10.0}, Vector3d::UnitZ());
+    const SubRayHit b = on_plane(ray(kTilt), {0.0, 0.0, 10.0 + part * limit_m}, Vector3d::UnitZ());
     EXPECT_EQ(has_gap(a, b), part > 1.0) << part;
     EXPECT_EQ(has_gap(b, a), part > 1.0) << part;
   }
@@ -60,21 +59,21 @@ TEST(HasGap, IsFalseAcrossAnEdgeSharedByBothSides) {
   const Vector3d edge = 10.0 * ray(0.5 * kTilt);
   for (const double left : {-1.4, -0.7, 0.2, 1.2}) {
     for (const double right : {-1.3, -0.2, 0.6, 1.4}) {
-      const SurfacePoint a = on_plane(ray(0.0), edge, {std::sin(left), 0.0, std::cos(left)});
-      const SurfacePoint b = on_plane(ray(kTilt), edge, {std::sin(right), 0.0, std::cos(right)});
+      const SubRayHit a = on_plane(ray(0.0), edge, {std::sin(left), 0.0, std::cos(left)});
+      const SubRayHit b = on_plane(ray(kTilt), edge, {std::sin(right), 0.0, std::cos(right)});
       EXPECT_FALSE(has_gap(a, b)) << left << " " << right;
     }
   }
 }
 
 TEST(HasGap, IsFalseForTheRoundingOfAdjacentMeshes) {
-  const SurfacePoint a = on_plane(ray(0.0), {0.0, 0.0, 100.0}, Vector3d::UnitZ());
-  const SurfacePoint b = on_plane(ray(1e-7), {0.0, 0.0, 100.00005}, Vector3d::UnitZ());
+  const SubRayHit a = on_plane(ray(0.0), {0.0, 0.0, 100.0}, Vector3d::UnitZ());
+  const SubRayHit b = on_plane(ray(1e-7), {0.0, 0.0, 100.00005}, Vector3d::UnitZ());
   EXPECT_FALSE(has_gap(a, b));
 }
 
 /// The surfaces of points, one a sub-ray.
-BeamSurfaces surfaces_of(std::vector<SurfacePoint> points) {
+BeamSurfaces surfaces_of(std::vector<SubRayHit> points) {
   for (std::uint32_t i = 0; i < points.size(); ++i) points[i].ray = i;
   BeamSurfaces surfaces;
   const std::size_t count = points.size() + 1;  // the last one misses
@@ -85,9 +84,9 @@ BeamSurfaces surfaces_of(std::vector<SurfacePoint> points) {
 TEST(BeamSurfaces, JoinFacesThroughIntermediateFaces) {
   // stairs from the front: tread, riser, tread; the two treads alone have a gap between them
   const Vector3d up = Vector3d::UnitX();
-  const SurfacePoint lower = on_plane({-0.05, 0.0, 1.0}, {-0.5, 0.0, 0.0}, up);
-  const SurfacePoint riser = on_plane({-0.045, 0.0, 1.0}, {0.0, 0.0, 10.5}, Vector3d::UnitZ());
-  const SurfacePoint upper = on_plane({-0.035, 0.0, 1.0}, {-0.4, 0.0, 0.0}, up);
+  const SubRayHit lower = on_plane({-0.05, 0.0, 1.0}, {-0.5, 0.0, 0.0}, up);
+  const SubRayHit riser = on_plane({-0.045, 0.0, 1.0}, {0.0, 0.0, 10.5}, Vector3d::UnitZ());
+  const SubRayHit upper = on_plane({-0.035, 0.0, 1.0}, {-0.4, 0.0, 0.0}, up);
   ASSERT_LT(lower.range_m, riser.range_m);
   ASSERT_LT(riser.range_m, upper.range_m);
   const BeamSurfaces all = surfaces_of({lower, riser, upper});
@@ -100,7 +99,7 @@ TEST(BeamSurfaces, JoinFacesThroughIntermediateFaces) {
 TEST(BeamSurfaces, AreOneForASphereAndTwoWithABackground) {
   const double radius_m = 0.5;
   const Vector3d middle(0.0, 0.0, 10.0);
-  std::vector<SurfacePoint> points;
+  std::vector<SubRayHit> points;
   for (const double out : {0.0, 0.3, 0.6, 0.9, 0.99, 0.9999}) {
     const Vector3d direction = ray(out * std::tan(std::asin(radius_m / 10.0))).normalized();
     const double along = direction.dot(middle);
