@@ -6,18 +6,12 @@
 #include <glidar/link/dds/pose_decoder.hpp>
 #include <glidar/link/dds/transform_tree.hpp>
 
+#include "demand.hpp"
+
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace glidar::testing {
 namespace {
-
-void demand(bool holds, const char* promise) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", promise);
-  std::abort();
-}
 
 void check(const TimedPose& pose) {
   constexpr double kRounding = 1e-12;

@@ -11,7 +11,7 @@ namespace glidar::app {
 namespace {
 
 /// Three beams of a camera: a near and a far hit, and a miss.
-class SensorPictureTest : public testing::Test {
+class SensorPictureTest : public ::testing::Test {
  protected:
   void SetUp() override {
     beams_.rows = 1;

@@ -14,7 +14,7 @@
 namespace glidar::app {
 
 /// A viewer without a window, with a temporary folder.
-class ViewerTest : public testing::Test {
+class ViewerTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::path(::testing::TempDir()) /

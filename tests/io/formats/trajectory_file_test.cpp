@@ -9,13 +9,13 @@
 namespace glidar {
 namespace {
 
-TimedPoses load(const std::string& content, const TrajectoryFileOptions& options = {}) {
+TimedPoses load_text(const std::string& content, const TrajectoryFileOptions& options = {}) {
   const TestFolder folder;
   return load_trajectory_file(folder.write("t.txt", content), options);
 }
 
 TEST(TrajectoryFile, TumHasThePositionThenTheQuaternionWithWLast) {
-  const TimedPoses poses = load(
+  const TimedPoses poses = load_text(
       "# timestamp tx ty tz qx qy qz qw\n"
       "\n"
       "1.5 1 2 3 0.6 0 0 0.8\r\n"
@@ -31,16 +31,17 @@ TEST(TrajectoryFile, TumHasThePositionThenTheQuaternionWithWLast) {
 
 TEST(TrajectoryFile, TimesAreExactToTheNanosecond) {
   // EuRoC's first ground truth; a double of this size has steps of 238 ns
-  EXPECT_EQ(load("1403636580.838555574 0 0 0 0 0 0 1\n").first_ns(), 1'403'636'580'838'555'574);
-  EXPECT_EQ(load("-0.000000001 0 0 0 0 0 0 1\n").first_ns(), -1);
-  EXPECT_EQ(load("0.0000000015 0 0 0 0 0 0 1\n").first_ns(), 2);
-  EXPECT_EQ(load("1.5e-3 0 0 0 0 0 0 1\n").first_ns(), 1'500'000);
-  EXPECT_EQ(load("7 0 0 0 0 0 0 1").first_ns(), 7'000'000'000);
-  EXPECT_EQ(load(".25 0 0 0 0 0 0 1").first_ns(), 250'000'000);
+  EXPECT_EQ(load_text("1403636580.838555574 0 0 0 0 0 0 1\n").first_ns(),
+            1'403'636'580'838'555'574);
+  EXPECT_EQ(load_text("-0.000000001 0 0 0 0 0 0 1\n").first_ns(), -1);
+  EXPECT_EQ(load_text("0.0000000015 0 0 0 0 0 0 1\n").first_ns(), 2);
+  EXPECT_EQ(load_text("1.5e-3 0 0 0 0 0 0 1\n").first_ns(), 1'500'000);
+  EXPECT_EQ(load_text("7 0 0 0 0 0 0 1").first_ns(), 7'000'000'000);
+  EXPECT_EQ(load_text(".25 0 0 0 0 0 0 1").first_ns(), 250'000'000);
 }
 
 TEST(TrajectoryFile, CsvNamesItsColumnsInAnyOrder) {
-  const TimedPoses poses = load(
+  const TimedPoses poses = load_text(
       "\xEF\xBB\xBFqw, qx,qy,qz ,t,z,y,x\n"
       "0.8,0.6,0,0, 3 ,30,20,10\n"
       "1,0,0,0,4,0,0,0\n");
@@ -52,7 +53,7 @@ TEST(TrajectoryFile, CsvNamesItsColumnsInAnyOrder) {
 TEST(TrajectoryFile, KittiPosesAreRowsOfAMatrix) {
   // a quarter turn about z: x goes to y
   const std::string rows = "1 0 0 5 0 1 0 6 0 0 1 7\n0 -1 0 1 1 0 0 2 0 0 1 3\n";
-  const TimedPoses poses = load(rows, {.rate_hz = 10.0});
+  const TimedPoses poses = load_text(rows, {.rate_hz = 10.0});
   EXPECT_EQ(poses.first_ns(), 0);
   EXPECT_EQ(poses.last_ns(), 100'000'000);
   EXPECT_EQ(poses.pose_at(0).translation(), Eigen::Vector3d(5.0, 6.0, 7.0));
@@ -77,7 +78,7 @@ TEST(TrajectoryFile, KittiTimesAreReadFromAnotherFile) {
 }
 
 TEST(TrajectoryFile, StartShiftsAllTimes) {
-  const TimedPoses poses = load("100 0 0 0 0 0 0 1\n101.5 0 0 0 0 0 0 1\n", {.start_ns = 7});
+  const TimedPoses poses = load_text("100 0 0 0 0 0 0 1\n101.5 0 0 0 0 0 0 1\n", {.start_ns = 7});
   EXPECT_EQ(poses.first_ns(), 7);
   EXPECT_EQ(poses.last_ns(), 1'500'000'007);
 }
@@ -85,7 +86,7 @@ TEST(TrajectoryFile, StartShiftsAllTimes) {
 TEST(TrajectoryFile, NumbersDoNotDependOnTheLocale) {
   const std::string before = std::setlocale(LC_ALL, nullptr);
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) std::setlocale(LC_ALL, name);
-  EXPECT_EQ(load("1.5 0.25 0 0 0 0 0 1\n").poses()[0].position_m.x(), 0.25);
+  EXPECT_EQ(load_text("1.5 0.25 0 0 0 0 0 1\n").poses()[0].position_m.x(), 0.25);
   std::setlocale(LC_ALL, before.c_str());
 }
 

@@ -91,7 +91,7 @@ void draw_text(Window& window, const std::string& text) {
   window.show();
 }
 
-class WindowTest : public testing::Test {
+class WindowTest : public ::testing::Test {
  protected:
   WindowSystem windows_;
 };
