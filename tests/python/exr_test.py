@@ -65,7 +65,7 @@ def test_channels_contain_the_columns_of_the_cloud(frame, tmp_path):
     cloud = frame.cloud("all")
     check_channels(images, cloud, columns)
     # OpenEXR has no 64-bit integers
-    assert {column["name"] for column in columns} == {*cloud.columns} - {"stamp"}
+    assert {column["name"] for column in columns} == {*cloud} - {"stamp"}
     miss = cloud["instance"] == 0xFFFFFFFF
     assert miss.any() and not miss.all()
     assert np.isnan(images["Z"][miss]).all() and (images["instance"][miss] == 0xFFFFFFFF).all()
