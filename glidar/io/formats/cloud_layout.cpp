@@ -305,6 +305,15 @@ std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& senso
   return shares;
 }
 
+std::vector<std::uint8_t> livox_reflectivities(const PointCloud& cloud, const Sensor& sensor,
+                                               const Beams& beams) {
+  const std::vector<double> numbers = reflectivity(cloud, unit_layout(), sensor, beams);
+  std::vector<std::uint8_t> bytes(numbers.size());
+  std::transform(numbers.begin(), numbers.end(), bytes.begin(),
+                 [](double number) { return nearest<std::uint8_t>(livox_byte(number)); });
+  return bytes;
+}
+
 std::span<const PointFieldLayout> cloud_layouts() {
   static const std::vector<PointFieldLayout> kLayouts = [] {
     std::vector<PointFieldLayout> all;

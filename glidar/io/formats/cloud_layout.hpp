@@ -6,6 +6,7 @@
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/sensor/sensor.hpp>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,5 +40,10 @@ PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const 
 /// columns intensity and, for pulsed sensors, range. Throws Error without them.
 std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& sensor,
                                     const Beams& beams);
+
+/// Reflectivities as the layout `livox` has them. Needs the columns intensity and range. Throws
+/// Error without them.
+std::vector<std::uint8_t> livox_reflectivities(const PointCloud& cloud, const Sensor& sensor,
+                                               const Beams& beams);
 
 }  // namespace glidar

@@ -8,6 +8,8 @@
 #include <glidar/io/packets/return_selection.hpp>
 #include <glidar/math/constants.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -194,6 +196,29 @@ class HesaiDecoder final : public PacketDecoder {
 
 bool is_hesai(const Sensor& sensor) {
   return find_hesai_model(sensor) != nullptr;
+}
+
+HesaiIdentity hesai_identity(const Sensor& sensor) {
+  const HesaiModel& model = checked_model(sensor);
+  const Spinning& spinning = spinning_optics(sensor, "Hesai packets");
+  const ReturnSelection returns =
+      select_packet_returns(sensor, "Hesai packets of " + sensor.name);
+  HesaiIdentity identity;
+  identity.angle_correction = "Channel,Elevation,Azimuth\n";
+  for (std::size_t i = 0; i < spinning.channels.size(); ++i) {
+    const SpinningChannel& channel = spinning.channels[i];
+    identity.angle_correction += fmt::format(
+        "{},{:.4f},{:.4f}\n", i + 1, channel.elevation_rad * kDegreesPerRadian,
+        -channel.azimuth_offset_rad * kDegreesPerRadian);
+  }
+  const auto mode = static_cast<unsigned>(returns.mode);
+  constexpr unsigned kStrongest = static_cast<unsigned>(PacketReturnMode::strongest);
+  identity.model_number = model.number;
+  identity.channels = static_cast<std::uint8_t>(model.channels);
+  identity.return_mode = mode == kStrongest ? 1 : returns.is_dual() ? 2 : 0;
+  identity.spin_rate_rpm = static_cast<std::uint16_t>(
+      std::lround(std::clamp(60.0 * spinning.rotation_hz, 0.0, 65535.0)));
+  return identity;
 }
 
 std::unique_ptr<PacketEncoder> make_hesai_encoder(const Sensor& sensor) {

@@ -28,6 +28,7 @@ struct HesaiModel {
   double block_period_ns = 0.0;
   double block_offset_ns = 0.0;   ///< start of the reference block after the packet's time
   bool counts_from_last = false;  ///< the reference is the last block, else the first
+  std::uint8_t number = 0;        ///< by which the sensor states its model
 };
 
 /// A packet, number for number.

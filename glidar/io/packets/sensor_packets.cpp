@@ -14,12 +14,34 @@ namespace {
 
 [[noreturn]] void fail_of_maker(const Sensor& sensor) {
   throw Error({"packets of " + sensor.name, "no manufacturer's packets are known for this sensor",
-               "the presets of Velodyne, Ouster and Hesai sensors", "write clouds"});
+               "the presets of Velodyne, Ouster, Hesai and Livox sensors", "write clouds"});
 }
 
 std::array<float, 3> scaled(const Eigen::Vector3d& v, double scale) {
   return {static_cast<float>(v.x() * scale), static_cast<float>(v.y() * scale),
           static_cast<float>(v.z() * scale)};
+}
+
+/// Firmware manual, "IMU Data Packet Format": one sample with the time of each of its parts.
+UdpPacket ouster_imu_packet(const ImuSamples& samples, std::size_t i, std::uint16_t port) {
+  const auto stamp_ns = static_cast<std::uint64_t>(samples.t_ns[i]);
+  const OusterImu imu{
+      .stamp_ns = stamp_ns,
+      .acceleration_stamp_ns = stamp_ns,
+      .rate_stamp_ns = stamp_ns,
+      .acceleration_g = scaled(samples.specific_force_m_s2[i], 1.0 / kStandardGravity_m_s2),
+      .rate_deg_s = scaled(samples.angular_velocity_rad_s[i], kDegreesPerRadian)};
+  return {samples.t_ns[i], port, port, encode(imu)};
+}
+
+UdpPacket livox_imu_packet(const ImuSamples& samples, std::size_t i) {
+  LivoxPacket packet;
+  packet.type = LivoxDataType::imu;
+  packet.count = static_cast<std::uint16_t>(samples.first + i);
+  packet.stamp_ns = static_cast<std::uint64_t>(samples.t_ns[i]);
+  packet.rate_rad_s = scaled(samples.angular_velocity_rad_s[i], 1.0);
+  packet.acceleration_g = scaled(samples.specific_force_m_s2[i], 1.0 / kStandardGravity_m_s2);
+  return {samples.t_ns[i], kLivoxImuSourcePort, kLivoxImuPort, encode(packet)};
 }
 
 bool is_earlier_packet(const UdpPacket& a, const UdpPacket& b) {
@@ -29,7 +51,7 @@ bool is_earlier_packet(const UdpPacket& a, const UdpPacket& b) {
 }  // namespace
 
 bool has_packets(const Sensor& sensor) {
-  return is_velodyne(sensor) || is_ouster(sensor) || is_hesai(sensor);
+  return is_velodyne(sensor) || is_ouster(sensor) || is_hesai(sensor) || is_livox(sensor);
 }
 
 std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,
@@ -37,6 +59,7 @@ std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,
   if (is_velodyne(sensor)) return make_velodyne_encoder(sensor, options.position);
   if (is_ouster(sensor)) return make_ouster_encoder(sensor, options.ouster);
   if (is_hesai(sensor)) return make_hesai_encoder(sensor);
+  if (is_livox(sensor)) return make_livox_encoder(sensor, options.livox_type);
   fail_of_maker(sensor);
 }
 
@@ -45,6 +68,7 @@ std::unique_ptr<PacketDecoder> make_packet_decoder(const Sensor& sensor,
   if (is_velodyne(sensor)) return make_velodyne_decoder(sensor);
   if (is_ouster(sensor)) return make_ouster_decoder(sensor, options.ouster);
   if (is_hesai(sensor)) return make_hesai_decoder(sensor);
+  if (is_livox(sensor)) return make_livox_decoder(sensor);
   fail_of_maker(sensor);
 }
 
@@ -52,7 +76,9 @@ SensorPackets::SensorPackets(const Sensor& sensor, const PacketOptions& options,
                              PacketImuSampler imu_samples)
     : sensor_(sensor),
       encoder_(make_packet_encoder(sensor, options)),
-      imu_samples_(is_ouster(sensor) ? std::move(imu_samples) : PacketImuSampler()),
+      imu_samples_(is_ouster(sensor) || is_livox(sensor) ? std::move(imu_samples)
+                                                         : PacketImuSampler()),
+      is_livox_(is_livox(sensor)),
       imu_port_(options.ouster.identity.imu_port) {}
 
 void SensorPackets::encode(const Frame& frame, const Beams& beams,
@@ -71,19 +97,12 @@ void SensorPackets::finish(std::vector<UdpPacket>& packets) {
   encoder_->finish(packets);
 }
 
-/// Firmware manual, "IMU Data Packet Format": one sample with the time of each of its parts.
 void SensorPackets::encode_imu(std::int64_t until_ns, std::vector<UdpPacket>& packets) {
   if (until_ns <= imu_ns_) return;
   const ImuSamples samples = imu_samples_(std::exchange(imu_ns_, until_ns), until_ns);
   for (std::size_t i = 0; i < samples.t_ns.size(); ++i) {
-    const auto stamp_ns = static_cast<std::uint64_t>(samples.t_ns[i]);
-    const OusterImu imu{
-        .stamp_ns = stamp_ns,
-        .acceleration_stamp_ns = stamp_ns,
-        .rate_stamp_ns = stamp_ns,
-        .acceleration_g = scaled(samples.specific_force_m_s2[i], 1.0 / kStandardGravity_m_s2),
-        .rate_deg_s = scaled(samples.angular_velocity_rad_s[i], kDegreesPerRadian)};
-    packets.push_back({samples.t_ns[i], imu_port_, imu_port_, glidar::encode(imu)});
+    packets.push_back(is_livox_ ? livox_imu_packet(samples, i)
+                                : ouster_imu_packet(samples, i, imu_port_));
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/packets/livox_codec.hpp>
 #include <glidar/io/packets/ouster_codec.hpp>
 #include <glidar/io/packets/packet_codec.hpp>
 #include <glidar/io/packets/velodyne_codec.hpp>
@@ -20,6 +21,7 @@ namespace glidar {
 struct PacketOptions {
   std::optional<GeoPosition> position;  ///< Velodyne
   OusterOptions ouster;
+  LivoxDataType livox_type = LivoxDataType::cartesian_mm;  ///< of points
 };
 
 /// Whether the sensor is named after a model whose packets are known.
@@ -38,7 +40,7 @@ std::unique_ptr<PacketDecoder> make_packet_decoder(const Sensor& sensor,
 using PacketImuSampler = std::function<ImuSamples(std::int64_t from_ns, std::int64_t until_ns)>;
 
 /// Everything that a sensor sends: the packets of its frames, and those of its IMU if its
-/// manufacturer has such (Ouster), in the order of their times.
+/// manufacturer has such (Ouster, Livox), in the order of their times.
 class SensorPackets {
  public:
   /// `imu_samples` empty: no packets of an IMU. Throws Error like make_packet_encoder.
@@ -57,6 +59,7 @@ class SensorPackets {
   Sensor sensor_;
   std::unique_ptr<PacketEncoder> encoder_;
   PacketImuSampler imu_samples_;
+  bool is_livox_ = false;
   std::uint16_t imu_port_ = 0;
   std::int64_t imu_ns_ = 0;  ///< time of the next sample or before
 };

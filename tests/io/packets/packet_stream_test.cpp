@@ -118,7 +118,7 @@ TEST(PacketEncoder, RejectsFramesOfAnotherSensor) {
   const DecodedFrame other = room_frame(packet_sensor("VLP-32C", false), 0);
   const auto encoder = make_packet_encoder(packet_sensor("VLP-16", false));
   EXPECT_THROW(encoder->encode(other.frame, other.beams, packets), Error);
-  EXPECT_THROW(make_packet_encoder(preset("Livox-Avia")), Error);
+  EXPECT_THROW(make_packet_encoder(preset("TiM781")), Error);
 }
 
 TEST(PacketEncoder, PacketsContinueAcrossFrames) {

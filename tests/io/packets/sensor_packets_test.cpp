@@ -50,6 +50,22 @@ TEST(SensorPackets, OfOusterHaveTheSamplesOfTheImuAmongThoseOfTheBeams) {
   }
 }
 
+TEST(SensorPackets, OfLivoxHaveTheSamplesOfTheImuInRadiansPerSecond) {
+  std::size_t samples = 0;
+  for (const UdpPacket& packet : two_frames(packet_sensor("Livox-Avia", false))) {
+    if (packet.port != kLivoxImuPort) continue;
+    EXPECT_EQ(packet.source_port, kLivoxImuSourcePort);
+    EXPECT_EQ(packet.payload.size(), 60U);
+    const LivoxPacket read = decode_livox_packet(packet.payload);
+    EXPECT_EQ(read.type, LivoxDataType::imu);
+    EXPECT_EQ(read.stamp_ns, static_cast<std::uint64_t>(kPacketEpoch_ns) + samples * 10'000'000U);
+    EXPECT_FLOAT_EQ(read.acceleration_g[2], 1.0F);
+    EXPECT_FLOAT_EQ(read.rate_rad_s[2], static_cast<float>(kDegree));
+    ++samples;
+  }
+  EXPECT_EQ(samples, 20U);
+}
+
 TEST(SensorPackets, OfOtherManufacturersHaveNoImu) {
   for (const UdpPacket& packet : two_frames(packet_sensor("VLP-16", false)))
     EXPECT_THAT(packet.port, ::testing::AnyOf(2368, 8308));

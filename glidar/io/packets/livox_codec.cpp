@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/packets/livox_codec.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/packets/point_assembler.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace glidar {
+namespace {
+
+constexpr double kCentimetre_m = 0.01;
+constexpr double kCentidegree_rad = 0.01 * kDegree;
+constexpr std::int64_t kInterval_ns = 100;  // unit of LivoxPacket::interval
+constexpr std::byte kCommandStart{0xAA};    // of packets on the ports of commands
+
+[[noreturn]] void fail_of_livox(const Sensor& sensor, std::string found, std::string allowed,
+                                std::string remedy) {
+  throw Error(
+      {"Livox packets of " + sensor.name, std::move(found), std::move(allowed), std::move(remedy)});
+}
+
+const Prism& checked_prism(const Sensor& sensor) {
+  const auto* prism = std::get_if<Prism>(&sensor.optics);
+  if (prism == nullptr)
+    fail_of_livox(sensor, "optics without prisms", "rotating prisms", "use a preset of Livox");
+  if (sensor.receiver.returns.size() != 1)
+    fail_of_livox(sensor, std::to_string(sensor.receiver.returns.size()) + " returns", "one",
+                  "add --returns first, for example");
+  const std::size_t rows = prism->incidence_tangent.size();
+  if (rows == 0 || kLivoxPoints % rows != 0)
+    fail_of_livox(sensor, std::to_string(rows) + " beams", "a divisor of 96",
+                  "use a preset of Livox");
+  return *prism;
+}
+
+/// Duration of a packet in 0.1 us.
+std::uint16_t packet_interval(const Sensor& sensor, const Prism& prism) {
+  const double firings = static_cast<double>(kLivoxPoints / prism.incidence_tangent.size());
+  const double interval = std::round(firings * kSecond_ns / prism.pulse_hz / kInterval_ns);
+  if (interval >= 1.0 && interval <= 65'535.0) return static_cast<std::uint16_t>(interval);
+  fail_of_livox(sensor, std::to_string(interval * 1e-4) + " ms for 96 points", "up to 6.5 ms",
+                "raise optics.pulse_hz");
+}
+
+/// The bytes of reflectivity of all entries, in the scale of Livox.
+std::vector<std::uint8_t> reflectivities(const Sensor& sensor, const Frame& frame,
+                                         const Beams& beams) {
+  PointCloud cloud;
+  cloud.rows = beams.rows;
+  cloud.cols = beams.cols;
+  cloud.columns = {{"intensity", {"intensity"}, frame.intensity},
+                   {"range", {"range"}, frame.range_m}};
+  return livox_reflectivities(cloud, sensor, beams);
+}
+
+LivoxPoint point_at(const Eigen::Vector3d& xyz_m, LivoxDataType type) {
+  LivoxPoint point;
+  if (type == LivoxDataType::spherical) {
+    const double range_m = xyz_m.norm();
+    const double azimuth_rad = std::atan2(xyz_m.y(), xyz_m.x());
+    const double turned_rad = azimuth_rad < 0.0 ? azimuth_rad + kTwoPi : azimuth_rad;
+    point.numbers = {
+        std::llround(range_m / kMillimetre_m),
+        std::llround(std::acos(std::clamp(xyz_m.z() / range_m, -1.0, 1.0)) / kCentidegree_rad),
+        std::llround(turned_rad / kCentidegree_rad) % 36'000};
+    return point;
+  }
+  const double unit_m = type == LivoxDataType::cartesian_mm ? kMillimetre_m : kCentimetre_m;
+  for (int axis = 0; axis < 3; ++axis)
+    point.numbers[static_cast<std::size_t>(axis)] = std::llround(xyz_m[axis] / unit_m);
+  return point;
+}
+
+Eigen::Vector3d position_of(const LivoxPoint& point, LivoxDataType type) {
+  const auto number = [&](std::size_t i) { return static_cast<double>(point.numbers[i]); };
+  if (type == LivoxDataType::spherical) {
+    const double zenith_rad = number(1) * kCentidegree_rad;
+    const double azimuth_rad = number(2) * kCentidegree_rad;
+    const double flat_m = number(0) * kMillimetre_m * std::sin(zenith_rad);
+    return {flat_m * std::cos(azimuth_rad), flat_m * std::sin(azimuth_rad),
+            number(0) * kMillimetre_m * std::cos(zenith_rad)};
+  }
+  const double unit_m = type == LivoxDataType::cartesian_mm ? kMillimetre_m : kCentimetre_m;
+  return unit_m * Eigen::Vector3d(number(0), number(1), number(2));
+}
+
+class LivoxEncoder final : public PacketEncoder {
+ public:
+  LivoxEncoder(const Sensor& sensor, LivoxDataType type)
+      : sensor_(sensor),
+        prism_(checked_prism(sensor)),
+        period_ns_(kSecond_ns / prism_.pulse_hz),
+        interval_(packet_interval(sensor, prism_)),
+        type_(type) {}
+
+  void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
+    check(frame, beams);
+    const std::vector<std::uint8_t> reflectivity = reflectivities(sensor_, frame, beams);
+    count_ = 0;
+    for (std::size_t col = 0; col < beams.cols; ++col) {
+      const std::int64_t stamp_ns = frame.stamp_ns + beams.times_ns[col];
+      const double late = static_cast<double>(stamp_ns - last_ns_) / period_ns_;
+      // a gap in time, as between frames that do not join: the packet ends before it
+      if (!waiting_.points.empty() && std::abs(late - 1.0) > 0.5) finish(packets);
+      if (waiting_.points.empty()) {
+        waiting_.stamp_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(0, stamp_ns));
+        waiting_.frame = static_cast<std::uint8_t>(frame.number);
+      }
+      last_ns_ = stamp_ns;
+      for (std::size_t entry = col; entry < beams.size(); entry += beams.cols)
+        waiting_.points.push_back(point(frame, beams, entry, reflectivity[entry]));
+      if (waiting_.points.size() == kLivoxPoints) send(packets);
+    }
+  }
+
+  void finish(std::vector<UdpPacket>& packets) override {
+    if (waiting_.points.empty()) return;
+    waiting_.points.resize(kLivoxPoints);
+    send(packets);
+  }
+
+ private:
+  void check(const Frame& frame, const Beams& beams) const {
+    const bool fits = beams.rows == prism_.incidence_tangent.size() && beams.returns == 1 &&
+                      beams.times_ns.size() == beams.size() &&
+                      beams.size() == std::size_t{beams.rows} * beams.cols &&
+                      frame.range_m.size() == beams.size() &&
+                      frame.intensity.size() == beams.size();
+    if (!fits)
+      fail_of_livox(sensor_, "a frame of other beams", "those of the sensor",
+                    "encode the frames of the sensor that the encoder was made for");
+  }
+
+  [[nodiscard]] LivoxPoint point(const Frame& frame, const Beams& beams, std::size_t entry,
+                                 std::uint8_t reflectivity) const {
+    const double range_m = frame.range_m[entry];
+    if (!(range_m > 0.0) || !beams.directions[entry].allFinite()) return {};
+    LivoxPoint made = point_at(range_m * beams.directions[entry], type_);
+    if (!fits(made, type_)) return {};
+    made.reflectivity = reflectivity;
+    return made;
+  }
+
+  void send(std::vector<UdpPacket>& packets) {
+    waiting_.type = type_;
+    waiting_.interval = interval_;
+    waiting_.count = count_++;
+    packets.push_back({last_ns_ + std::llround(period_ns_), kLivoxPointSourcePort, kLivoxPointPort,
+                       glidar::encode(waiting_)});
+    waiting_ = {};
+  }
+
+  Sensor sensor_;
+  Prism prism_;
+  double period_ns_;
+  std::uint16_t interval_;
+  LivoxDataType type_;
+  LivoxPacket waiting_;
+  std::int64_t last_ns_ = 0;  ///< of the last firing
+  std::uint16_t count_ = 0;
+};
+
+class LivoxDecoder final : public PacketDecoder {
+ public:
+  explicit LivoxDecoder(const Sensor& sensor)
+      : rows_(checked_prism(sensor).incidence_tangent.size()), assembler_(rows_, sensor.rate_hz) {}
+
+  void decode(const UdpPacket& received, std::vector<DecodedFrame>& frames) override {
+    if (!received.payload.empty() && received.payload[0] == kCommandStart) return;
+    const LivoxPacket packet = decode_livox_packet(received.payload);
+    if (packet.type == LivoxDataType::imu) return;
+    if (packet.points.size() % rows_ != 0)
+      throw Error({"Livox packet", std::to_string(packet.points.size()) + " points",
+                   "a multiple of " + std::to_string(rows_) + ", the sensor's beams"});
+    if (packet.stamp_ns > std::uint64_t{INT64_MAX} / 2)
+      throw Error({"Livox packet", "a time after 2116", ""});
+    const auto firings = static_cast<std::int64_t>(packet.points.size() / rows_);
+    for (std::int64_t firing = 0; firing < firings; ++firing) {
+      const std::int64_t after_ns = packet.interval * kInterval_ns * firing / firings;
+      std::vector<AssembledPoint> points(rows_);
+      for (std::size_t row = 0; row < rows_; ++row) {
+        const LivoxPoint& point = packet.points[static_cast<std::size_t>(firing) * rows_ + row];
+        points[row] = {position_of(point, packet.type), static_cast<float>(point.reflectivity)};
+      }
+      assembler_.add(static_cast<std::int64_t>(packet.stamp_ns) + after_ns, points, frames);
+    }
+  }
+
+  void finish(std::vector<DecodedFrame>& frames) override { assembler_.finish(frames); }
+
+ private:
+  std::size_t rows_;
+  PointAssembler assembler_;
+};
+
+}  // namespace
+
+bool is_livox(const Sensor& sensor) {
+  return sensor.name.starts_with("Livox") && std::holds_alternative<Prism>(sensor.optics);
+}
+
+std::unique_ptr<PacketEncoder> make_livox_encoder(const Sensor& sensor, LivoxDataType type) {
+  if (type == LivoxDataType::imu)
+    throw Error({"Livox packets", "data type 0 for points", "1, 2 or 3"});
+  return std::make_unique<LivoxEncoder>(sensor, type);
+}
+
+std::unique_ptr<PacketDecoder> make_livox_decoder(const Sensor& sensor) {
+  return std::make_unique<LivoxDecoder>(sensor);
+}
+
+}  // namespace glidar
