@@ -47,6 +47,16 @@ class Receiver {
     payload.resize(static_cast<std::size_t>(size));
     return payload;
   }
+  /// The port that the next packet comes from.
+  [[nodiscard]] std::uint16_t source_port() const {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    std::byte payload{};
+    if (::recvfrom(descriptor_.get(), &payload, sizeof payload, 0,
+                   reinterpret_cast<sockaddr*>(&from), &size) < 0)
+      throw std::runtime_error("nothing received");
+    return ntohs(from.sin_port);
+  }
 
  private:
   UniqueFd descriptor_;
@@ -137,6 +147,35 @@ TEST(PacketSender, EachKindOfPacketHasItsPort) {
   sender.send({packet_at(0, 1, 8308), packet_at(0, 2, 2368)}, 0);
   EXPECT_EQ(positions.receive().at(0), std::byte{1});
   EXPECT_EQ(data.receiver.receive().at(0), std::byte{2});
+}
+
+TEST(PacketSender, RedirectedPacketsReachTheNewReceiver) {
+  Receiving first;
+  const Receiver second;
+  PacketSender sender(first.route(), 0.0, first.errors);
+  sender.send({packet_at(0, 1)}, 0);
+  EXPECT_EQ(first.receiver.receive().at(0), std::byte{1});
+  sender.redirect(2368, "127.0.0.1", second.port());
+  sender.send({packet_at(0, 2), packet_at(0, 3, 7502)}, 0);
+  EXPECT_EQ(second.receive().at(0), std::byte{2});
+  EXPECT_EQ(first.receiver.receive().at(0), std::byte{3});
+  EXPECT_THAT(error_text([&] { sender.redirect(2368, "no such host", 1); }),
+              HasSubstr("cannot find the address"));
+}
+
+TEST(PacketSender, SendsFromTheAddressAndPortOfTheSensor) {
+  Receiving receiving;
+  const std::uint16_t port = Receiver().port();  // free now
+  PacketRoute route = receiving.route();
+  route.source = "127.0.0.1";
+  route.source_ports = {port};
+  PacketSender sender(route, 0.0, receiving.errors);
+  UdpPacket packet = packet_at(0, 1);
+  packet.source_port = port;
+  sender.send({packet}, 0);
+  EXPECT_EQ(receiving.receiver.source_port(), port);
+  EXPECT_THAT(error_text([&] { PacketSender(route, 0.0, receiving.errors); }),
+              HasSubstr("cannot use this address"));
 }
 
 TEST(PacketSender, ReportsPacketsThatCannotBeSent) {

@@ -15,9 +15,15 @@ constexpr std::size_t kMaxQueued = 20'000;
 }  // namespace
 
 PacketSender::PacketSender(const PacketRoute& route, double speed, ErrorLog& errors)
-    : socket_(route.host), ports_(route.ports), speed_(speed), errors_(errors), thread_([this] {
-        run();
-      }) {}
+    : host_(resolve_udp_address(route.host, 0)), speed_(speed), errors_(errors) {
+  for (const auto& [packet_port, port] : route.ports) {
+    targets_[packet_port] = {host_.host, host_.ip_address, port};
+  }
+  for (const std::uint16_t port : route.source_ports) {
+    source_sockets_.emplace(port, UdpSocket(resolve_udp_address(route.source, port)));
+  }
+  thread_ = std::thread([this] { run(); });
+}
 
 PacketSender::~PacketSender() {
   {
@@ -49,6 +55,20 @@ PacketSender::Clock::time_point PacketSender::due_time(std::int64_t t_ns) const 
   const std::chrono::duration<double, std::nano> after(static_cast<double>(t_ns - anchor_ns_) /
                                                        speed_);
   return *anchor_ + std::chrono::duration_cast<Clock::duration>(after);
+}
+
+void PacketSender::redirect(std::uint16_t packet_port, const std::string& host,
+                            std::uint16_t port) {
+  UdpAddress target = resolve_udp_address(host, port);
+  const std::lock_guard lock(mutex_);
+  targets_[packet_port] = std::move(target);
+}
+
+UdpAddress PacketSender::target_of(std::uint16_t packet_port) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = targets_.find(packet_port);
+  if (found != targets_.end()) return found->second;
+  return {host_.host, host_.ip_address, packet_port};
 }
 
 void PacketSender::finish(std::chrono::milliseconds at_most) {
@@ -87,8 +107,9 @@ void PacketSender::run() {
 
 void PacketSender::transmit(const UdpPacket& packet) {
   try {
-    const auto port = ports_.find(packet.port);
-    socket_.send(packet.payload, port == ports_.end() ? packet.port : port->second);
+    const auto source = source_sockets_.find(packet.source_port);
+    const UdpSocket& socket = source == source_sockets_.end() ? socket_ : source->second;
+    socket.send(packet.payload, target_of(packet.port));
     const std::lock_guard lock(mutex_);
     ++sent_;
   } catch (const std::exception& error) {

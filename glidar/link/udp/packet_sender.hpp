@@ -24,6 +24,8 @@ namespace glidar::link {
 struct PacketRoute {
   std::string host;                              ///< address or name of the receiver
   std::map<std::uint16_t, std::uint16_t> ports;  ///< by the packets' own port; others are kept
+  std::string source = {};                       ///< address of the sensor; empty: any
+  std::vector<std::uint16_t> source_ports = {};  ///< that packets are sent from; others: any port
 };
 
 /// Sends a sensor's packets by UDP in a thread of its own, each at its time, as the sensor does. A
@@ -44,6 +46,9 @@ class PacketSender {
   /// Queues packets in the order of their times, which pass from `start_ns` on, the start of their
   /// frame: now, or when the packets before were sent. Waits while too many are queued.
   void send(std::vector<UdpPacket> packets, std::int64_t start_ns);
+  /// Sends the packets of a port, as the packets state it, to another host from now on. Throws
+  /// Error when it is not known.
+  void redirect(std::uint16_t packet_port, const std::string& host, std::uint16_t port);
   /// Waits until all packets are sent: those that are due later than `at_most` from now are sent
   /// then.
   void finish(std::chrono::milliseconds at_most);
@@ -57,16 +62,19 @@ class PacketSender {
   };
 
   [[nodiscard]] Clock::time_point due_time(std::int64_t t_ns) const;
+  [[nodiscard]] UdpAddress target_of(std::uint16_t packet_port) const;
   void run();
   void transmit(const UdpPacket& packet);
 
   UdpSocket socket_;
-  std::map<std::uint16_t, std::uint16_t> ports_;
+  std::map<std::uint16_t, UdpSocket> source_sockets_;  ///< by source port
+  UdpAddress host_;
   double speed_;
   ErrorLog& errors_;
 
   mutable std::mutex mutex_;  ///< of what follows
   std::condition_variable changed_;
+  std::map<std::uint16_t, UdpAddress> targets_;  ///< by the packets' own port
   std::deque<Timed> queue_;
   std::optional<Clock::time_point> anchor_;  ///< when the packets' time was anchor_ns_
   std::int64_t anchor_ns_ = 0;

@@ -11,17 +11,30 @@
 
 namespace glidar::link {
 
-/// Sends datagrams to one host, which may be a broadcast or multicast address of IPv4.
+/// A UDP port of a host, which may be a broadcast or multicast address of IPv4.
+struct UdpAddress {
+  std::string host;              ///< as given
+  std::uint32_t ip_address = 0;  ///< IPv4, in the order of the network
+  std::uint16_t port = 0;
+};
+
+/// Throws Error when the host is not known.
+UdpAddress resolve_udp_address(const std::string& host, std::uint16_t port);
+
+/// Its IPv4 address as text: "127.0.0.1".
+std::string ipv4_text(const UdpAddress& address);
+
+/// Sends datagrams.
 class UdpSocket {
  public:
-  /// Throws Error when the host is not known.
-  explicit UdpSocket(const std::string& host);
+  /// From any free port.
+  UdpSocket();
+  /// From this address. Throws Error when it is not one of this machine, or the port is in use.
+  explicit UdpSocket(const UdpAddress& source);
   /// Throws Error when the system refuses.
-  void send(std::span<const std::byte> payload, std::uint16_t port) const;
+  void send(std::span<const std::byte> payload, const UdpAddress& to) const;
 
  private:
-  std::string host_;
-  std::uint32_t address_ = 0;  ///< IPv4, in the order of the network
   UniqueFd descriptor_;
 };
 
