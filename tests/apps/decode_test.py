@@ -17,14 +17,14 @@ class Decode(CliTest):
         with np.load(os.path.join(self.folder, name)) as stored:
             return {key: stored[key] for key in stored.files}
 
-    def render(self, sensor, *outputs, columns="xyz,intensity,range,ring,time"):
+    def render(self, sensor, *outputs, options=(), columns="xyz,intensity,range,ring,time"):
         words = [word for output in outputs for word in ("-o", output)]
-        self.succeed("render", *ROOM, "--sensor", sensor, "--columns", columns, *words)
+        self.succeed("render", *ROOM, "--sensor", sensor, "--columns", columns, *options, *words)
 
-    def compare(self, sensor, unit_m, *options):
+    def compare(self, sensor, unit_m, *options, rendering=()):
         """Decoded frames against those that were measured, beam by beam; the last packet of a frame may be decoded
         with the next."""
-        self.render(sensor, "true.npz", "scan.pcap")
+        self.render(sensor, "true.npz", "scan.pcap", options=rendering)
         done = self.succeed("decode", "scan.pcap", *options, "-o", "found.npz")
         self.assertIn("2 frames", done.stdout)
         self.assertIn("found_000000.npz", done.stdout)
@@ -47,6 +47,12 @@ class Decode(CliTest):
 
     def test_hesai_packets_are_the_measured_clouds_within_their_unit(self):
         self.compare("XT32", 0.004, "--sensor", "XT32")
+
+    def test_livox_packets_are_the_measured_clouds_within_their_unit(self):
+        for data_type, unit_m in (("1", 0.001), ("2", 0.01)):
+            self.compare("Livox-Avia", 1.7322 * unit_m, "--sensor", "Livox-Avia", rendering=("--livox-data-type", data_type))
+            true, found = self.arrays("true_000000.npz"), self.arrays("found_000000.npz")
+            self.assertTrue(np.array_equal(true["time"], found["time"]))
 
     def test_clouds_of_bags_have_the_points_of_the_messages(self):
         self.render("VLP-16", "true.npz", "run.mcap", "run.bag", "run.rosbag2")

@@ -80,6 +80,51 @@ class Udp(CliTest):
         self.assertEqual(receiver.finish(), self.captured("first.pcap", 1206))
         self.assertEqual(self.bytes_of("again.pcap"), self.bytes_of("first.pcap"))
 
+    def test_drivers_read_the_sensor_while_packets_are_sent(self):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        receiver = Receiver()
+        done = threading.Event()
+        answers = []
+
+        def ask():
+            while not done.is_set() and not answers:
+                try:
+                    with socket.create_connection(("127.0.0.1", port), MAX_WAIT_S) as driver:
+                        driver.sendall(b"\x47\x74\x05\0\0\0\0\0")
+                        answers.append(driver.recv(65536))
+                except ConnectionRefusedError:
+                    continue
+
+        driver = threading.Thread(target=ask)
+        driver.start()
+        self.succeed("stream", "builtin:box", "--sensor", "XT32", "--eye", "0,0,0", "--frames", "20", "--udp",
+                     f"127.0.0.1:{receiver.port}", "--control", f"127.0.0.1:{port}")
+        done.set()
+        driver.join(MAX_WAIT_S)
+        self.assertIn(b"Channel,Elevation,Azimuth", answers[0])
+        self.assertGreater(len(receiver.finish()), 400)
+
+    def test_livox_packets_are_sent_and_captured(self):
+        points, samples = Receiver(), Receiver()
+        self.succeed("stream", "builtin:box", "--sensor", "Livox-Mid-40", "--eye", "0,0,0", "--frames", "2", "--imu", "BMI088",
+                     "--livox-data-type", "2", "--control", "none", "--udp", f"127.0.0.1:{points.port}:{samples.port}",
+                     "-o", "scan.pcap")
+        sent = points.finish()
+        self.assertEqual(len(sent), 209)  # 20,000 points of 96 each, the last one filled
+        self.assertEqual(sent, self.captured("scan.pcap", 804))
+        self.assertEqual(samples.finish(), self.captured("scan.pcap", 60))
+
+    def test_addresses_for_drivers_are_checked(self):
+        self.assertIn("whose drivers only receive packets",
+                      self.refused("stream", *VLP16, "--udp", "127.0.0.1:9:9", "--control", "127.0.0.1"))
+        self.assertIn("--udp", self.refused("stream", *VLP16, "-o", "a.pcap", "--control", "127.0.0.1"))
+        for address in ("", "127.0.0.1:1:2", "127.0.0.1:0", "=127.0.0.1"):
+            self.assertIn("--control", self.refused("stream", *VLP16, "--udp", "127.0.0.1", f"--control={address}"))
+        self.assertIn("192.0.2.99", self.refused("stream", "builtin:box", "--sensor", "XT32", "--udp", "127.0.0.1:9",
+                                                 "--control", "192.0.2.99"))
+
     def test_sensors_without_packets_and_bad_addresses_are_refused(self):
         self.assertIn("no manufacturer's packets", self.refused("stream", "builtin:box", "--udp", "127.0.0.1"))
         for address in ("", ":2368", "127.0.0.1:0", "127.0.0.1:1:2:3", "127.0.0.1:x", "=127.0.0.1"):

@@ -72,9 +72,10 @@ Sender sender_of(const DecodeFlags& flags) {
     return {source.sensor, make_ouster_decoder(source)};
   }
   if (flags.sensor.empty()) {
-    throw Error({flags.input, "packets, which do not state the sensor that sent them",
-                 "--sensor with a preset of Velodyne, Ouster or Hesai, or --metadata of an Ouster",
-                 "add --sensor VLP-16, for example"});
+    throw Error(
+        {flags.input, "packets, which do not state the sensor that sent them",
+         "--sensor with a preset of Velodyne, Ouster, Hesai or Livox, or --metadata of an Ouster",
+         "add --sensor VLP-16, for example"});
   }
   Sender sender{load_sensor_file(find_sensor_file(flags.sensor)), nullptr};
   PacketOptions options;

@@ -30,6 +30,8 @@ With your own files:
   glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
 Closed loop with a simulator that publishes poses at port 5557 and shakes hands at port 5558:
   glidar stream satellite.obj --pose-source tcp://127.0.0.1:5557 --pose-queue 100 --port 5555
+Packets of a sensor by UDP; its drivers read the calibration from it (docs/packets.md):
+  glidar stream builtin:box --sensor OS1-128 --eye 0,0,0 --udp 127.0.0.1
 Topics of ROS 2, poses from it, and its clock, without a ROS installation (docs/ros2.md):
   glidar stream scene.yaml --ros2
   glidar stream scene.yaml --pose-source ros2:/odom --ros2

@@ -82,6 +82,11 @@ void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
   group.add_flag("--ply-ascii", "PLY as text", flags.sink.ply_ascii);
   group.add("--ouster-profile", "NAME", "Packets of Ouster sensors: LEGACY ... [by the returns]",
             flags.ouster_profile, one_of(ouster_profiles()));
+  group.add("--livox-data-type", "N",
+            "Packets of Livox sensors: 1 x y z in mm, 2 in cm, 3 angles [1]",
+            [&flags](const std::string& text) {
+              flags.livox_type = static_cast<LivoxDataType>(whole(1, 3)(text));
+            });
   group.add("--depth-scale", "UNITS", "Units per metre in 16-bit depth images [1000]",
             flags.sink.depth_png_units_per_m,
             number(kAboveZero, kFinite, "a finite number above 0"));

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/options/cli_fwd.hpp>
 #include <glidar/io/formats/file_sink.hpp>
+#include <glidar/io/packets/livox_packet.hpp>
 #include <glidar/io/packets/ouster_packet.hpp>
 
 #include <optional>
@@ -23,6 +24,7 @@ struct OutputFlags {
   std::string frame = "sensor";      ///< axes of clouds
   bool deskew = false;
   std::optional<OusterProfile> ouster_profile;  ///< of packets; empty: by the number of returns
+  LivoxDataType livox_type = LivoxDataType::cartesian_mm;  ///< of points in packets
   FileSinkOptions sink;
 };
 

@@ -136,14 +136,32 @@ PacketTarget parse_packet_target(const std::string& text) {
   return target;
 }
 
-void add_packet_option(CLI::App& command, StreamFlags& flags) {
-  OptionGroup(command, "Packets by UDP, as Velodyne, Ouster and Hesai sensors send them")
-      .add_repeatable("--udp", "ADDRESS[:PORT[:PORT]]",
-                      "Receiver; ports of data and IMU or position [the manufacturer's]",
-                      [&flags](const std::string& text) {
-                        with_option_name("--udp",
-                                         [&] { flags.udp.push_back(parse_packet_target(text)); });
-                      });
+ControlTarget parse_control_target(const std::string& text) {
+  const PacketTarget parsed = parse_packet_target(text);
+  if (parsed.second_port) refuse_value(text, "[SENSOR=]ADDRESS[:PORT]", "give one port");
+  return {parsed.sensor_name, parsed.host, parsed.data_port};
+}
+
+void add_packet_options(CLI::App& command, StreamFlags& flags) {
+  const OptionGroup group(command,
+                          "Packets by UDP, as Velodyne, Ouster, Hesai and Livox sensors send them");
+  group.add_repeatable("--udp", "ADDRESS[:PORT[:PORT]]",
+                       "Receiver; ports of data and IMU or position [the manufacturer's]",
+                       [&flags](const std::string& text) {
+                         with_option_name("--udp",
+                                          [&] { flags.udp.push_back(parse_packet_target(text)); });
+                       });
+  group.add_repeatable(
+      "--control", "ADDRESS[:PORT]",
+      "Address of the sensor for its drivers, or none [on this machine]",
+      [&flags](const std::string& text) {
+        if (text == "none") {
+          flags.has_no_control = true;
+          return;
+        }
+        with_option_name("--control", [&] { flags.control.push_back(parse_control_target(text)); });
+      });
+  require_option(command, {"--control"}, "--udp");
 }
 
 void add_pose_source_options(CLI::App& command, StreamFlags& flags) {
@@ -211,7 +229,7 @@ void add_stream_options(CLI::App& command, StreamFlags& flags) {
   add_timing_options(command, flags);
   add_publishing_options(command, flags);
   add_live_view_option(command, flags);
-  add_packet_option(command, flags);
+  add_packet_options(command, flags);
   add_ros2_options(command, flags.ros2);
   add_pose_source_options(command, flags);
   add_lockstep_options(command, flags);
@@ -234,7 +252,7 @@ void add_replay_options(CLI::App& command, StreamFlags& flags) {
   add_end_options(timing, "End after N frames, of all sensors together [all]", flags);
   add_publishing_options(command, flags);
   add_live_view_option(command, flags);
-  add_packet_option(command, flags);
+  add_packet_options(command, flags);
   add_ros2_options(command, flags.ros2);
   add_limit_option(command, flags);
   const OptionGroup run(command, "Run");

@@ -20,7 +20,14 @@ struct PacketTarget {
   std::string sensor_name;  ///< empty: the only sensor with packets
   std::string host;
   std::optional<std::uint16_t> data_port;    ///< empty: the manufacturer's
-  std::optional<std::uint16_t> second_port;  ///< of positions (Velodyne) or IMU (Ouster)
+  std::optional<std::uint16_t> second_port;  ///< of positions (Velodyne) or IMU (Ouster, Livox)
+};
+
+/// Where the drivers of a sensor reach it: [SENSOR=]ADDRESS[:PORT].
+struct ControlTarget {
+  std::string sensor_name;  ///< empty: all
+  std::string host;
+  std::optional<std::uint16_t> port;  ///< empty: the manufacturer's
 };
 
 /// A stream as given on the command line.
@@ -43,6 +50,8 @@ struct StreamFlags {
   bool publishes_latest = false;              ///< --publish-latest
   int publish_queue = 32;                     ///< clouds for each subscriber
   std::vector<PacketTarget> udp;              ///< receivers of packets
+  std::vector<ControlTarget> control;         ///< empty: loopback addresses
+  bool has_no_control = false;                ///< --control none
   std::optional<link::Endpoint> foxglove;     ///< of the live view; empty: there is none
   std::optional<link::Endpoint> pose_source;  ///< empty: the command line gives the poses
   Ros2Flags ros2;

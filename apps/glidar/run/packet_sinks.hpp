@@ -2,25 +2,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/options/stream_options.hpp>
+#include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/rig_messages.hpp>
-#include <glidar/link/error_log.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace glidar::app {
+
+/// The cloud columns that packets need.
+const std::vector<std::string>& packet_columns();
+
+/// Index of the sensor of this name, or of the only one that has packets; `where` is for errors.
+/// Throws Error when there is none, or several.
+std::size_t packet_sensor(const PreparedScene& prepared, const std::string& name,
+                          const std::string& where);
+
+/// Packets as the flags select them, with the samples of the rig's first IMU.
+struct PacketSetup {
+  PacketOptions options;
+  PacketImuSampler imu_samples;
+};
+
+PacketSetup packet_setup(const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin,
+                         const ActiveSensor& active);
 
 /// A capture of the packets of the only sensor that has packets. Throws Error when there is none,
 /// or several.
 std::unique_ptr<FrameSink> make_capture_sink(const std::string& path, const RenderFlags& flags,
                                              const PreparedScene& prepared, PoseOrigin origin);
-
-/// Sends a sensor's packets by UDP. `speed`: how fast the time of the frames passes; 0: packets are
-/// sent at once. The log must outlive it. Throws Error.
-std::unique_ptr<FrameSink> make_udp_sink(const PacketTarget& target, double speed,
-                                         const RenderFlags& flags, const PreparedScene& prepared,
-                                         PoseOrigin origin, link::ErrorLog& errors);
 
 }  // namespace glidar::app

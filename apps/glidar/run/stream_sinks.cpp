@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/stream_sinks.hpp>
 
-#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/imu_sink.hpp>
-#include <apps/glidar/run/packet_sinks.hpp>
 #include <apps/glidar/run/recording_sinks.hpp>
+#include <apps/glidar/run/udp_sink.hpp>
+
+#include <utility>
 
 namespace glidar::app {
 
@@ -31,11 +32,9 @@ std::vector<std::unique_ptr<FrameSink>> make_stream_sinks(const StreamFlags& fla
     sinks.push_back(make_imu_sink(flags.render, prepared, origin, console));
   }
   const double speed = time_speed(flags, prepared.sensors.front().sensor);
-  with_option_name("--udp", [&] {
-    for (const PacketTarget& target : flags.udp) {
-      sinks.push_back(make_udp_sink(target, speed, flags.render, prepared, origin, errors));
-    }
-  });
+  for (auto& sink : make_udp_sinks(flags, speed, prepared, origin, {errors, console})) {
+    sinks.push_back(std::move(sink));
+  }
   return sinks;
 }
 

@@ -201,15 +201,14 @@ bool is_hesai(const Sensor& sensor) {
 HesaiIdentity hesai_identity(const Sensor& sensor) {
   const HesaiModel& model = checked_model(sensor);
   const Spinning& spinning = spinning_optics(sensor, "Hesai packets");
-  const ReturnSelection returns =
-      select_packet_returns(sensor, "Hesai packets of " + sensor.name);
+  const ReturnSelection returns = select_packet_returns(sensor, "Hesai packets of " + sensor.name);
   HesaiIdentity identity;
   identity.angle_correction = "Channel,Elevation,Azimuth\n";
   for (std::size_t i = 0; i < spinning.channels.size(); ++i) {
     const SpinningChannel& channel = spinning.channels[i];
-    identity.angle_correction += fmt::format(
-        "{},{:.4f},{:.4f}\n", i + 1, channel.elevation_rad * kDegreesPerRadian,
-        -channel.azimuth_offset_rad * kDegreesPerRadian);
+    identity.angle_correction +=
+        fmt::format("{},{:.4f},{:.4f}\n", i + 1, channel.elevation_rad * kDegreesPerRadian,
+                    -channel.azimuth_offset_rad * kDegreesPerRadian);
   }
   const auto mode = static_cast<unsigned>(returns.mode);
   constexpr unsigned kStrongest = static_cast<unsigned>(PacketReturnMode::strongest);

@@ -16,8 +16,9 @@ namespace {
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::uint8_t kFactory = 0x42;
 
-// Numbers of models: tier4/nebula, hesai_cmd_response.hpp. Block times: tier4/nebula, pandar_64.hpp, pandar_qt64.hpp, pandar_xt32.hpp. Its firing times of
-// the QT64 are 10 us later than those of the preset, which the offset of its blocks contains here.
+// Numbers of models: tier4/nebula, hesai_cmd_response.hpp. Block times: tier4/nebula,
+// pandar_64.hpp, pandar_qt64.hpp, pandar_xt32.hpp. Its firing times of the QT64 are 10 us later
+// than those of the preset, which the offset of its blocks contains here.
 constexpr std::array<HesaiModel, 3> kHesaiModels = {{
     {"Pandar64", 64, 6, 3, 8, 26, {0xEE, 0xFF, 64, 6}, 55'560.0, -42'580.0, true, 2},
     {"PandarQT", 64, 4, 4, 12, 28, {0xEE, 0xFF, 3, 1}, 500'000.0 / 3.0, 35'710.0, false, 15},

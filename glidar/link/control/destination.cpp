@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/control/destination.hpp>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+#include <array>
+
+namespace glidar::control {
+
+std::string canonical_ipv4(const std::string& text) {
+  in_addr address{};
+  std::array<char, INET_ADDRSTRLEN> made{};
+  if (::inet_pton(AF_INET, text.c_str(), &address) != 1) return {};
+  return ::inet_ntop(AF_INET, &address, made.data(), made.size());
+}
+
+}  // namespace glidar::control

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+/// The interfaces by which drivers read a sensor's calibration and choose where it sends packets:
+/// HTTP of Ouster, PTC of Hesai, and the commands of Livox SDK 2.
+namespace glidar::control {
+
+/// Where a client wants packets to be sent.
+struct Destination {
+  std::uint16_t packet_port = 0;  ///< of the packets, as their encoder states it
+  std::string address;            ///< IPv4
+  std::uint16_t port = 0;
+};
+
+using DestinationCallback = std::function<void(const Destination&)>;
+
+/// Who may be sent packets, so that nobody can direct them to a third party: the client itself, and
+/// the receiver that the user chose.
+struct DestinationRule {
+  std::string chosen;  ///< IPv4 address; empty: none
+
+  [[nodiscard]] bool allows(std::string_view address, std::string_view client) const {
+    return address == client || (!chosen.empty() && address == chosen);
+  }
+};
+
+/// The text of an IPv4 address in its canonical form; empty if it is none.
+std::string canonical_ipv4(const std::string& text);
+
+}  // namespace glidar::control
