@@ -122,8 +122,9 @@ class Udp(CliTest):
         self.assertIn("--udp", self.refused("stream", *VLP16, "-o", "a.pcap", "--control", "127.0.0.1"))
         for address in ("", "127.0.0.1:1:2", "127.0.0.1:0", "=127.0.0.1"):
             self.assertIn("--control", self.refused("stream", *VLP16, "--udp", "127.0.0.1", f"--control={address}"))
-        self.assertIn("192.0.2.99", self.refused("stream", "builtin:box", "--sensor", "XT32", "--udp", "127.0.0.1:9",
-                                                 "--control", "192.0.2.99"))
+        for sensor, address in (("XT32", "192.0.2.99"), ("Livox-Avia", "192.0.2.99"), ("Livox-Avia", "*")):
+            self.assertIn("--control, ", self.refused("stream", "builtin:box", "--sensor", sensor, "--eye", "0,0,0", "--udp",
+                                                      "127.0.0.1:9", "--control", address))
 
     def test_sensors_without_packets_and_bad_addresses_are_refused(self):
         self.assertIn("no manufacturer's packets", self.refused("stream", "builtin:box", "--udp", "127.0.0.1"))

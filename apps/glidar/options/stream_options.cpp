@@ -139,7 +139,7 @@ PacketTarget parse_packet_target(const std::string& text) {
 ControlTarget parse_control_target(const std::string& text) {
   const PacketTarget parsed = parse_packet_target(text);
   if (parsed.second_port) refuse_value(text, "[SENSOR=]ADDRESS[:PORT]", "give one port");
-  return {parsed.sensor_name, parsed.host, parsed.data_port};
+  return {parsed.sensor_name, parsed.host == "*" ? "0.0.0.0" : parsed.host, parsed.data_port};
 }
 
 void add_packet_options(CLI::App& command, StreamFlags& flags) {

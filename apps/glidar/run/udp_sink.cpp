@@ -112,42 +112,59 @@ class UdpSinkMaker {
       : flags_(flags), speed_(speed), prepared_(prepared), origin_(origin), reports_(reports) {}
 
   std::unique_ptr<FrameSink> make(const PacketTarget& target) {
-    const std::size_t index = packet_sensor(prepared_, target.sensor_name, "--udp");
-    const ActiveSensor& active = prepared_.sensors[index];
-    const PacketSetup setup = packet_setup(flags_.render, prepared_, origin_, active);
-    const link::PacketRoute route = route_of(target, active.sensor);
-    const bool is_first = served_.insert(index).second;
-    const ControlPlan plan = is_first ? control_plan(flags_, active, target) : ControlPlan{};
-    if (plan.at) {
+    Selection selected;
+    with_option_name("--udp", [&] { selected = select(target); });
+    if (selected.plan.at) {
       try {
-        return serving(index, setup, route, *plan.at);
+        return serving(selected);
       } catch (const Error& error) {
-        if (plan.is_chosen) throw;
+        if (selected.plan.is_chosen) throw;
         reports_.console.warn(std::string("drivers cannot reach the sensor: ") + error.what() +
                               "; choose an address with --control, or none");
       }
     }
-    return plain(index, setup, route);
+    std::unique_ptr<UdpSink> sink;
+    with_option_name("--udp", [&] { sink = plain(selected); });
+    return sink;
   }
 
  private:
-  std::unique_ptr<UdpSink> plain(std::size_t index, const PacketSetup& setup,
-                                 const link::PacketRoute& route) {
-    return std::make_unique<UdpSink>(
-        index, prepared_.sensors[index].sensor, setup,
-        std::make_unique<link::PacketSender>(route, speed_, reports_.errors));
+  struct Selection {
+    std::size_t index = 0;
+    PacketSetup setup;
+    link::PacketRoute route;
+    ControlPlan plan;
+  };
+
+  Selection select(const PacketTarget& target) {
+    Selection selected;
+    selected.index = packet_sensor(prepared_, target.sensor_name, "--udp");
+    const ActiveSensor& active = prepared_.sensors[selected.index];
+    selected.setup = packet_setup(flags_.render, prepared_, origin_, active);
+    selected.route = route_of(target, active.sensor);
+    const bool is_first = served_.insert(selected.index).second;
+    if (is_first) selected.plan = control_plan(flags_, active, target);
+    return selected;
   }
 
-  std::unique_ptr<UdpSink> serving(std::size_t index, const PacketSetup& setup,
-                                   link::PacketRoute route, const link::Endpoint& at) {
-    const Sensor& sensor = prepared_.sensors[index].sensor;
+  std::unique_ptr<UdpSink> plain(const Selection& selected) {
+    return std::make_unique<UdpSink>(
+        selected.index, prepared_.sensors[selected.index].sensor, selected.setup,
+        std::make_unique<link::PacketSender>(selected.route, speed_, reports_.errors));
+  }
+
+  std::unique_ptr<UdpSink> serving(Selection selected) {
+    const Sensor& sensor = prepared_.sensors[selected.index].sensor;
     if (is_livox(sensor)) {
-      route.source = at.host;
-      route.source_ports = {kLivoxPointSourcePort, kLivoxImuSourcePort};
+      selected.route.source = selected.plan.at->host;
+      selected.route.source_ports = {kLivoxPointSourcePort, kLivoxImuSourcePort};
     }
-    auto sink = plain(index, setup, route);
-    const ServedSensor served{sensor, setup.options, route};
-    sink->serve_drivers(serve_control(served, at, sink->sender(), reports_.errors));
+    std::unique_ptr<UdpSink> sink;
+    with_option_name("--control", [&] {
+      sink = plain(selected);
+      sink->serve_drivers(serve_control({sensor, selected.setup.options, selected.route},
+                                        *selected.plan.at, sink->sender(), reports_.errors));
+    });
     return sink;
   }
 
@@ -167,9 +184,7 @@ std::vector<std::unique_ptr<FrameSink>> make_udp_sinks(const StreamFlags& flags,
                                                        const SinkReports& reports) {
   UdpSinkMaker maker(flags, speed, prepared, origin, reports);
   std::vector<std::unique_ptr<FrameSink>> sinks;
-  with_option_name("--udp", [&] {
-    for (const PacketTarget& target : flags.udp) sinks.push_back(maker.make(target));
-  });
+  for (const PacketTarget& target : flags.udp) sinks.push_back(maker.make(target));
   return sinks;
 }
 

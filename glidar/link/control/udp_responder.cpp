@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/control/udp_responder.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/link/udp/udp_socket.hpp>
 
 #include <arpa/inet.h>
@@ -132,6 +133,9 @@ bool UdpResponder::may_answer() {
 std::unique_ptr<ControlServer> serve_livox(LivoxSensor sensor, const link::Endpoint& at,
                                            link::ErrorLog& errors, std::uint16_t search_port) {
   sensor.address = link::ipv4_text(link::resolve_udp_address(at.host, at.port));
+  if (sensor.address == "0.0.0.0")
+    throw Error({"address of the sensor", "all addresses of this machine", "one address",
+                 "give the one that clients use"});
   return std::make_unique<UdpResponder>(sensor, at.port, search_port, errors);
 }
 

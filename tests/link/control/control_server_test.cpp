@@ -276,6 +276,7 @@ TEST(LivoxServer, AnswersSearchesAndCommandsFromItsAddress) {
   EXPECT_EQ(from.sin_port, to.sin_port);
   EXPECT_EQ(from.sin_addr.s_addr, to.sin_addr.s_addr);
   EXPECT_GE(errors.counts().at("commands of the sensor"), 1U);
+  EXPECT_THROW(serve_livox(sensor, {.host = "0.0.0.0", .port = 0}, errors, 0), Error);
 }
 
 }  // namespace
