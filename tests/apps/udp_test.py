@@ -16,6 +16,12 @@ rig_pose: {position: [0, 0, 0]}
 """
 
 
+def free_port():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
 class Receiver:
     """Collects the datagrams that arrive at a free port."""
 
@@ -80,11 +86,45 @@ class Udp(CliTest):
         self.assertEqual(receiver.finish(), self.captured("first.pcap", 1206))
         self.assertEqual(self.bytes_of("again.pcap"), self.bytes_of("first.pcap"))
 
+    def test_attacks_on_the_interface_for_drivers_lose_no_packet(self):
+        for sensor, size, valid in (("OS1-32", 6400, b"GET /api/v1/sensor/metadata HTTP/1.1\r\n\r\n"),
+                                    ("XT32", 1080, b"\x47\x74\x05\0\0\0\0\0")):
+            port, receiver, done = free_port(), Receiver(), threading.Event()
+            answers = []
+            attacks = [b"", b"GET", b"\0" * 5000, b"\x47\x74\x05\0\xff\xff\xff\xff", b"A" * 100_000, valid]
+
+            def attack(port=port, done=done, attacks=attacks, answers=answers, valid=valid):
+                held = []
+                while not done.is_set():
+                    for data in attacks:
+                        try:
+                            client = socket.create_connection(("127.0.0.1", port), MAX_WAIT_S)
+                            held.append(client)
+                            client.sendall(data)
+                            if data is valid:
+                                answers.append(client.recv(100))
+                        except OSError:  # it does not listen yet or any more, or has closed this connection
+                            continue
+                    while len(held) > 200:
+                        held.pop(0).close()
+                for client in held:
+                    client.close()
+
+            attacker = threading.Thread(target=attack)
+            attacker.start()
+            self.succeed("stream", "builtin:box", "--sensor", sensor, "--eye", "0,0,0", "--frames", "10", "--udp",
+                         f"127.0.0.1:{receiver.port}:9", "--control", f"127.0.0.1:{port}", "-o", "scan.pcap")
+            done.set()
+            attacker.join(MAX_WAIT_S)
+            sent = receiver.finish()
+            self.assertTrue(any(answers))
+            self.assertGreater(len(sent), 100)
+            if size < 1473:  # larger packets are fragmented in the capture
+                self.assertEqual(sent, self.captured("scan.pcap", size))
+            self.assertEqual({len(packet) for packet in sent}, {size})
+
     def test_drivers_read_the_sensor_while_packets_are_sent(self):
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
-        receiver = Receiver()
+        port, receiver = free_port(), Receiver()
         done = threading.Event()
         answers = []
 
