@@ -22,6 +22,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 namespace glidar::bench {
 namespace {
@@ -90,11 +91,13 @@ void publish_topic(benchmark::State& state, const ModelView& view) {
   while (!sink.is_wanted(topic)) std::this_thread::yield();
   const auto beams = std::make_shared<const Beams>(view.beams);
   PointCloud cloud;
+  std::vector<std::byte> bytes;
   app::Delivery delivery(
       [&](const app::MeasuredFrame& slot) {
         make_point_cloud(slot.frame, *slot.beams, view.scene, {}, kColumns, cloud);
-        ros::write_message(sink, topic, slot.frame.stamp_ns,
-                           ros::to_point_cloud2(cloud, {slot.frame, view.sensor, *slot.beams}));
+        ros::serialize_to(ros::to_point_cloud2(cloud, {slot.frame, view.sensor, *slot.beams}),
+                          sink.wire(), bytes);
+        sink.take(topic, slot.frame.stamp_ns, bytes);
       },
       [] {}, [] {});
   deliver_frames(state, view, beams, delivery);

@@ -33,4 +33,27 @@ Payload PayloadPool::take(std::size_t bytes) {
   return {{memory.bytes.release(), recycle}, bytes};
 }
 
+Payload VectorPool::take(std::vector<std::byte>& bytes) {
+  constexpr std::size_t kMaxKept = 8;
+  const auto recycle = [kept = kept_](std::vector<std::byte>* done) {
+    const std::unique_ptr<std::vector<std::byte>> owned(done);
+    const std::lock_guard lock(kept->mutex);
+    if (kept->vectors.size() < kMaxKept) kept->vectors.push_back(std::move(*owned));
+  };
+  const std::size_t size = bytes.size();
+  const std::shared_ptr<std::vector<std::byte>> sent(new std::vector(std::move(bytes)), recycle);
+  bytes.clear();
+  const std::lock_guard lock(kept_->mutex);
+  std::vector<std::vector<std::byte>>& vectors = kept_->vectors;
+  const auto found = std::find_if(vectors.begin(), vectors.end(),
+                                  [size](const auto& vector) { return vector.capacity() >= size; });
+  if (found != vectors.end()) {
+    bytes = std::move(*found);
+    vectors.erase(found);
+  } else {
+    vectors.clear();  // too small for the current messages
+  }
+  return {std::shared_ptr<std::byte[]>(sent, sent->data()), size};  // NOLINT: shared array
+}
+
 }  // namespace glidar::link

@@ -39,4 +39,20 @@ class PayloadPool {
   std::shared_ptr<FreeList> kept_ = std::make_shared<FreeList>();
 };
 
+/// Makes payloads of vectors without a copy, and reuses the vectors after they are sent. Payloads
+/// may be released in any thread, also after the pool is destroyed.
+class VectorPool {
+ public:
+  /// Takes the bytes and leaves those of a message that was sent, or none.
+  [[nodiscard]] Payload take(std::vector<std::byte>& bytes);
+
+ private:
+  struct FreeList {
+    std::mutex mutex;
+    std::vector<std::vector<std::byte>> vectors;
+  };
+
+  std::shared_ptr<FreeList> kept_ = std::make_shared<FreeList>();
+};
+
 }  // namespace glidar::link

@@ -31,7 +31,7 @@ namespace {
 
 constexpr const char* kDecodeExamples =
     R"(Writes the clouds of a packet capture (.pcap, .pcapng) or of a bag (.mcap, .bag, .rosbag2 or a
-folder of rosbag2) with messages PointCloud2, CustomMsg or VelodyneScan: a file for each frame.
+folder of rosbag2) with messages PointCloud2, CustomMsg, VelodyneScan or PacketMsg: a file for each frame.
 Examples:
   glidar decode scan.pcap --sensor VLP-16 -o cloud.pcd     # cloud_000000.pcd ...
   glidar decode ouster.pcap -o cloud.npz                   # with ouster.json, the sensor's metadata
@@ -71,6 +71,11 @@ Sender sender_of(const DecodeFlags& flags) {
     const OusterSource source = load_ouster_source(metadata);
     return {source.sensor, make_ouster_decoder(source)};
   }
+  const std::string recorded = flags.sensor.empty() ? ouster_metadata_of(flags.input) : "";
+  if (!recorded.empty()) {
+    const OusterSource source = parse_ouster_source(recorded, flags.input + ", metadata");
+    return {source.sensor, make_ouster_decoder(source)};
+  }
   if (flags.sensor.empty()) {
     throw Error(
         {flags.input, "packets, which do not state the sensor that sent them",
@@ -96,10 +101,12 @@ bool has_clouds(const DecodeFlags& flags) {
         type == &ros::message_type<ros::CustomMsg>())
       return true;
   }
-  const auto is_scan = [&](const bags::StoredTopic& topic) {
-    return bags::type_of(topic) == &ros::message_type<ros::VelodyneScan>();
+  const auto has_packets = [&](const bags::StoredTopic& topic) {
+    const ros::MessageType* type = bags::type_of(topic);
+    return type == &ros::message_type<ros::VelodyneScan>() ||
+           type == &ros::message_type<ros::PacketMsg>();
   };
-  return std::none_of(bag->topics().begin(), bag->topics().end(), is_scan);
+  return std::none_of(bag->topics().begin(), bag->topics().end(), has_packets);
 }
 
 /// Counts the frames and prints the summary.
@@ -221,7 +228,8 @@ Command add_decode(CLI::App& program) {
   const OptionGroup input(command, "Input");
   input.add("--sensor", "NAME|FILE", "Preset or file of the sensor that sent the packets",
             flags->sensor);
-  input.add("--metadata", "FILE", "Metadata of an Ouster sensor [FILE.json]", flags->metadata);
+  input.add("--metadata", "FILE", "Metadata of an Ouster sensor [FILE.json, or of the bag]",
+            flags->metadata);
   input.add("--topic", "NAME", "Topic of a bag [the first one with clouds or packets]",
             flags->topic);
   input.add("--frames", "N", "End after N frames [all]", flags->frames,
@@ -230,6 +238,8 @@ Command add_decode(CLI::App& program) {
   add_output_options(command, flags->output);
   hide_standard_output(command);
   command.remove_option(command.get_option("--no-sidecar"));
+  command.remove_option(command.get_option("--packet-topics"));
+  command.remove_option(command.get_option("--image-transport"));
   OptionGroup(command, "Run").add_flag("--quiet", "No summary, only warnings", flags->quiet);
   return [flags] { return run_decode(*flags); };
 }

@@ -87,6 +87,13 @@ void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
             [&flags](const std::string& text) {
               flags.livox_type = static_cast<LivoxDataType>(whole(1, 3)(text));
             });
+  group.add_flag("--packet-topics", "Also Ouster and Velodyne packets in bags and ROS 2",
+                 flags.packet_topics);
+  group.add("--image-transport", "NAME", "Images in bags and ROS 2: raw, compressed or both [raw]",
+            flags.images,
+            one_of<ros::ImageTransport>({{"raw", ros::ImageTransport::raw},
+                                         {"compressed", ros::ImageTransport::compressed},
+                                         {"both", ros::ImageTransport::both}}));
   group.add("--depth-scale", "UNITS", "Units per metre in 16-bit depth images [1000]",
             flags.sink.depth_png_units_per_m,
             number(kAboveZero, kFinite, "a finite number above 0"));

@@ -6,6 +6,7 @@
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/packets/livox_packet.hpp>
 #include <glidar/io/packets/ouster_packet.hpp>
+#include <glidar/io/ros/image_transport.hpp>
 
 #include <optional>
 #include <string>
@@ -25,6 +26,8 @@ struct OutputFlags {
   bool deskew = false;
   std::optional<OusterProfile> ouster_profile;  ///< of packets; empty: by the number of returns
   LivoxDataType livox_type = LivoxDataType::cartesian_mm;  ///< of points in packets
+  ros::ImageTransport images = ros::ImageTransport::raw;  ///< of cameras, in bags and ROS 2
+  bool packet_topics = false;  ///< packets of Ouster and Velodyne sensors in bags and ROS 2
   FileSinkOptions sink;
 };
 

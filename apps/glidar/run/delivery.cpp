@@ -5,18 +5,12 @@
 #include <utility>
 
 namespace glidar::app {
-namespace {
-
-/// How often an idle thread serves its subscribers.
-constexpr std::chrono::milliseconds kIdle{20};
-
-}  // namespace
-
 Delivery::Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
-                   std::function<void()> failed)
+                   std::function<void()> failed, std::chrono::milliseconds idle_interval)
     : deliver_(std::move(deliver)),
       idle_(std::move(idle)),
       failed_(std::move(failed)),
+      idle_interval_(idle_interval),
       thread_([this] { run(); }) {}
 
 Delivery::~Delivery() {
@@ -61,7 +55,7 @@ void Delivery::run() {
   const auto is_due = [this] { return delivered_ < filled_ || is_ending_; };
   try {
     for (;;) {
-      changed_.wait_for(lock, kIdle, is_due);
+      changed_.wait_for(lock, idle_interval_, is_due);
       const bool has_frame = delivered_ < filled_;
       if (!has_frame && is_ending_) return;
       lock.unlock();

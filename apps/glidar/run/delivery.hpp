@@ -5,6 +5,7 @@
 #include <apps/glidar/run/measured_frame.hpp>
 
 #include <array>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -18,10 +19,10 @@ namespace glidar::app {
 /// progress: measuring waits for delivery.
 class Delivery {
  public:
-  /// The thread calls `deliver`, `idle` (often, while there is nothing to deliver), and `failed`
-  /// (once, after one of them threw).
+  /// The thread calls `deliver`, `idle` (after each frame, and every `idle_interval` while there is
+  /// nothing to deliver), and `failed` (once, after one of them threw).
   Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
-           std::function<void()> failed);
+           std::function<void()> failed, std::chrono::milliseconds idle_interval = kIdleInterval);
   /// Delivers the submitted frames.
   ~Delivery();
   Delivery(const Delivery&) = delete;
@@ -35,6 +36,8 @@ class Delivery {
   void finish();
 
  private:
+  static constexpr std::chrono::milliseconds kIdleInterval{20};
+
   void run();
   void join();
   void rethrow();
@@ -42,6 +45,7 @@ class Delivery {
   std::function<void(const MeasuredFrame&)> deliver_;
   std::function<void()> idle_;
   std::function<void()> failed_;
+  std::chrono::milliseconds idle_interval_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::array<MeasuredFrame, 2> slots_;

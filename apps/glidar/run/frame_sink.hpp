@@ -4,12 +4,16 @@
 
 #include <apps/glidar/run/measured_frame.hpp>
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace glidar::app {
+
+/// How often idle connections are served.
+inline constexpr std::chrono::milliseconds kDefaultServeInterval{20};
 
 /// A destination of all frames of a run, such as a bag or a viewer.
 class FrameSink {
@@ -25,6 +29,10 @@ class FrameSink {
   virtual void write(const MeasuredFrame& measured) = 0;
   /// Called often, also between frames.
   virtual void serve() {}
+  /// How often serve() is to be called.
+  [[nodiscard]] virtual std::chrono::milliseconds serve_interval() const {
+    return kDefaultServeInterval;
+  }
   /// Call after the last frame: completes files, which appear under their names. Without it nothing
   /// of them remains.
   virtual void finish() = 0;

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_topics.hpp>
+#include <glidar/io/packets/ouster_packet.hpp>
 #include <glidar/io/packets/pcap_file.hpp>
 #include <glidar/io/packets/velodyne_packet.hpp>
 
@@ -53,6 +54,50 @@ class ScanSource final : public PacketSource {
   std::size_t next_ = 0;  ///< packet of the scan
 };
 
+/// The packets of ouster_sensor_msgs/PacketMsg.
+class OusterMessageSource final : public PacketSource {
+ public:
+  OusterMessageSource(const std::filesystem::path& path, const std::string& topic)
+      : bag_(bags::open_bag(path)) {
+    const std::array types = {&ros::message_type<ros::PacketMsg>()};
+    const std::size_t found =
+        bags::find_topic(*bag_, topic.empty() ? lidar_topic() : topic, types, path);
+    wire_ = bag_->topics()[found].wire;
+    bag_->select({&found, 1});
+  }
+
+  bool next(UdpPacket& packet) override {
+    bags::BagMessage message;
+    if (!bag_->next(message)) return false;
+    const auto stored = ros::deserialize<ros::PacketMsg>(message.data, wire_);
+    const auto bytes = std::as_bytes(std::span(stored.buf));
+    packet = {message.time_ns, kOusterLidarPort, kOusterLidarPort, {bytes.begin(), bytes.end()}};
+    return true;
+  }
+
+ private:
+  /// Samples of the IMU have the same type.
+  [[nodiscard]] std::string lidar_topic() const {
+    for (const bags::StoredTopic& topic : bag_->topics()) {
+      if (topic.name.ends_with("lidar_packets")) return topic.name;
+    }
+    return {};
+  }
+
+  std::unique_ptr<bags::BagReader> bag_;
+  ros::Wire wire_ = ros::Wire::cdr;
+};
+
+/// Whether the bag, or this topic of it, has the messages of Ouster's driver.
+bool has_ouster_messages(const std::filesystem::path& path, const std::string& topic) {
+  const auto bag = bags::open_bag(path);
+  return std::any_of(bag->topics().begin(), bag->topics().end(),
+                     [&](const bags::StoredTopic& stored) {
+                       return (topic.empty() || stored.name == topic) &&
+                              bags::type_of(stored) == &ros::message_type<ros::PacketMsg>();
+                     });
+}
+
 /// Encoders fill the last packet with firings without returns, which may begin a revolution.
 bool is_padding(const DecodedFrame& decoded) {
   const auto is_hit = [](Status status) { return status == Status::hit; };
@@ -63,8 +108,27 @@ bool is_padding(const DecodedFrame& decoded) {
 
 std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path,
                                            const std::string& topic) {
-  if (bags::is_bag_path(path)) return std::make_unique<ScanSource>(path, topic);
+  if (bags::is_bag_path(path)) {
+    if (has_ouster_messages(path, topic)) return std::make_unique<OusterMessageSource>(path, topic);
+    return std::make_unique<ScanSource>(path, topic);
+  }
   return std::make_unique<CaptureSource>(path);
+}
+
+std::string ouster_metadata_of(const std::filesystem::path& path) {
+  if (!bags::is_bag_path(path)) return {};
+  const auto bag = bags::open_bag(path);
+  for (std::size_t i = 0; i < bag->topics().size(); ++i) {
+    const bags::StoredTopic topic = bag->topics()[i];
+    if (bags::type_of(topic) != &ros::message_type<ros::String>() ||
+        !topic.name.ends_with("metadata"))
+      continue;
+    bag->select({&i, 1});
+    bags::BagMessage message;
+    if (!bag->next(message)) return {};
+    return ros::deserialize<ros::String>(message.data, topic.wire).data;
+  }
+  return {};
 }
 
 bool PacketFrames::next(DecodedFrame& frame) {

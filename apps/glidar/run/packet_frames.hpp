@@ -26,10 +26,14 @@ class PacketSource {
   virtual bool next(UdpPacket& packet) = 0;
 };
 
-/// The packets of a capture, or of a topic of VelodyneScan of a bag; `topic` empty: the first one.
-/// Throws Error when there is no such file or topic.
+/// The packets of a capture, or of a topic of VelodyneScan or PacketMsg of a bag; `topic` empty:
+/// the first one that fits. Throws Error when there is no such file or topic.
 std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path,
                                            const std::string& topic);
+
+/// The metadata that Ouster's driver records in a bag: the first message of the first topic of text
+/// messages named `metadata`. Empty: none, or no bag.
+std::string ouster_metadata_of(const std::filesystem::path& path);
 
 /// The frames of a file of packets, one for each revolution.
 class PacketFrames {

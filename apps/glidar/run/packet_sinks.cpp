@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/packet_sinks.hpp>
 
-#include <apps/glidar/run/imu_outputs.hpp>
+#include <apps/glidar/run/packet_setup.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -16,7 +17,7 @@ namespace {
 class CaptureSink final : public FrameSink {
  public:
   CaptureSink(const std::string& path, std::size_t sensor_index, const Sensor& sensor,
-              const PacketSetup& setup)
+              const ros::PublishedPackets& setup)
       : sensor_index_(sensor_index), writer_(path, sensor, setup.options, setup.imu_samples) {}
 
   [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override {
@@ -60,21 +61,6 @@ std::size_t packet_sensor(const PreparedScene& prepared, const std::string& name
   if (name.empty() && prepared.sensors.size() == 1) return 0;  // the encoder states why
   throw Error({where, name.empty() ? "no sensor with packets" : "no sensor '" + name + "'",
                "a sensor of the rig that is a preset of Velodyne, Ouster, Hesai or Livox"});
-}
-
-PacketSetup packet_setup(const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin,
-                         const ActiveSensor& active) {
-  PacketSetup setup;
-  setup.options.ouster.profile = flags.output.ouster_profile;
-  setup.options.livox_type = flags.output.livox_type;
-  if (origin != PoseOrigin::motion || prepared.imus.empty()) return setup;
-  setup.options.ouster.sensor_from_imu =
-      active.rig_from_sensor.inverse() * prepared.imus.front().rig_from_imu;
-  setup.imu_samples = [sample = imu_sampler(flags, prepared)](std::int64_t from_ns,
-                                                              std::int64_t until_ns) {
-    return sample(0, from_ns, until_ns);
-  };
-  return setup;
 }
 
 std::unique_ptr<FrameSink> make_capture_sink(const std::string& path, const RenderFlags& flags,

@@ -5,7 +5,6 @@
 #include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/rig_messages.hpp>
-#include <glidar/io/packets/sensor_packets.hpp>
 
 #include <cstddef>
 #include <memory>
@@ -21,15 +20,6 @@ const std::vector<std::string>& packet_columns();
 /// Throws Error when there is none, or several.
 std::size_t packet_sensor(const PreparedScene& prepared, const std::string& name,
                           const std::string& where);
-
-/// Packets as the flags select them, with the samples of the rig's first IMU.
-struct PacketSetup {
-  PacketOptions options;
-  PacketImuSampler imu_samples;
-};
-
-PacketSetup packet_setup(const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin,
-                         const ActiveSensor& active);
 
 /// A capture of the packets of the only sensor that has packets. Throws Error when there is none,
 /// or several.

@@ -3,10 +3,31 @@
 #include <apps/glidar/run/rig_messages.hpp>
 
 #include <apps/glidar/run/imu_outputs.hpp>
+#include <apps/glidar/run/packet_setup.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/packets/velodyne_codec.hpp>
 
 #include <utility>
 
 namespace glidar::app {
+namespace {
+
+/// The packets of all sensors with a ROS driver that publishes them.
+void add_packets(const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin,
+                 ros::PublishedRig& rig) {
+  bool has_packets = false;
+  for (std::size_t i = 0; i < rig.sensors.size(); ++i) {
+    const Sensor& sensor = rig.sensors[i].sensor;
+    if (!is_ouster(sensor) && !is_velodyne(sensor)) continue;
+    rig.sensors[i].packets = packet_setup(flags, prepared, origin, prepared.sensors[i]);
+    has_packets = true;
+  }
+  if (has_packets) return;
+  throw Error({"--packet-topics", "no sensor whose ROS driver publishes packets",
+               "a preset of an Ouster or Velodyne sensor", "leave it out"});
+}
+
+}  // namespace
 
 std::unique_ptr<ros::RigPublisher> make_rig_publisher(ros::MessageSink& sink,
                                                       const RenderFlags& flags,
@@ -25,11 +46,14 @@ std::unique_ptr<ros::RigPublisher> make_rig_publisher(ros::MessageSink& sink,
     rig.imu_samples = imu_sampler(flags, prepared);
   }
   const OutputFlags& output = flags.output;
-  return std::make_unique<ros::RigPublisher>(sink, std::move(rig),
-                                             ros::RigPublisherOptions{.layout = output.sink.layout,
-                                                                      .columns = output.columns,
-                                                                      .deskew = output.deskew,
-                                                                      .for_viewers = for_viewers});
+  if (output.packet_topics && !for_viewers) add_packets(flags, prepared, origin, rig);
+  return std::make_unique<ros::RigPublisher>(
+      sink, std::move(rig),
+      ros::RigPublisherOptions{.layout = output.sink.layout,
+                               .columns = output.columns,
+                               .deskew = output.deskew,
+                               .images = for_viewers ? ros::ImageTransport::raw : output.images,
+                               .for_viewers = for_viewers});
 }
 
 }  // namespace glidar::app

@@ -10,9 +10,9 @@ Ros2Link::Ros2Link(const Ros2Flags& flags, link::ErrorLog& errors)
     : flags_(flags), participant_({.id = {}, .interface_name = flags.interface_name}, errors) {}
 
 std::unique_ptr<FrameSink> Ros2Link::make_sink(const RenderFlags& flags,
-                                               const PreparedScene& prepared,
-                                               PoseOrigin origin) const {
-  return std::make_unique<Ros2Sink>(participant_, flags_, flags, prepared, origin);
+                                               const PreparedScene& prepared, PoseOrigin origin,
+                                               double speed) const {
+  return std::make_unique<Ros2Sink>(participant_, flags_, flags, prepared, origin, speed);
 }
 
 std::unique_ptr<PoseSource> Ros2Link::make_source(const Ros2Schedule& schedule, std::size_t queue,

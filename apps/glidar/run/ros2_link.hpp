@@ -22,10 +22,10 @@ class Ros2Link {
   /// Joins the domain. Flags and log must outlive it. Throws Error.
   Ros2Link(const Ros2Flags& flags, link::ErrorLog& errors);
 
-  /// Publishes frames.
+  /// Publishes frames. `speed`: how fast their time passes; 0: it is not related to real time.
   [[nodiscard]] std::unique_ptr<FrameSink> make_sink(const RenderFlags& flags,
                                                      const PreparedScene& prepared,
-                                                     PoseOrigin origin) const;
+                                                     PoseOrigin origin, double speed) const;
   /// Subscribes to the poses, or the clock, of the flags. `queue`: poses that wait; 0: the newest
   /// only.
   std::unique_ptr<PoseSource> make_source(const Ros2Schedule& schedule, std::size_t queue,

@@ -7,7 +7,10 @@
 #include <apps/glidar/run/rig_messages.hpp>
 #include <glidar/link/dds/message_sink.hpp>
 
+#include <chrono>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,17 +19,24 @@ namespace glidar::app {
 /// `--ros2`: publishes the messages of all frames as topics of ROS 2.
 class Ros2Sink final : public FrameSink {
  public:
-  /// All must outlive it. Throws Error.
+  /// All must outlive it. `speed`: how fast the time of the frames passes; 0: it is not related to
+  /// real time. Throws Error.
   Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2, const RenderFlags& flags,
-           const PreparedScene& prepared, PoseOrigin origin);
+           const PreparedScene& prepared, PoseOrigin origin, double speed);
 
   [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override;
   void write(const MeasuredFrame& measured) override;
+  /// Publishes poses and samples of IMUs at their times.
+  void serve() override;
+  [[nodiscard]] std::chrono::milliseconds serve_interval() const override;
   void finish() override;
 
  private:
   dds::MessageSink topics_;
   std::unique_ptr<ros::RigPublisher> publisher_;
+  double speed_;
+  std::optional<std::chrono::steady_clock::time_point> last_due_;  ///< of the last frame
+  std::int64_t last_stamp_ns_ = 0;                                 ///< of the last frame
 };
 
 }  // namespace glidar::app

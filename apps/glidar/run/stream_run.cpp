@@ -26,7 +26,6 @@ namespace glidar::app {
 namespace {
 
 const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
-
 /// How often the status line changes.
 constexpr std::chrono::milliseconds kStatusInterval{200};
 
@@ -141,7 +140,8 @@ void StreamRun::open_sinks(std::unique_ptr<NumberedFiles> files,
     sinks_.push_back(std::move(sink));
   }
   if (flags_.ros2.publishes)
-    sinks_.push_back(ros2_->make_sink(flags_.render, prepared_, pose_origin(flags_)));
+    sinks_.push_back(ros2_->make_sink(flags_.render, prepared_, pose_origin(flags_),
+                                      time_speed(flags_, prepared_.sensors.front().sensor)));
   hit_columns_ = needed_hit_columns(sinks_, prepared_.sensors.size());
   if (publisher_) hit_columns_ = hit_columns_ | glidar::hit_columns_for(kPublishedColumns);
 }
@@ -264,7 +264,7 @@ bool StreamRun::has_all_peers(const StopRequest& stop) {
 void StreamRun::stream(PoseSource& source, StopRequest& stop) {
   stats_ = {};
   Delivery delivery([this](const MeasuredFrame& measured) { deliver(measured); },
-                    [this] { serve_peers(); }, [&stop] { stop.request(); });
+                    [this] { serve_peers(); }, [&stop] { stop.request(); }, serve_interval(sinks_));
   while (!stop.is_requested()) {
     const std::optional<FrameRequest> request = source.next();
     if (!request) break;

@@ -8,6 +8,8 @@
 
 #include <utility>
 
+#include <algorithm>
+
 namespace glidar::app {
 
 PoseOrigin pose_origin(const StreamFlags& flags) {
@@ -36,6 +38,12 @@ std::vector<std::unique_ptr<FrameSink>> make_stream_sinks(const StreamFlags& fla
     sinks.push_back(std::move(sink));
   }
   return sinks;
+}
+
+std::chrono::milliseconds serve_interval(const std::vector<std::unique_ptr<FrameSink>>& sinks) {
+  std::chrono::milliseconds interval = kDefaultServeInterval;
+  for (const auto& sink : sinks) interval = std::min(interval, sink->serve_interval());
+  return interval;
 }
 
 HitColumnMask needed_hit_columns(const std::vector<std::unique_ptr<FrameSink>>& sinks,

@@ -7,6 +7,7 @@
 #include <apps/glidar/run/rig_messages.hpp>
 #include <glidar/link/error_log.hpp>
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ std::vector<std::unique_ptr<FrameSink>> make_stream_sinks(const StreamFlags& fla
                                                           const PreparedScene& prepared,
                                                           const std::vector<std::string>& read,
                                                           link::ErrorLog& errors, Console& console);
+
+/// How often the sinks are to be served.
+std::chrono::milliseconds serve_interval(const std::vector<std::unique_ptr<FrameSink>>& sinks);
 
 /// The columns of ground truth that the sinks need of all sensors.
 HitColumnMask needed_hit_columns(const std::vector<std::unique_ptr<FrameSink>>& sinks,

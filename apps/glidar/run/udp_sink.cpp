@@ -3,6 +3,7 @@
 #include <apps/glidar/run/udp_sink.hpp>
 
 #include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/run/packet_setup.hpp>
 #include <apps/glidar/run/packet_sinks.hpp>
 #include <apps/glidar/run/sensor_control.hpp>
 #include <glidar/core/error.hpp>
@@ -22,7 +23,7 @@ namespace {
 
 class UdpSink final : public FrameSink {
  public:
-  UdpSink(std::size_t sensor_index, const Sensor& sensor, const PacketSetup& setup,
+  UdpSink(std::size_t sensor_index, const Sensor& sensor, const ros::PublishedPackets& setup,
           std::unique_ptr<link::PacketSender> sender)
       : sensor_index_(sensor_index),
         sensor_(sensor),
@@ -131,7 +132,7 @@ class UdpSinkMaker {
  private:
   struct Selection {
     std::size_t index = 0;
-    PacketSetup setup;
+    ros::PublishedPackets setup;
     link::PacketRoute route;
     ControlPlan plan;
   };

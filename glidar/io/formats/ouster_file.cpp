@@ -22,13 +22,13 @@ constexpr std::uint32_t kMaxOusterColumns = 65536;
   throw Error({where, std::move(found), std::move(allowed), "use the sensor's own metadata JSON"});
 }
 
-nlohmann::json parse(const std::filesystem::path& path) {
+nlohmann::json parse(const std::string& text, const std::string& file) {
   try {
-    nlohmann::json all = parse_json<nlohmann::json>(path.string(), read_text_file(path, kMetadata));
+    nlohmann::json all = parse_json<nlohmann::json>(file, text);
     if (all.is_object()) return all;
   } catch (const nlohmann::json::exception&) {  // as below
   }
-  fail(path.string(), "no JSON object", "Ouster metadata");
+  fail(file, "no JSON object", "Ouster metadata");
 }
 
 /// The value of a key, at the top (old layout) or in the part where new firmware puts it.
@@ -103,8 +103,11 @@ void apply_column_window(const nlohmann::json& all, const std::string& file, Spi
 }  // namespace
 
 Spinning load_ouster_metadata(const std::filesystem::path& path) {
-  const nlohmann::json all = parse(path);
-  const std::string file = path.string();
+  return parse_ouster_metadata(read_text_file(path, kMetadata), path.string());
+}
+
+Spinning parse_ouster_metadata(const std::string& text, const std::string& file) {
+  const nlohmann::json all = parse(text, file);
   const std::vector<double> altitudes_deg = angles(all, "beam_altitude_angles", file);
   const std::vector<double> azimuths_deg = angles(all, "beam_azimuth_angles", file);
   if (altitudes_deg.size() != azimuths_deg.size()) {

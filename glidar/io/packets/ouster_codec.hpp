@@ -55,6 +55,9 @@ struct OusterSource {
 /// Throws Error with the key that is missing or malformed.
 OusterSource load_ouster_source(const std::filesystem::path& metadata);
 
+/// The same from a text; `file` is where it comes from, for errors.
+OusterSource parse_ouster_source(const std::string& text, const std::string& file);
+
 /// Packets of another initialization_id are malformed, but one of 0 in the metadata fits all.
 std::unique_ptr<PacketDecoder> make_ouster_decoder(const OusterSource& source);
 /// Decodes the packets that make_ouster_encoder() makes of a sensor.

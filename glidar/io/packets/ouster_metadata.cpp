@@ -214,11 +214,14 @@ std::string ouster_metadata(const Sensor& sensor, const OusterOptions& options) 
 }
 
 OusterSource load_ouster_source(const std::filesystem::path& metadata) {
+  return parse_ouster_source(read_text_file(metadata, kOusterJson), metadata.string());
+}
+
+OusterSource parse_ouster_source(const std::string& text, const std::string& file) {
   OusterSource source;
-  source.sensor.optics = load_ouster_metadata(metadata);
+  source.sensor.optics = parse_ouster_metadata(text, file);
   auto& spinning = std::get<Spinning>(source.sensor.optics);
-  const std::string file = metadata.string();
-  const Json all = parse_json<Json>(file, read_text_file(metadata, kOusterJson));
+  const Json all = parse_json<Json>(file, text);
   const auto value = [&](const char* key) {
     return find_value(all, {"lidar_data_format", "data_format", "config_params", "sensor_info"},
                       key);

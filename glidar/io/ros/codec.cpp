@@ -33,10 +33,17 @@ std::size_t padding(Wire wire, std::size_t position, std::size_t size) {
   return wire == Wire::cdr ? (size - (position - first_byte(wire)) % size) % size : 0;
 }
 
-/// Appends members to a serialized message.
+/// Writes members of a serialized message over the bytes of an earlier one, which are not set to
+/// zero before.
 class MemberWriter {
  public:
-  MemberWriter(Wire wire, std::vector<std::byte>& to) : wire_(wire), to_(to) {}
+  MemberWriter(Wire wire, std::vector<std::byte>& to) : wire_(wire), to_(to) {
+    if (wire == Wire::cdr)
+      std::copy(kCdrLittleEndian.begin(), kCdrLittleEndian.end(), grow(kCdrLittleEndian.size(), 1));
+  }
+
+  /// Removes what is left of the earlier message.
+  void finish() { to_.resize(size_); }
 
   template <class... Members>
   void operator()(Members&&... members) {
@@ -94,7 +101,7 @@ class MemberWriter {
   }
 
   void write_size(std::size_t size) {
-    if (size > kMaxMessage - to_.size()) {
+    if (size > kMaxMessage - size_) {
       throw Error({"ROS message", fmt::format("{} bytes in one array", size), "less than 4 GiB",
                    "use fewer points"});
     }
@@ -103,13 +110,16 @@ class MemberWriter {
 
   /// Space for `size` bytes behind the padding to `alignment`, which is zero.
   std::byte* grow(std::size_t size, std::size_t alignment) {
-    const std::size_t at = to_.size() + padding(wire_, to_.size(), alignment);
-    to_.resize(at + size);
+    const std::size_t at = size_ + (size_ == 0 ? 0 : padding(wire_, size_, alignment));
+    if (at + size > to_.size()) to_.resize(at + size);
+    std::fill(to_.data() + size_, to_.data() + at, std::byte{0});
+    size_ = at + size;
     return to_.data() + at;
   }
 
   Wire wire_;
   std::vector<std::byte>& to_;
+  std::size_t size_ = 0;  ///< of what was written
 };
 
 /// Reads members from a serialized message; trusts no size.
@@ -237,6 +247,7 @@ class MemberReader {
 template <class Message>
 std::size_t payload_size(const Message& message) {
   if constexpr (requires { message.data.size(); }) return message.data.size();
+  if constexpr (requires { message.buf.size(); }) return message.buf.size();
   return 0;
 }
 
@@ -245,11 +256,10 @@ std::size_t payload_size(const Message& message) {
 template <class Message>
 void serialize_to(const Message& message, Wire wire, std::vector<std::byte>& to) {
   constexpr std::size_t kOthers = 1024;
-  to.clear();
   to.reserve(payload_size(message) + kOthers);
-  if (wire == Wire::cdr) to.assign(kCdrLittleEndian.begin(), kCdrLittleEndian.end());
   MemberWriter writer(wire, to);
   visit_members(message, writer);
+  writer.finish();
 }
 
 template <class Message>
@@ -287,6 +297,8 @@ GLIDAR_ROS_CODEC(Clock)
 GLIDAR_ROS_CODEC(Odometry)
 GLIDAR_ROS_CODEC(CustomMsg)
 GLIDAR_ROS_CODEC(VelodyneScan)
+GLIDAR_ROS_CODEC(PacketMsg)
+GLIDAR_ROS_CODEC(String)
 
 #undef GLIDAR_ROS_CODEC
 

@@ -7,15 +7,15 @@
 namespace glidar::ros {
 namespace {
 
-/// From common_interfaces, rcl_interfaces and geometry2 of ROS 2, livox_ros_driver2 and
-/// velodyne_msgs, without comments and default values.
+/// From common_interfaces, rcl_interfaces and geometry2 of ROS 2, livox_ros_driver2,
+/// velodyne_msgs and ouster_sensor_msgs, without comments and default values.
 struct Definition {
   std::string_view type;
   std::string_view fields;
   std::string_view ros1_fields = {};  ///< where they differ
 };
 
-constexpr std::array<Definition, 27> kDefinitions = {{
+constexpr std::array<Definition, 29> kDefinitions = {{
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n",
      "uint32 seq\ntime stamp\nstring frame_id\n"},
@@ -75,6 +75,8 @@ constexpr std::array<Definition, 27> kDefinitions = {{
      "time stamp\nuint8[1206] data\n"},
     {"velodyne_msgs/VelodyneScan",
      "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n"},
+    {"ouster_ros/PacketMsg", "uint8[] buf\n"},
+    {"std_msgs/String", "string data\n"},
 }};
 
 }  // namespace

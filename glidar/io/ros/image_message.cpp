@@ -52,6 +52,20 @@ std::uint16_t millimetres_of(double depth) {
   return millimetres <= kMax ? static_cast<std::uint16_t>(std::max(1.0, millimetres)) : 0;
 }
 
+/// The PNG file of an image of encoding mono8 or 16UC1.
+std::vector<std::byte> png_of(const Image& image) {
+  const bool is_wide = image.encoding == "16UC1";
+  if (!is_wide && image.encoding != "mono8") {
+    throw Error({"CompressedImage", "an image of encoding " + image.encoding, "mono8 or 16UC1"});
+  }
+  const std::vector<std::byte> pixels = image.data.to_vector();
+  const std::size_t row = std::size_t{image.width} * (is_wide ? 2U : 1U);
+  if (image.step != row || pixels.size() != row * image.height)
+    throw Error({"CompressedImage", "rows with padding", "rows that follow each other"});
+  const PngKind kind = is_wide ? PngKind::grey16 : PngKind::grey8;
+  return encode_png({kind, image.width, image.height, pixels, {}});
+}
+
 }  // namespace
 
 Image depth_image(const CloudSource& source, DepthEncoding encoding, const std::string& frame_id) {
@@ -94,19 +108,21 @@ Image range_image(const CloudSource& source, const std::string& frame_id) {
 }
 
 CompressedImage png_image(const Image& image) {
-  const bool is_wide = image.encoding == "16UC1";
-  if (!is_wide && image.encoding != "mono8") {
-    throw Error({"CompressedImage", "an image of encoding " + image.encoding, "mono8 or 16UC1"});
-  }
-  const std::vector<std::byte> pixels = image.data.to_vector();
-  const std::size_t row = std::size_t{image.width} * (is_wide ? 2U : 1U);
-  if (image.step != row || pixels.size() != row * image.height)
-    throw Error({"CompressedImage", "rows with padding", "rows that follow each other"});
-  const PngKind kind = is_wide ? PngKind::grey16 : PngKind::grey8;
-  return {image.header, image.encoding + "; png compressed ",
-          Payload(encode_png({kind, image.width, image.height, pixels, {}}))};
+  return {image.header, image.encoding + "; png compressed ", Payload(png_of(image))};
 }
 
+/// compressed_depth_image_transport/compression_common.h: an int32 for the format, of which there
+/// is one, 0, and two float32, which images of whole millimetres do not use.
+CompressedImage compressed_depth_image(const Image& image) {
+  constexpr std::size_t kHeader_bytes = 12;
+  if (image.encoding != "16UC1") {
+    throw Error({"compressedDepth", "an image of encoding " + image.encoding, "16UC1"});
+  }
+  std::vector<std::byte> bytes(kHeader_bytes);
+  const std::vector<std::byte> png = png_of(image);
+  bytes.insert(bytes.end(), png.begin(), png.end());
+  return {image.header, "16UC1; compressedDepth png", Payload(std::move(bytes))};
+}
 CameraInfo camera_info(const CloudSource& source, const std::string& frame_id) {
   std::optional<CameraModel> model = camera_model(source.sensor.optics);
   if (!model) {

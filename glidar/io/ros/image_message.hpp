@@ -35,6 +35,11 @@ Image range_image(const CloudSource& source, const std::string& frame_id = {});
 /// compressed_image_transport. Throws Error for other encodings.
 CompressedImage png_image(const Image& image);
 
+/// A depth image of encoding 16UC1 in the format of image_transport's plugin
+/// compressed_depth_image_transport: PNG behind a header of 12 bytes. Throws Error for other
+/// encodings.
+CompressedImage compressed_depth_image(const Image& image);
+
 /// Intrinsics and distortion. Throws Error for optics other than a camera.
 CameraInfo camera_info(const CloudSource& source, const std::string& frame_id = {});
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace glidar::ros {
 
@@ -45,6 +46,11 @@ class MessageSink {
   /// Throws Error for times before 1970, unknown topics and when the system refuses.
   virtual void write(std::size_t topic, std::int64_t time_ns,
                      std::span<const std::byte> message) = 0;
+  /// The same for bytes that the sink may keep. It leaves unspecified bytes, whose memory can be
+  /// used for another message.
+  virtual void take(std::size_t topic, std::int64_t time_ns, std::vector<std::byte>& message) {
+    write(topic, time_ns, message);
+  }
   /// Call after the last message: completes a bag. Throws Error.
   virtual void finish() = 0;
 };

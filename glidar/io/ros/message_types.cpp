@@ -14,10 +14,11 @@ namespace {
 
 constexpr Qos kSensor = {.depth = 5};
 constexpr Qos kDefault = {};
+constexpr Qos kPackets = {.depth = 100};  // a revolution
 
 /// In the order of Index. The type hashes and MD5 sums are computed from the definitions by
 /// independent programs in the tests.
-constexpr std::array<MessageType, 14> kMessageTypes = {{
+constexpr std::array<MessageType, 16> kMessageTypes = {{
     {"std_msgs/msg/Header", "std_msgs/Header", "2176decaecbce78abc3b96ef049fabed",
      "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01", kDefault},
     {"sensor_msgs/msg/PointField", "sensor_msgs/PointField", "268eacb2962780ceac86cbd17e328150",
@@ -59,6 +60,10 @@ constexpr std::array<MessageType, 14> kMessageTypes = {{
     {"velodyne_msgs/msg/VelodyneScan", "velodyne_msgs/VelodyneScan",
      "50804fc9533a0e579e6322c04ae70566",
      "RIHS01_4e4edd7152e8bd604311d8b2e68e4c1b0771c8ce72700de79f6d1418aa242b3c", kDefault},
+    {"ouster_sensor_msgs/msg/PacketMsg", "ouster_ros/PacketMsg", "4f7b5949e76f86d01e96b0e33ba9b5e3",
+     "RIHS01_c21822af66817068b0850f02afb1a8bba77ec79cd412a2a3aaecddc108022032", kPackets},
+    {"std_msgs/msg/String", "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1",
+     "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18", kDefault},
 }};
 
 /// The package and the name of a type of ROS 2 as ROS 1 spells it: without "msg/".
@@ -92,12 +97,15 @@ GLIDAR_ROS_TYPE(Clock, 10)
 GLIDAR_ROS_TYPE(Odometry, 11)
 GLIDAR_ROS_TYPE(CustomMsg, 12)
 GLIDAR_ROS_TYPE(VelodyneScan, 13)
+GLIDAR_ROS_TYPE(PacketMsg, 14)
+GLIDAR_ROS_TYPE(String, 15)
 
 #undef GLIDAR_ROS_TYPE
 
 const MessageType* find_message_type(std::string_view name) {
   if (name == "livox_ros_driver/CustomMsg" || name == "livox_ros_driver/msg/CustomMsg")
     return &message_type<CustomMsg>();
+  if (name == "ouster_ros/msg/PacketMsg") return &message_type<PacketMsg>();  // of older drivers
   if (name == "tf/tfMessage") return &message_type<TFMessage>();  // of ROS 1 before Hydro
   const auto found = std::find_if(kMessageTypes.begin(), kMessageTypes.end(),
                                   [&](const MessageType& type) { return is_name_of(type, name); });
@@ -120,9 +128,8 @@ std::string definition_text(const MessageType& type, Wire wire) {
 }
 
 std::string dds_type_name(const MessageType& type) {
-  const std::size_t slash = type.ros1_name.find('/');
-  return fmt::format("{}::msg::dds_::{}_", type.ros1_name.substr(0, slash),
-                     type.ros1_name.substr(slash + 1));
+  return fmt::format("{}::msg::dds_::{}_", type.name.substr(0, type.name.find('/')),
+                     type.name.substr(type.name.rfind('/') + 1));
 }
 
 std::string qos_yaml(const Qos& qos) {

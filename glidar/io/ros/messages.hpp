@@ -5,7 +5,7 @@
 // Messages of ROS as plain structs. The members of each one are listed once, in wire order, by its
 // function visit_members(), from which all codecs follow (codec.hpp). Definitions: the packages
 // std_msgs, sensor_msgs, geometry_msgs, tf2_msgs, nav_msgs and rosgraph_msgs of ROS 1 Noetic and
-// ROS 2, livox_ros_driver2 (CustomMsg) and velodyne_msgs (VelodyneScan).
+// ROS 2, livox_ros_driver2 (CustomMsg), velodyne_msgs (VelodyneScan) and ouster_sensor_msgs.
 
 #include <glidar/io/ros/payload.hpp>
 
@@ -294,6 +294,22 @@ struct VelodyneScan {
 };
 void visit_members(Is<VelodyneScan> auto& m, auto&& visit) {
   visit(m.header, m.packets);
+}
+
+/// ouster_sensor_msgs/PacketMsg; in ROS 1 ouster_ros/PacketMsg.
+struct PacketMsg {
+  std::vector<std::uint8_t> buf;
+};
+void visit_members(Is<PacketMsg> auto& m, auto&& visit) {
+  visit(m.buf);
+}
+
+/// std_msgs/String.
+struct String {
+  std::string data;
+};
+void visit_members(Is<String> auto& m, auto&& visit) {
+  visit(m.data);
 }
 
 }  // namespace glidar::ros

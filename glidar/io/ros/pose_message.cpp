@@ -48,14 +48,18 @@ PoseStamped to_pose_stamped(const Pose& parent_from_body, const std::string& par
           {to_vector(parent_from_body.translation()), orientation_of(parent_from_body)}};
 }
 
-Odometry to_odometry(const Pose& parent_from_child, const BodyTwist& twist, const FramePair& frames,
-                     std::int64_t t_ns) {
+Odometry to_odometry(const Pose& parent_from_child, const std::optional<BodyTwist>& twist,
+                     const FramePair& frames, std::int64_t t_ns) {
   Odometry odometry;
   odometry.header = stamped(frames.parent, t_ns);
   odometry.child_frame_id = frames.child;
   odometry.pose = {to_vector(parent_from_child.translation()), orientation_of(parent_from_child)};
-  odometry.linear_velocity = to_vector(twist.linear_m_s);
-  odometry.angular_velocity = to_vector(twist.angular_rad_s);
+  if (twist) {
+    odometry.linear_velocity = to_vector(twist->linear_m_s);
+    odometry.angular_velocity = to_vector(twist->angular_rad_s);
+  } else {
+    odometry.twist_covariance[0] = -1.0;  // unknown, as in sensor_msgs/Imu
+  }
   return odometry;
 }
 

@@ -7,6 +7,7 @@
 #include <glidar/motion/timed_poses.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace glidar::ros {
@@ -28,8 +29,10 @@ TransformStamped to_transform(const Pose& parent_from_child, const FramePair& fr
                               std::int64_t t_ns);
 PoseStamped to_pose_stamped(const Pose& parent_from_body, const std::string& parent,
                             std::int64_t t_ns);
-Odometry to_odometry(const Pose& parent_from_child, const BodyTwist& twist, const FramePair& frames,
-                     std::int64_t t_ns);
+/// Without a twist, its velocities are 0 and the first element of its covariance is -1, as
+/// sensor_msgs/Imu marks values that are unknown.
+Odometry to_odometry(const Pose& parent_from_child, const std::optional<BodyTwist>& twist,
+                     const FramePair& frames, std::int64_t t_ns);
 Clock to_clock(std::int64_t t_ns);
 
 /// The mean velocity from one pose of a body to its next, `seconds` later: the logarithm of the

@@ -6,24 +6,16 @@
 #include <glidar/io/ros/image_message.hpp>
 #include <glidar/io/ros/laser_scan.hpp>
 #include <glidar/io/ros/pose_message.hpp>
-#include <glidar/motion/kinematics.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <variant>
 
 namespace glidar::ros {
 namespace {
 
-/// Names of coordinate frames: REP-105.
-constexpr const char* kMapFrame = "map";
-constexpr const char* kRigFrame = "base_link";
-
-/// From one pose of the rig to the next in /tf, /odom and /clock: 100 Hz.
-constexpr std::int64_t kPosePeriod_ns = 10'000'000;
-
-/// Longer times between frames have no poses and samples.
-constexpr std::int64_t kMaxGap_ns = 1'000'000'000'000;
+constexpr std::int64_t kForever_ns = std::numeric_limits<std::int64_t>::max();
 
 bool is_camera(const PublishedSensor& published) {
   return std::holds_alternative<Pinhole>(published.sensor.optics);
@@ -38,26 +30,20 @@ bool has_one_row(const PublishedSensor& published) {
   return published.beams.rows == published.beams.returns;
 }
 
-Vector3 vector_message(const Eigen::Vector3d& v) {
-  return {.x = v.x(), .y = v.y(), .z = v.z()};
-}
-
-void add_once(const char* name, std::vector<std::string>& columns) {
+void add_once(const std::string& name, std::vector<std::string>& columns) {
   if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.emplace_back(name);
 }
 
 }  // namespace
 
 RigPublisher::RigPublisher(MessageSink& sink, PublishedRig rig, RigPublisherOptions options)
-    : sink_(sink), rig_(std::move(rig)), options_(std::move(options)) {
+    : sink_(sink),
+      rig_(std::move(rig)),
+      options_(std::move(options)),
+      arrivals_(rig_.sensors.size(), rig_.world_from_rig.has_value()) {
   for (const PublishedSensor& sensor : rig_.sensors) topics_.push_back(add_topics(sensor));
-  tf_ = sink_.add_topic(make_topic<TFMessage>("/tf"));
-  odometry_ = sink_.add_topic(make_topic<Odometry>("/odom"));
-  clock_ = sink_.add_topic(make_topic<Clock>("/clock"));
   if (!rig_.world_from_rig) rig_.imus.clear();
-  for (const PublishedImu& imu : rig_.imus) {
-    imus_.push_back({.topic = sink_.add_topic(make_topic<Imu>("/" + imu.name + "/data"))});
-  }
+  motion_.emplace(sink_, rig_);
   write_static_transforms();
 }
 
@@ -69,22 +55,36 @@ RigPublisher::SensorTopics RigPublisher::add_topics(const PublishedSensor& senso
                       .cloud_name = base + "/points"};
   topics.cloud = sink_.add_topic(has_custom_msg() ? make_topic<CustomMsg>(topics.cloud_name)
                                                   : make_topic<PointCloud2>(topics.cloud_name));
-  const auto add_image = [&](const char* image) {
-    return sink_.add_topic(make_topic<Image>(base + image));
-  };
-  const bool has_rows = is_camera(sensor) || (is_scanner(sensor) && !has_one_row(sensor));
   if (is_scanner(sensor) && has_one_row(sensor)) {
     topics.scan = sink_.add_topic(make_topic<LaserScan>(base + "/scan"));
   }
+  add_image_topics(sensor, base, topics);
+  if (sensor.packets)
+    topics.packets = std::make_unique<PacketTopics>(sink_, sensor, topics.frame_id);
+  return topics;
+}
+
+void RigPublisher::add_image_topics(const PublishedSensor& sensor, const std::string& base,
+                                    SensorTopics& topics) {
+  const auto add_image = [&](const char* image) {
+    return sink_.add_topic(make_topic<Image>(base + image));
+  };
+  const auto add_compressed = [&](const char* image) {
+    return sink_.add_topic(make_topic<CompressedImage>(base + image));
+  };
+  const bool has_rows = is_camera(sensor) || (is_scanner(sensor) && !has_one_row(sensor));
   if (is_camera(sensor)) {
-    topics.depth = add_image("/depth/image_raw");
+    if (options_.images != ImageTransport::compressed) topics.depth = add_image("/depth/image_raw");
     topics.camera_info = sink_.add_topic(make_topic<CameraInfo>(base + "/depth/camera_info"));
+    if (options_.images != ImageTransport::raw) {
+      topics.compressed_depth = add_compressed("/depth/image_raw/compressedDepth");
+      topics.compressed_intensity = add_compressed("/intensity/image_raw/compressed");
+    }
   }
   if (options_.for_viewers && is_scanner(sensor) && has_rows) {
     topics.range = add_image("/range/image_raw");
   }
   if (options_.for_viewers && has_rows) topics.intensity = add_image("/intensity/image_raw");
-  return topics;
 }
 
 void RigPublisher::write_static_transforms() {
@@ -98,13 +98,20 @@ void RigPublisher::write_static_transforms() {
   for (const PublishedImu& imu : rig_.imus) {
     message.transforms.push_back(to_transform(imu.rig_from_imu, {kRigFrame, imu.name}, 0));
   }
-  write(sink_.add_topic(topic), 0, message);
+  write_message(sink_, sink_.add_topic(topic), 0, message);
 }
 
-template <class Message>
-void RigPublisher::write(std::size_t topic, std::int64_t time_ns, const Message& message) {
-  serialize_to(message, sink_.wire(), bytes_);
-  sink_.write(topic, time_ns, bytes_);
+/// Writes the messages up to a time, and the poses and samples before them.
+void RigPublisher::release(std::int64_t until_ns) {
+  while (std::optional<HeldMessages::Held> message = held_.release(until_ns)) {
+    if (!message->topic) {
+      if (rig_.world_from_rig) motion_->advance(message->time_ns);
+      continue;
+    }
+    if (rig_.world_from_rig) motion_->advance_between(message->time_ns);
+    sink_.take(*message->topic, message->time_ns, message->bytes);
+    held_.give_back(std::move(message->bytes));
+  }
 }
 
 bool RigPublisher::is_wanted(const std::optional<std::size_t>& topic) const {
@@ -133,7 +140,11 @@ std::vector<std::string> RigPublisher::cloud_columns(std::size_t sensor) const {
 
 std::vector<std::string> RigPublisher::columns(std::size_t sensor) const {
   std::vector<std::string> columns = cloud_columns(sensor);
-  if (topics_[sensor].depth) add_once("depth", columns);
+  if (topics_[sensor].depth || topics_[sensor].compressed_depth) add_once("depth", columns);
+  if (topics_[sensor].compressed_intensity) add_once("intensity", columns);
+  if (topics_[sensor].packets) {
+    for (const std::string& name : PacketTopics::columns()) add_once(name, columns);
+  }
   return columns;
 }
 
@@ -146,138 +157,90 @@ CloudMessageOptions RigPublisher::cloud_options(std::size_t sensor) const {
 }
 
 void RigPublisher::publish(std::size_t sensor, const Frame& frame, const Beams& beams) {
-  const std::int64_t stamp_ns = first_firing_ns(frame, beams);
-  if (rig_.world_from_rig) {
-    advance(stamp_ns);
-  } else {
-    write_frame_pose(sensor, frame);
-  }
   const CloudSource source{frame, rig_.sensors[sensor].sensor, beams};
-  const SensorTopics& topics = topics_[sensor];
-  if (is_wanted(topics.cloud)) write_cloud(sensor, source, stamp_ns);
-  if (is_wanted(topics.scan)) {
-    write(*topics.scan, stamp_ns, laser_scan(source, ring_of(beams, 0), topics.frame_id));
-  }
-  write_images(topics, source, stamp_ns);
+  const std::int64_t stamp_ns = first_firing_ns(frame, beams);
   const FrameInterval interval = frame_interval(source.sensor, frame.number);
-  end_ns_ = std::max(end_ns_, frame.stamp_ns + (interval.end_ns - interval.start_ns));
+  const std::int64_t duration_ns = interval.end_ns - interval.start_ns;
+  if (!arrivals_.add(sensor, frame.stamp_ns, duration_ns, stamp_ns + duration_ns)) {
+    release(kForever_ns);
+  }
+  release(frame.stamp_ns);
+  if (!rig_.world_from_rig) motion_->write_frame_pose(sensor, frame);
+  held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});  // a pose
+  hold_cloud(sensor, source, stamp_ns);
+  hold_images(topics_[sensor], source, stamp_ns);
+  hold_compressed_images(topics_[sensor], source, stamp_ns);
+  if (topics_[sensor].packets) topics_[sensor].packets->hold(frame, beams, held_);
+  release(arrivals_.complete_ns());
+  end_ns_ = std::max(end_ns_, frame.stamp_ns + duration_ns);
 }
 
-void RigPublisher::write_cloud(std::size_t sensor, const CloudSource& source,
-                               std::int64_t stamp_ns) {
+void RigPublisher::hold_cloud(std::size_t sensor, const CloudSource& source,
+                              std::int64_t stamp_ns) {
+  const SensorTopics& topics = topics_[sensor];
+  if (is_wanted(topics.scan)) {
+    held_.hold(*topics.scan, stamp_ns,
+               laser_scan(source, ring_of(source.beams, 0), topics.frame_id), sink_.wire());
+  }
+  if (!is_wanted(topics.cloud)) return;
   OutputFrame axes = output_frame("sensor", source.beams, source.frame.world_from_sensor);
   axes.deskew = options_.deskew;
   make_point_cloud(source.frame, source.beams, rig_.scene, axes, cloud_columns(sensor), cloud_);
-  const std::size_t topic = topics_[sensor].cloud;
   if (has_custom_msg()) {
-    write(topic, stamp_ns, to_custom_msg(cloud_, source, cloud_options(sensor)));
+    held_.hold(topics.cloud, stamp_ns, to_custom_msg(cloud_, source, cloud_options(sensor)),
+               sink_.wire());
   } else {
-    write(topic, stamp_ns, to_point_cloud2(cloud_, source, cloud_options(sensor)));
+    held_.hold(topics.cloud, stamp_ns, to_point_cloud2(cloud_, source, cloud_options(sensor)),
+               sink_.wire());
   }
 }
 
-void RigPublisher::write_images(const SensorTopics& topics, const CloudSource& source,
-                                std::int64_t stamp_ns) {
+void RigPublisher::hold_images(const SensorTopics& topics, const CloudSource& source,
+                               std::int64_t stamp_ns) {
   const std::string& frame_id = topics.frame_id;
   if (is_wanted(topics.depth)) {
-    write(*topics.depth, stamp_ns, depth_image(source, DepthEncoding::metres_32fc1, frame_id));
+    held_.hold(*topics.depth, stamp_ns, depth_image(source, DepthEncoding::metres_32fc1, frame_id),
+               sink_.wire());
   }
   if (is_wanted(topics.camera_info)) {
-    write(*topics.camera_info, stamp_ns, ros::camera_info(source, frame_id));
+    held_.hold(*topics.camera_info, stamp_ns, ros::camera_info(source, frame_id), sink_.wire());
   }
-  if (is_wanted(topics.range)) write(*topics.range, stamp_ns, range_image(source, frame_id));
+  if (is_wanted(topics.range))
+    held_.hold(*topics.range, stamp_ns, range_image(source, frame_id), sink_.wire());
   if (is_wanted(topics.intensity)) {
-    write(*topics.intensity, stamp_ns, intensity_image(source, IntensityEncoding::f32c1, frame_id));
+    held_.hold(*topics.intensity, stamp_ns,
+               intensity_image(source, IntensityEncoding::f32c1, frame_id), sink_.wire());
   }
+}
+
+void RigPublisher::hold_compressed_images(const SensorTopics& topics, const CloudSource& source,
+                                          std::int64_t stamp_ns) {
+  if (is_wanted(topics.compressed_depth)) {
+    const Image depth = depth_image(source, DepthEncoding::millimetres_16uc1, topics.frame_id);
+    held_.hold(*topics.compressed_depth, stamp_ns, compressed_depth_image(depth), sink_.wire());
+  }
+  if (is_wanted(topics.compressed_intensity)) {
+    const Image intensity = intensity_image(source, IntensityEncoding::mono8, topics.frame_id);
+    held_.hold(*topics.compressed_intensity, stamp_ns, png_image(intensity), sink_.wire());
+  }
+}
+
+void RigPublisher::advance(std::int64_t now_ns) {
+  const std::optional<std::int64_t> limit_ns = arrivals_.next_end_ns();
+  if (!limit_ns || !rig_.world_from_rig) return;
+  const std::int64_t until_ns = std::min(now_ns, *limit_ns);
+  for (const std::int64_t firing_ns : arrivals_.next_firings_ns()) {
+    if (firing_ns <= until_ns) motion_->advance(firing_ns);
+  }
+  motion_->advance_between(until_ns);
 }
 
 void RigPublisher::finish() {
-  if (rig_.world_from_rig && last_pose_ns_) advance(end_ns_);
-}
-
-/// Writes the ground truth of the rig and the samples of IMUs up to a time, and the pose at it.
-void RigPublisher::advance(std::int64_t until_ns) {
-  if (last_pose_ns_ && until_ns <= *last_pose_ns_) return;
-  skip_gap(until_ns);
-  compute_imu_samples(until_ns + 1);
-  for (; next_pose_ns_ <= until_ns; next_pose_ns_ += kPosePeriod_ns) {
-    for (std::size_t i = 0; i < imus_.size(); ++i) write_imu_samples(i, next_pose_ns_);
-    write_motion_pose(next_pose_ns_);
+  for (const SensorTopics& topics : topics_) {
+    if (topics.packets) topics.packets->finish(held_);
   }
-  for (std::size_t i = 0; i < imus_.size(); ++i) write_imu_samples(i, until_ns + 1);
-  if (last_pose_ns_ != until_ns) write_motion_pose(until_ns);
-}
-
-/// Begins at the first frame, and again after a gap in time, such as of an edited recording.
-void RigPublisher::skip_gap(std::int64_t until_ns) {
-  if (last_pose_ns_ && until_ns - *last_pose_ns_ <= kMaxGap_ns) return;
-  next_pose_ns_ = until_ns - until_ns % kPosePeriod_ns;
-  for (ImuTopic& imu : imus_) {
-    imu.computed_ns = next_pose_ns_;
-    imu.samples = {};
-    imu.next = 0;
-  }
-}
-
-void RigPublisher::write_motion_pose(std::int64_t t_ns) {
-  const KinematicState state = state_at(*rig_.world_from_rig, t_ns);
-  const Eigen::Matrix3d rig_from_world = state.pose.linear().transpose();
-  const FramePair frames{kMapFrame, kRigFrame};
-  write_pose(t_ns, {.transforms = {to_transform(state.pose, frames, t_ns)}},
-             to_odometry(state.pose,
-                         {.linear_m_s = rig_from_world * state.velocity_m_s,
-                          .angular_rad_s = state.angular_velocity_rad_s},
-                         frames, t_ns));
-}
-
-/// The pose that a simulator or a client gave, with the mean velocity since the last one.
-void RigPublisher::write_frame_pose(std::size_t sensor, const Frame& frame) {
-  const std::int64_t t_ns = frame.stamp_ns;
-  if (last_frame_pose_ && last_frame_pose_->t_ns == t_ns && last_pose_ns_ == t_ns) return;
-  const Pose pose = frame.world_from_sensor * rig_.sensors[sensor].rig_from_sensor.inverse();
-  BodyTwist twist;
-  if (last_frame_pose_ && last_frame_pose_->t_ns < t_ns) {
-    constexpr double kNanosecond_s = 1e-9;
-    const double seconds = kNanosecond_s * static_cast<double>(t_ns - last_frame_pose_->t_ns);
-    twist = mean_twist(last_frame_pose_->world_from_rig, pose, seconds);
-  }
-  last_frame_pose_ = RigPose{t_ns, pose};
-  const FramePair frames{kMapFrame, kRigFrame};
-  write_pose(t_ns, {.transforms = {to_transform(pose, frames, t_ns)}},
-             to_odometry(pose, twist, frames, t_ns));
-}
-
-void RigPublisher::write_pose(std::int64_t t_ns, const TFMessage& transforms,
-                              const Odometry& odometry) {
-  write(tf_, t_ns, transforms);
-  write(odometry_, t_ns, odometry);
-  write(clock_, t_ns, to_clock(t_ns));
-  last_pose_ns_ = t_ns;
-}
-
-void RigPublisher::compute_imu_samples(std::int64_t until_ns) {
-  for (std::size_t i = 0; i < imus_.size(); ++i) {
-    ImuTopic& imu = imus_[i];
-    if (until_ns <= imu.computed_ns) continue;
-    imu.samples = rig_.imu_samples(i, imu.computed_ns, until_ns);
-    imu.computed_ns = until_ns;
-    imu.next = 0;
-  }
-}
-
-void RigPublisher::write_imu_samples(std::size_t index, std::int64_t until_ns) {
-  ImuTopic& imu = imus_[index];
-  const ImuSamples& samples = imu.samples;
-  Imu message;
-  message.header.frame_id = rig_.imus[index].name;
-  message.orientation_covariance[0] = -1.0;  // no orientation: sensor_msgs/Imu
-  for (; imu.next < samples.t_ns.size() && samples.t_ns[imu.next] < until_ns; ++imu.next) {
-    const std::int64_t t_ns = samples.t_ns[imu.next];
-    message.header.stamp = time_from_ns(t_ns);
-    message.angular_velocity = vector_message(samples.angular_velocity_rad_s[imu.next]);
-    message.linear_acceleration = vector_message(samples.specific_force_m_s2[imu.next]);
-    write(imu.topic, t_ns, message);
-  }
+  release(kForever_ns);
+  if (rig_.world_from_rig && motion_->has_begun()) motion_->advance(end_ns_);
 }
 
 }  // namespace glidar::ros

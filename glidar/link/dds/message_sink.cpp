@@ -49,6 +49,12 @@ void MessageSink::write(std::size_t topic, std::int64_t /*time_ns*/,
   writers_[topic]->write(payload);
 }
 
+void MessageSink::take(std::size_t topic, std::int64_t time_ns, std::vector<std::byte>& message) {
+  constexpr std::size_t kLarge_bytes = 65'536;
+  if (message.size() < kLarge_bytes) return write(topic, time_ns, message);
+  if (is_wanted(topic)) writers_[topic]->write(taken_.take(message));
+}
+
 void MessageSink::finish() {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
   for (const std::unique_ptr<TopicWriter>& writer : writers_) {

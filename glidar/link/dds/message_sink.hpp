@@ -32,6 +32,8 @@ class MessageSink final : public ros::MessageSink {
   [[nodiscard]] bool is_wanted(std::size_t topic) const override;
   /// Never blocks; copies the message once.
   void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override;
+  /// The same; keeps large messages instead of copying them.
+  void take(std::size_t topic, std::int64_t time_ns, std::vector<std::byte>& message) override;
   /// Waits up to a second until reliable readers have acknowledged the messages.
   void finish() override;
   /// Messages published.
@@ -43,6 +45,7 @@ class MessageSink final : public ros::MessageSink {
   std::vector<std::unique_ptr<TopicWriter>> writers_;  ///< per topic; nullptr: omitted
   std::vector<bool> is_kept_;                          ///< per topic: transient local
   link::PayloadPool memory_;
+  link::VectorPool taken_;  ///< of large messages
 };
 
 }  // namespace glidar::dds

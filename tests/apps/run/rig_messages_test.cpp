@@ -44,6 +44,112 @@ TEST(RigMessages, AreWrittenInTheOrderOfTime) {
   EXPECT_EQ(sink.messages.back().time_ns, 200'000'000);
 }
 
+/// Two sensors that begin together, of which the first one fires its first beam later.
+struct PairOfSensors {
+  static Beams delayed(const Beams& beams) {
+    constexpr std::uint32_t kDelay_ns = 50'000;
+    Beams result = beams;
+    for (std::uint32_t& time : result.times_ns) time += kDelay_ns;
+    return result;
+  }
+
+  explicit PairOfSensors(ImuScene& scene)
+      : scene_of(&scene),
+        late_beams(delayed(scene.prepared.sensors.front().beams)),
+        rig{.scene = scene.prepared.scene, .sensors = {}} {
+    const ActiveSensor& active = scene.prepared.sensors.front();
+    rig.sensors.push_back({.name = "late", .sensor = active.sensor, .beams = late_beams});
+    rig.sensors.push_back({.name = "early", .sensor = active.sensor, .beams = active.beams});
+    rig.world_from_rig = scene.prepared.motion.world_from_rig;
+    rig.imus = {{.name = "fast"}, {.name = "slow"}};
+    rig.imu_samples = [](std::size_t imu, std::int64_t from_ns, std::int64_t until_ns) {
+      const std::int64_t period_ns = imu == 0 ? 3'000'000 : 7'000'000;
+      ImuSamples samples;
+      for (std::int64_t k = (from_ns + period_ns - 1) / period_ns; k * period_ns < until_ns; ++k) {
+        samples.t_ns.push_back(k * period_ns);
+        samples.angular_velocity_rad_s.emplace_back(0.0, 0.0, 0.0);
+        samples.specific_force_m_s2.emplace_back(0.0, 0.0, 0.0);
+      }
+      return samples;
+    };
+  }
+
+  void publish(ros::RigPublisher& publisher) const {
+    for (const std::uint32_t number : {0U, 1U}) {
+      const MeasuredFrame measured = scene_of->measure(number);
+      publisher.publish(0, measured.frame, late_beams);
+      publisher.publish(1, measured.frame, *measured.beams);
+    }
+    publisher.finish();
+  }
+
+  ImuScene* scene_of = nullptr;
+  Beams late_beams;
+  ros::PublishedRig rig;
+};
+
+TEST(RigMessages, OfSeveralSensorsAndImusNeverStepBack) {
+  ImuScene scene;
+  const PairOfSensors pair(scene);
+  for (const bool has_motion : {true, false}) {
+    ros::MemorySink sink;
+    ros::PublishedRig rig = pair.rig;
+    if (!has_motion) rig.world_from_rig.reset();
+    ros::RigPublisher publisher(sink, rig);
+    pair.publish(publisher);
+    const auto is_earlier = [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; };
+    EXPECT_TRUE(std::is_sorted(sink.messages.begin(), sink.messages.end(), is_earlier));
+    EXPECT_EQ(sink.counts().at("/late/points"), 2U);
+    EXPECT_EQ(sink.counts().at("/early/points"), 2U);
+    const auto clocks = sink.of<ros::Clock>("/clock");
+    for (std::size_t i = 1; i < clocks.size(); ++i)
+      EXPECT_LT(ros::to_ns(clocks[i - 1].clock), ros::to_ns(clocks[i].clock));
+    EXPECT_EQ(has_motion ? sink.counts().at("/fast/data") : 67U, 67U);  // every 3 ms in 0.2 s
+  }
+}
+
+TEST(RigMessages, BetweenFramesReachTheEndOfTheNextFrameOnly) {
+  ImuScene scene;
+  ros::MemorySink sink;
+  const auto publisher = make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+  publisher->advance(50'000'000);
+  EXPECT_THAT(sink.counts(), Not(Contains(Key("/clock"))));  // not before the first frame
+  const MeasuredFrame first = scene.measure(0);
+  publisher->publish(0, first.frame, *first.beams);
+  publisher->advance(55'000'000);
+  EXPECT_EQ(sink.counts().at("/imu/data"), 6U);
+  EXPECT_EQ(sink.messages.back().time_ns, 50'000'000);
+  publisher->advance(10'000'000'000);
+  EXPECT_EQ(sink.messages.back().time_ns, 200'000'000);
+  const MeasuredFrame second = scene.measure(1);
+  publisher->publish(0, second.frame, *second.beams);
+  publisher->finish();
+  EXPECT_EQ(sink.counts().at("/imu/data"), 21U);
+  EXPECT_EQ(sink.counts().at("/lidar/points"), 2U);
+}
+
+TEST(RigMessages, OfOdometryHaveTheVelocitiesOfTheMotionInTheAxesOfTheBody) {
+  LiveScene scene;
+  ConstantTwist twist;
+  twist.pose = make_pose({4.0, 5.0, 6.0}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
+  twist.linear_m_s = {1.0, 2.0, -0.5};
+  twist.angular_rad_s = {0.3, -0.2, 0.5};
+  scene.prepared.motion.world_from_rig = twist;
+  ros::MemorySink sink;
+  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  const auto poses = sink.of<ros::Odometry>("/odom");
+  ASSERT_EQ(poses.size(), 21U);
+  for (const ros::Odometry& odometry : poses) {
+    EXPECT_NEAR(odometry.linear_velocity.x, 1.0, 1e-12);
+    EXPECT_NEAR(odometry.linear_velocity.y, 2.0, 1e-12);
+    EXPECT_NEAR(odometry.linear_velocity.z, -0.5, 1e-12);
+    EXPECT_NEAR(odometry.angular_velocity.x, 0.3, 1e-12);
+    EXPECT_NEAR(odometry.angular_velocity.y, -0.2, 1e-12);
+    EXPECT_NEAR(odometry.angular_velocity.z, 0.5, 1e-12);
+    EXPECT_EQ(odometry.twist_covariance[0], 0.0);
+  }
+}
+
 TEST(RigMessages, HaveThePoseAtTheTimeOfEveryCloudBeforeIt) {
   LiveScene scene;
   ros::MemorySink sink;
@@ -68,6 +174,8 @@ TEST(RigMessages, HaveThePosesOfFramesWhenTheMotionIsNotKnown) {
   ASSERT_EQ(poses.size(), 2U);
   EXPECT_EQ(ros::to_ns(poses[1].header.stamp), 100'000'000);
   EXPECT_EQ(poses[0].angular_velocity.z, 0.0);
+  EXPECT_EQ(poses[0].twist_covariance[0], -1.0);  // there is no last frame
+  EXPECT_EQ(poses[1].twist_covariance[0], 0.0);
   EXPECT_NEAR(poses[1].angular_velocity.z, 0.5, 1e-9);  // the mean since the last frame
   EXPECT_NEAR(poses[1].pose.position.x, 0.5, 1e-12);
 }

@@ -126,6 +126,8 @@ class RosbagsTest(unittest.TestCase):
         self.assertEqual(read["/CustomMsg"].points[1].offset_time, 200)
         self.assertEqual(read["/CustomMsg"].points[0].line, 3)
         self.assertEqual(read["/VelodyneScan"].packets[1].stamp.nanosec, 6)
+        self.assertEqual(bytes(read["/PacketMsg"].buf), bytes([2, 2, 3, 4, 5]))
+        self.assertEqual(read["/String"].data, '{"seq": 2}')
         self.assertEqual(read["/LaserScan"].intensities[2], 30.0)
 
 

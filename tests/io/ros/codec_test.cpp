@@ -131,6 +131,16 @@ TEST(RosCodec, PayloadsAreWrittenStraightIntoTheMessage) {
   EXPECT_EQ(calls, 1);
 }
 
+TEST(RosCodec, NothingIsLeftOfAnEarlierMessageInItsMemory) {
+  for (const Wire wire : {Wire::cdr, Wire::ros1}) {
+    for_all_messages(3, [&]<class Message>(const Message& message) {
+      std::vector<std::byte> bytes(10'000, std::byte{0xAA});
+      serialize_to(message, wire, bytes);
+      EXPECT_EQ(bytes, serialize(message, wire)) << message_type<Message>().name;
+    });
+  }
+}
+
 TEST(RosTime, StampsAreFlooredAndLimitedToTheRangeOfRos) {
   EXPECT_EQ(time_from_ns(1'700'000'000'123'456'789), (Time{1'700'000'000, 123'456'789}));
   EXPECT_EQ(time_from_ns(-1), (Time{-1, 999'999'999}));

@@ -111,6 +111,19 @@ TEST(CompressedImage, IsAPng) {
       HasSubstr("mono8 or 16UC1"));
 }
 
+TEST(CompressedImage, OfDepthIsAPngBehindAHeader) {
+  const Measured made = camera();
+  const Image depth = depth_image(made.source(), DepthEncoding::millimetres_16uc1);
+  const CompressedImage image = compressed_depth_image(depth);
+  EXPECT_EQ(image.format, "16UC1; compressedDepth png");
+  const auto bytes = image.data.bytes();
+  ASSERT_GT(bytes.size(), 20U);
+  EXPECT_THAT(bytes.first(12), Each(std::byte{0}));
+  EXPECT_EQ(std::memcmp(bytes.data() + 12, "\x89PNG\r\n\x1a\n", 8), 0);
+  const Image in_m = depth_image(made.source(), DepthEncoding::metres_32fc1);
+  EXPECT_THAT(error_text([&] { compressed_depth_image(in_m); }), HasSubstr("16UC1"));
+}
+
 TEST(CameraInfoMessage, HasTheModelsOfRos) {
   Measured made = camera();
   const CameraInfo plain = camera_info(made.source());
@@ -190,6 +203,12 @@ TEST(PoseMessages, ReadBackTheSamePose) {
   EXPECT_EQ(to_ns(to_clock(7).clock), 7);
 }
 
+TEST(PoseMessages, AnUnknownTwistIsMarkedInItsCovariance) {
+  const Odometry odometry = to_odometry(Pose::Identity(), std::nullopt, {"odom", "base"}, 9);
+  EXPECT_EQ(odometry.linear_velocity.x, 0.0);
+  EXPECT_EQ(odometry.twist_covariance[0], -1.0);
+}
+
 TEST(PoseMessages, TheMeanTwistOfAConstantTwistIsExact) {
   const Eigen::Vector3d omega(0.3, -0.2, 0.5);
   const Eigen::Vector3d v(1.0, 2.0, -0.5);
@@ -201,7 +220,7 @@ TEST(PoseMessages, TheMeanTwistOfAConstantTwistIsExact) {
     EXPECT_NEAR((twist.angular_rad_s - omega).norm(), 0.0, 1e-7) << seconds;
     EXPECT_NEAR((twist.linear_m_s - v).norm(), 0.0, 1e-7) << seconds;
   }
-  const Odometry odometry = to_odometry(before, {v, omega}, {"odom", "base"}, 9);
+  const Odometry odometry = to_odometry(before, BodyTwist{v, omega}, {"odom", "base"}, 9);
   EXPECT_EQ(odometry.linear_velocity.y, 2.0);
   EXPECT_EQ(odometry.angular_velocity.z, 0.5);
   EXPECT_EQ(timed_pose(odometry).position_m, before.translation());

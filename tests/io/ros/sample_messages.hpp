@@ -139,6 +139,15 @@ inline VelodyneScan sample(std::uint32_t seq) {
   return m;
 }
 
+template <>
+inline PacketMsg sample(std::uint32_t seq) {
+  return {{static_cast<std::uint8_t>(seq), 2, 3, 4, 5}};
+}
+template <>
+inline String sample(std::uint32_t seq) {
+  return {"{\"seq\": " + std::to_string(seq) + "}"};
+}
+
 /// Calls `body` with a sample of each message.
 void for_all_messages(std::uint32_t seq, const auto& body) {
   body(sample<Header>(seq));
@@ -155,6 +164,8 @@ void for_all_messages(std::uint32_t seq, const auto& body) {
   body(sample<Odometry>(seq));
   body(sample<CustomMsg>(seq));
   body(sample<VelodyneScan>(seq));
+  body(sample<PacketMsg>(seq));
+  body(sample<String>(seq));
 }
 
 }  // namespace glidar::ros

@@ -7,6 +7,7 @@ import json
 import os
 import struct
 import subprocess
+import time
 import unittest
 
 from dds_support import DdsTest, bag_messages, same_message, skip_without, wait_for_line, wait_until
@@ -62,6 +63,17 @@ class Stream(DdsTest):
         self.assertEqual(len(clouds), 3)
         for cloud in clouds:
             self.assertTrue(any(same_message(cloud, message) for message in stored))
+
+    def test_the_clock_advances_between_frames(self):
+        clock = self.peer("read", "/clock", "rosgraph_msgs/msg/Clock", 30)
+        clouds = self.peer("read", "/camera/points", CLOUD, 2)
+        for reader in (clock, clouds):
+            wait_for_line(reader.stdout, "ready")
+        self.start("glidar", "stream", "builtin:box", "--rate", "0.2", "--ros2")
+        self.finish(clock)  # 0.3 s of 5 s until the second frame
+        before = time.monotonic()
+        self.finish(clouds)
+        self.assertGreater(time.monotonic() - before, 1.0)
 
     def test_late_readers_get_static_transforms(self):
         self.stream("--ros2")

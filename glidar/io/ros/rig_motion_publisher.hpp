@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io/ros.
+
+#include <glidar/core/frame.hpp>
+#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/pose_message.hpp>
+#include <glidar/io/ros/published_rig.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace glidar::ros {
+
+/// Names of coordinate frames: REP-105.
+inline constexpr const char* kMapFrame = "map";
+inline constexpr const char* kRigFrame = "base_link";
+
+/// Writes the ground truth of a rig as /tf, /odom and /clock, and the samples of its IMUs, in the
+/// order of time.
+class RigMotionPublisher {
+ public:
+  /// Adds the topics to the sink. Both must outlive it. Throws Error.
+  RigMotionPublisher(MessageSink& sink, const PublishedRig& rig);
+
+  /// With a motion: writes everything until a time, and the pose at it. Earlier times are ignored.
+  void advance(std::int64_t until_ns);
+  /// The same without a pose of its own at this time. It has no effect before the first advance().
+  void advance_between(std::int64_t until_ns);
+  /// Without a motion: writes the pose of a frame, with the mean velocity since the last one.
+  void write_frame_pose(std::size_t sensor, const Frame& frame);
+  /// Whether a pose was written.
+  [[nodiscard]] bool has_begun() const { return last_pose_ns_.has_value(); }
+
+ private:
+  /// An IMU and the samples that were computed but not yet written.
+  struct ImuTopic {
+    std::size_t topic = 0;
+    std::int64_t computed_ns = 0;  ///< until this time
+    ImuSamples samples = {};
+    std::size_t next = 0;  ///< of the samples
+  };
+  struct RigPose {
+    std::int64_t t_ns = 0;
+    Pose world_from_rig = Pose::Identity();
+  };
+
+  template <class Message>
+  void write(std::size_t topic, std::int64_t time_ns, const Message& message);
+  void write_until(std::int64_t until_ns);
+  void skip_gap(std::int64_t until_ns);
+  void write_motion_pose(std::int64_t t_ns);
+  void write_pose(std::int64_t t_ns, const TFMessage& transforms, const Odometry& odometry);
+  void compute_imu_samples(std::int64_t until_ns);
+  void write_imu_samples(std::int64_t until_ns);
+  void write_imu_sample(std::size_t imu);
+
+  MessageSink& sink_;
+  const PublishedRig& rig_;
+  std::size_t tf_ = 0;
+  std::size_t odometry_ = 0;
+  std::size_t clock_ = 0;
+  std::vector<ImuTopic> imus_;                ///< per IMU of a rig with a motion
+  std::int64_t next_pose_ns_ = 0;             ///< of those at 100 Hz
+  std::optional<std::int64_t> last_pose_ns_;  ///< that was written
+  std::int64_t reached_ns_ = 0;               ///< all is written until this time
+  std::optional<RigPose> last_frame_pose_;    ///< without a motion
+  std::vector<std::byte> bytes_;
+};
+
+}  // namespace glidar::ros
