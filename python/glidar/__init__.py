@@ -11,6 +11,7 @@ ground truth of every beam.
 """
 
 from . import _core
+from ._bag import save_bag
 from ._cloud import Cloud
 from ._errors import Error
 from ._frame import Frame
@@ -72,6 +73,7 @@ __all__ = [
     "pose",
     "quaternion",
     "rig_imus",
+    "save_bag",
     "sensor",
     "sensor_file",
     "sensor_names",

@@ -13,35 +13,19 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._bag_writer import bag_writer
 from ._cloud import Cloud
 from ._errors import Error, shown
 from ._fisher_information import FisherInformation
-from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole, whole_numbers
+from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole
 from ._origin import Origin
-from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, show_images
+from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, set_picture, show_images
 from ._state import Immutable, key_of, part, restoring, make_state
 from ._status import ReturnSource, Status
 from ._point_trace import PointTrace, trace_of
 from ._ground_truth import GroundTruth
 
 _PCD = ("ascii", "binary", "binary_compressed")
-
-
-def _set_picture(
-    options: _core.SaveOptions,
-    colour_by: str,
-    size: tuple[int, int],
-    eye: npt.ArrayLike | None,
-    target: npt.ArrayLike | None,
-) -> None:
-    """Sets the options of pictures of clouds."""
-    one_of(colour_by, "colour_by", _core.colour_by_names())
-    width, height = (int(side) for side in whole_numbers(size, "picture_size", 2, 32))
-    options.set_picture(colour_by, width, height)
-    if eye is not None:
-        options.set_view_eye(floats(eye, "view_eye", (3,)))
-    if target is not None:
-        options.set_view_target(floats(target, "view_target", (3,)))
 
 
 class Frame(Immutable):
@@ -232,7 +216,8 @@ class Frame(Immutable):
     ) -> None:
         """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv
         .las .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .exr .png
-        .bev.png .view.png .transform.
+        .bev.png .view.png .transform .mcap .bag .rosbag2. The last three are ROS bags, to which only columns, layout and deskew
+        apply; ``save_bag`` writes several frames to one.
 
         Args:
             columns, frame, drop_invalid, deskew: as for ``cloud``.
@@ -258,6 +243,12 @@ class Frame(Immutable):
         if layout is not None and columns is not None:
             remedy = "a layout has its own columns: leave columns out"
             raise Error("layout and columns", "both are given", "one of the two", remedy)
+        target = path_of(path, "path")
+        if _core.is_bag_name(target):
+            bag = bag_writer(target, columns, layout, deskew)
+            self.write_to(bag)
+            bag.finish()
+            return
         options = _core.SaveOptions()
         options.columns = column_list(columns)
         options.frame = frame
@@ -268,8 +259,12 @@ class Frame(Immutable):
         options.set_sidecar(sidecar)
         options.set_layout(layout or "")
         options.set_depth_units_per_m(scale)
-        _set_picture(options, colour_by, picture_size, view_eye, view_target)
-        self._with_scene().save(path_of(path, "path"), options, log)
+        set_picture(options, colour_by, picture_size, view_eye, view_target)
+        self._with_scene().save(target, options, log)
+
+    def write_to(self, bag: _core.BagWriter) -> None:
+        """Adds it to a bag; see ``save_bag``."""
+        bag.add(self._with_scene())
 
     def bird_eye(
         self, *, colour_by: str = "height", size: tuple[int, int] = (1400, 1000), frame: str = "sensor"

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""One file per trial: PCD and PLY clouds, EXR images, and KITTI folders of scans, labels and calibrations."""
+"""One file per trial: PCD and PLY clouds, EXR images, bags, and KITTI folders of scans, labels and calibrations."""
 
 KITTI_FOLDER = "kitti"
 
 
 class CloudOutput:
-    """Clouds and images like those of `glidar render`, without sidecars, because the index has their contents."""
+    """Clouds, images and bags like those of `glidar render`, without sidecars, because the index has their contents."""
 
     def __init__(self, folder, suffix, options, temp):
         self._folder, self._suffix, self._temp = folder, suffix, temp

@@ -97,6 +97,8 @@ def columns_of(outputs):
     names += ["xyz", "intensity", "range", "instance", "class"] if outputs.kitti else []
     names += outputs.npz.columns if outputs.npz else []
     names += ["depth"] if outputs.exr else []
+    if outputs.mcap:
+        names += ["xyz", "depth", *(outputs.mcap.columns or ["intensity", "range", "instance", "class"])]
     for cloud in (outputs.pcd, outputs.ply, outputs.exr):
         if cloud:
             names += cloud.columns or ["xyz", "intensity", "range", "normal", "instance", "class"]

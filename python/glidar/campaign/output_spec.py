@@ -42,6 +42,7 @@ class Outputs:
     pcd: Cloud | None = None
     ply: Cloud | None = None
     exr: Cloud | None = None
+    mcap: Cloud | None = None  # None of its columns: those that suit the sensor
     kitti: bool = False
     tum: bool = False
     bop: Bop | None = None
@@ -96,13 +97,13 @@ def _bop(field):
 
 
 def read_outputs(field):
-    found = yf.require_keys(field, ["npz", "pcd", "ply", "exr", "kitti", "tum", "bop"])
+    found = yf.require_keys(field, ["npz", "pcd", "ply", "exr", "mcap", "kitti", "tum", "bop"])
     outputs = Outputs(yf.optional(found, "npz", _npz, None), yf.optional(found, "pcd", _cloud, None),
                       yf.optional(found, "ply", _cloud, None),
-                      yf.optional(found, "exr", _cloud, None),
+                      yf.optional(found, "exr", _cloud, None), yf.optional(found, "mcap", _cloud, None),
                       yf.optional(found, "kitti", yf.boolean, False),
                       yf.optional(found, "tum", yf.boolean, False),
                       yf.optional(found, "bop", _bop, None))
     if outputs == Outputs():
-        yf.reject(field, "no output is selected", "at least one of npz, pcd, ply, exr, kitti, tum, bop")
+        yf.reject(field, "no output is selected", "at least one of npz, pcd, ply, exr, mcap, kitti, tum, bop")
     return outputs

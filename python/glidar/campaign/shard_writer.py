@@ -16,7 +16,7 @@ def make_outputs(plan, temp, shard):
     chosen = plan.spec.outputs
     outputs = [BopOutput(plan, temp, shard)] if chosen.bop else []  # first, because it may reject a frame
     outputs += [NpzOutput(plan, temp, shard)] if chosen.npz else []
-    for suffix, options in (("pcd", chosen.pcd), ("ply", chosen.ply), ("exr", chosen.exr)):
+    for suffix, options in (("pcd", chosen.pcd), ("ply", chosen.ply), ("exr", chosen.exr), ("mcap", chosen.mcap)):
         if options:
             outputs.append(CloudOutput(suffix, f".{suffix}", options, temp))
     if chosen.kitti:

@@ -46,6 +46,21 @@ def test_every_trial_is_identical_to_a_single_measurement(campaign):
     assert sum(table["hits"]) > 1000
 
 
+def test_bags_are_those_of_single_measurements(campaign):
+    campaign.add("outputs: {mcap: {every: 10}}\n")
+    campaign.run("out")
+    drawn = trials.draw_trials(plan.make_plan(spec.read_spec(campaign.folder / "campaign.yaml")), 0, 40)
+    scene = glidar.load_scene(campaign.folder / "scene.yaml")
+    sensor = glidar.load_sensor(campaign.folder / "camera.yaml")
+    bags = sorted((campaign.folder / "out" / "mcap").iterdir())
+    assert [path.name for path in bags] == [f"{trial:09}.mcap" for trial in (0, 10, 20, 30)]
+    for path in bags:
+        trial = int(path.stem)
+        alone = campaign.folder / "alone.mcap"
+        glidar.simulate(scene, sensor, drawn.world_from_sensor[trial], seed=int(drawn.seed[trial])).save(alone)
+        assert alone.read_bytes() == path.read_bytes()
+
+
 def test_data_does_not_depend_on_the_number_of_workers(campaign):
     campaign.run("one", "--workers", "1")
     campaign.run("three", "--workers", "3")

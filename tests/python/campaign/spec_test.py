@@ -49,6 +49,7 @@ vary:
 outputs:
   npz: {columns: [range, xyz], real: f64, compress: true}
   pcd: {columns: [xyz], every: 4}
+  mcap: {every: 2}
   ply: true
   kitti: true
   tum: true
@@ -58,6 +59,7 @@ outputs:
     assert found.scenes.distribution.weights == (0.25, 0.75)
     assert [v.path for v in found.vary][2] == "scene.models[rock].scale"
     assert found.vary[3].is_pose and not found.vary[0].is_pose
+    assert found.outputs.mcap.every == 2 and found.outputs.mcap.columns is None
     assert found.outputs.pcd.every == 4 and found.outputs.bop.images == ("depth",)
 
 
