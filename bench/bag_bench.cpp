@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Bags of an OS1-128 in a street: frames written while the next one is measured, relative to frames
+// measured alone; and the bytes of frames that are ready, relative to the same bytes written to a
+// plain file. GLIDAR_BENCH_FOLDER selects the disk [the current folder].
+#include "ratio_reporter.hpp"
+
+#include <apps/glidar/run/delivery.hpp>
+#include <glidar/io/bags/frame_bag.hpp>
+#include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/simulate/simulator.hpp>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glidar::bench {
+namespace {
+
+constexpr std::uint32_t kFrames = 20;  // of a bag
+const std::vector<std::string> kColumns = {"xyz",   "intensity", "ring", "time",
+                                           "range", "instance",  "class"};
+
+/// The street with a sensor at its middle, as `glidar render examples/street.yaml` sees it.
+struct Street {
+  SceneFile loaded;
+  Sensor sensor;
+  Motion motion;
+  std::unique_ptr<Simulator> simulator;
+  std::shared_ptr<const Beams> beams;
+  std::filesystem::path folder;
+
+  Street(unsigned threads, std::filesystem::path disk)
+      : loaded(load_scene_file(GLIDAR_EXAMPLES "/street.yaml", {}, {})),
+        sensor(load_sensor_file(find_sensor_file("OS1-128"))),
+        folder(std::move(disk)) {
+    motion = static_motion(loaded.scene, Pose(Eigen::Translation3d(0.0, 0.0, 1.8)));
+    simulator =
+        std::make_unique<Simulator>(loaded.scene, sensor, RendererOptions{.threads = threads});
+    beams = simulator->beams(0);
+  }
+  void measure(std::uint32_t number, Frame& frame) const {
+    frame.number = number;
+    frame.stamp_ns = frame_interval(sensor, number).start_ns;
+    simulator->simulate(motion, hit_columns_for(kColumns), frame);
+  }
+  [[nodiscard]] std::filesystem::path bag() const { return folder / "bag_bench.mcap"; }
+};
+
+void measure_alone(benchmark::State& state, const Street& street) {
+  Frame frame;
+  for (auto _ : state) {
+    for (std::uint32_t number = 0; number < kFrames; ++number) street.measure(number, frame);
+  }
+  state.SetItemsProcessed(state.iterations() * kFrames);
+}
+
+void write_bag(benchmark::State& state, const Street& street) {
+  for (auto _ : state) {
+    FrameBag bag(street.bag(), street.loaded.scene, street.sensor, *street.beams);
+    app::Delivery delivery(
+        [&](const app::MeasuredFrame& slot) { bag.write(slot.frame, *slot.beams); }, [] {}, [] {});
+    for (std::uint32_t number = 0; number < kFrames; ++number) {
+      app::MeasuredFrame& slot = delivery.next_slot();
+      slot.beams = street.beams;
+      street.measure(number, slot.frame);
+      delivery.submit();
+    }
+    delivery.finish();
+    bag.finish();
+  }
+  state.SetItemsProcessed(state.iterations() * kFrames);
+}
+
+/// Frames that are ready.
+void write_ready(benchmark::State& state, const Street& street) {
+  Frame frame;
+  street.measure(0, frame);
+  for (auto _ : state) {
+    FrameBag bag(street.bag(), street.loaded.scene, street.sensor, *street.beams);
+    for (std::uint32_t number = 0; number < kFrames; ++number) {
+      frame.number = number;
+      frame.stamp_ns = frame_interval(street.sensor, number).start_ns;
+      bag.write(frame, *street.beams);
+    }
+    bag.finish();
+  }
+  const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(street.bag()));
+  state.SetBytesProcessed(state.iterations() * bytes);
+  state.SetItemsProcessed(state.iterations() * kFrames);
+}
+
+void write_plain(benchmark::State& state, const Street& street) {
+  Frame frame;
+  street.measure(0, frame);
+  {
+    FrameBag bag(street.bag(), street.loaded.scene, street.sensor, *street.beams);
+    bag.write(frame, *street.beams);
+    bag.finish();
+  }
+  const std::vector<std::byte> bytes(std::filesystem::file_size(street.bag()), std::byte{7});
+  for (auto _ : state) {
+    AtomicFile file(street.folder / "bag_bench.plain");
+    for (std::uint32_t number = 0; number < kFrames; ++number) file.write(bytes);
+    file.commit();
+  }
+  state.SetBytesProcessed(state.iterations() * kFrames * static_cast<std::int64_t>(bytes.size()));
+}
+
+void add(unsigned threads, const std::filesystem::path& folder, std::vector<Ratio>& ratios) {
+  const auto street = std::make_shared<const Street>(threads, folder);
+  const std::string end = ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  const auto enter = [](const std::string& title, const auto& body) {
+    benchmark::RegisterBenchmark(title.c_str(), body)->UseRealTime()->Unit(benchmark::kMillisecond);
+  };
+  const auto named = [&](const char* what) { return what + end; };
+  enter(named("measured"), [street](benchmark::State& s) { measure_alone(s, *street); });
+  enter(named("written"), [street](benchmark::State& s) { write_bag(s, *street); });
+  constexpr double kGoal = 0.9;
+  ratios.push_back(
+      {named("OS1-128 to MCAP: written / measured"), named("measured"), named("written"), kGoal});
+  if (threads > 1) return;
+  enter("ready frames to a bag", [street](benchmark::State& s) { write_ready(s, *street); });
+  enter("the same bytes to a file", [street](benchmark::State& s) { write_plain(s, *street); });
+  constexpr double kDiskGoal = 0.5;
+  ratios.push_back({"ready frames: bag / plain file", "the same bytes to a file",
+                    "ready frames to a bag", kDiskGoal});
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  const char* chosen = std::getenv("GLIDAR_BENCH_FOLDER");
+  const std::filesystem::path folder = chosen == nullptr ? "." : chosen;
+  std::vector<glidar::bench::Ratio> ratios;
+  for (const unsigned threads : {1U, 2U}) glidar::bench::add(threads, folder, ratios);
+  const int result = glidar::bench::run(argc, argv, ratios);
+  std::filesystem::remove(folder / "bag_bench.mcap");
+  std::filesystem::remove(folder / "bag_bench.plain");
+  return result;
+}
