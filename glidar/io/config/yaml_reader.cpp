@@ -58,7 +58,7 @@ std::string alias_at(const std::string& content, const YAML::Mark& mark) {
                "write '&" + name + "' before the value that it repeats"});
 }
 
-std::vector<YAML::Node> parse(const std::string& file, const std::string& content) {
+std::vector<YAML::Node> parse_documents(const std::string& file, const std::string& content) {
   try {
     check_yaml_budget(file, content);
     return YAML::LoadAll(content);
@@ -148,11 +148,11 @@ YamlField read_yaml(const fs::path& file) {
       read_text_file(file, {"a YAML file", kMaxYamlFile_mib,
                             "name models by their path, do not put them into the file"});
   require_utf8(file, content);
-  return root_of(file.string(), parse(file.string(), content));
+  return root_of(file.string(), parse_documents(file.string(), content));
 }
 
 YamlField read_yaml_text(const std::string& name, const std::string& text) {
-  const YamlField root = root_of(name, parse(name, text));
+  const YamlField root = root_of(name, parse_documents(name, text));
   return {name, "", YAML::Mark::null_mark(), root.node};
 }
 
