@@ -21,9 +21,9 @@ namespace {
 
 /// Larger files cannot become a texture and are not read.
 bool is_too_large(const std::string& path) {
-  constexpr std::uintmax_t kMaxBytes = std::uintmax_t{256} << 20U;
+  constexpr std::uintmax_t kMaxTexture_bytes = std::uintmax_t{256} << 20U;
   std::error_code error;
-  return std::filesystem::file_size(path, error) > kMaxBytes || error;
+  return std::filesystem::file_size(path, error) > kMaxTexture_bytes || error;
 }
 
 Decoded decode_file(ModelFiles& files, const std::string& path, std::uint64_t budget) {
