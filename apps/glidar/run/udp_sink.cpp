@@ -115,9 +115,9 @@ class UdpSinkMaker {
   std::unique_ptr<FrameSink> make(const PacketTarget& target) {
     Selection selected;
     with_option_name("--udp", [&] { selected = select(target); });
-    if (selected.plan.at) {
+    if (const std::optional<link::Endpoint>& at = selected.plan.at) {
       try {
-        return serving(selected);
+        return serving(selected, *at);
       } catch (const Error& error) {
         if (selected.plan.is_chosen) throw;
         reports_.console.warn(std::string("drivers cannot reach the sensor: ") + error.what() +
@@ -154,17 +154,17 @@ class UdpSinkMaker {
         std::make_unique<link::PacketSender>(selected.route, speed_, reports_.errors));
   }
 
-  std::unique_ptr<UdpSink> serving(Selection selected) {
+  std::unique_ptr<UdpSink> serving(Selection selected, const link::Endpoint& at) {
     const Sensor& sensor = prepared_.sensors[selected.index].sensor;
     if (is_livox(sensor)) {
-      selected.route.source = selected.plan.at->host;
+      selected.route.source = at.host;
       selected.route.source_ports = {kLivoxPointSourcePort, kLivoxImuSourcePort};
     }
     std::unique_ptr<UdpSink> sink;
     with_option_name("--control", [&] {
       sink = plain(selected);
-      sink->serve_drivers(serve_control({sensor, selected.setup.options, selected.route},
-                                        *selected.plan.at, sink->sender(), reports_.errors));
+      sink->serve_drivers(serve_control({sensor, selected.setup.options, selected.route}, at,
+                                        sink->sender(), reports_.errors));
     });
     return sink;
   }
