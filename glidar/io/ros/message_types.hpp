@@ -38,6 +38,36 @@ std::span<const MessageType> message_types();
 template <class Message>
 const MessageType& message_type();
 
+// They are specializations, which every file must know before it uses one.
+template <>
+const MessageType& message_type<Header>();
+template <>
+const MessageType& message_type<PointField>();
+template <>
+const MessageType& message_type<PointCloud2>();
+template <>
+const MessageType& message_type<LaserScan>();
+template <>
+const MessageType& message_type<Image>();
+template <>
+const MessageType& message_type<CompressedImage>();
+template <>
+const MessageType& message_type<CameraInfo>();
+template <>
+const MessageType& message_type<Imu>();
+template <>
+const MessageType& message_type<TFMessage>();
+template <>
+const MessageType& message_type<PoseStamped>();
+template <>
+const MessageType& message_type<Clock>();
+template <>
+const MessageType& message_type<Odometry>();
+template <>
+const MessageType& message_type<CustomMsg>();
+template <>
+const MessageType& message_type<VelodyneScan>();
+
 /// The type of this name in ROS 1 or ROS 2; nullptr if there is none. Accepts the CustomMsg of
 /// livox_ros_driver too, which has the same definition.
 const MessageType* find_message_type(std::string_view name);
