@@ -106,8 +106,7 @@ void read_ros_message(const fs::path& file, ros::Wire wire) {
       read_ros_message<ros::PointCloud2>,  read_ros_message<ros::LaserScan>,
       read_ros_message<ros::CameraInfo>,   read_ros_message<ros::TFMessage>,
       read_ros_message<ros::Odometry>,     read_ros_message<ros::CustomMsg>,
-      read_ros_message<ros::VelodyneScan>, read_ros_message<ros::PacketMsg>,
-      read_ros_message<ros::Image>};
+      read_ros_message<ros::VelodyneScan>, read_ros_message<ros::Image>};
   std::ifstream in(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), {});
   if (text.empty()) throw Error({"message", "no type", "at least one byte"});
