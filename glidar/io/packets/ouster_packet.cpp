@@ -181,6 +181,7 @@ void get_frame(ByteView payload, OusterPacket& packet) {
   // firmware before 3.0 has zeros, or a mark that ends with DEADBEEF
   const bool is_unused = crc == 0 || (crc & 0xFFFFFFFFU) == 0xEFBEADDEU ||
                          (crc >> 32U) == 0xEFBEADDEU || (crc >> 32U) == 0xDEADBEEFU;
+  if (!packet.has_crc) packet.mark = crc;
   if (!packet.has_crc && !is_unused)
     throw Error({"Ouster packet", "a wrong CRC-64", "", "discard the packet: it is damaged"});
 }
@@ -221,7 +222,7 @@ std::vector<std::byte> encode(const OusterPacket& packet, const OusterFormat& fo
     put_column(bytes, column, packet, format, columns_per_turn);
   if (is_legacy(format)) return bytes;
   bytes.insert(bytes.end(), packet.footer.begin(), packet.footer.end());
-  put_little(bytes, packet.has_crc ? crc64(bytes) : 0, 8);
+  put_little(bytes, packet.has_crc ? crc64(bytes) : packet.mark, 8);
   return bytes;
 }
 

@@ -62,6 +62,7 @@ struct OusterPacket {
   std::array<std::byte, 19> status{};  ///< bytes 13 to 31 of the header, as they are
   std::array<std::byte, 24> footer{};  ///< before the checksum, as they are
   bool has_crc = true;                 ///< false: firmware without checksum
+  std::uint64_t mark = 0;              ///< in place of the checksum
   std::vector<OusterColumn> columns;
 };
 
