@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/packets/firing_sequence.hpp>
+#include <glidar/io/packets/hdl64_status.hpp>
 #include <glidar/io/packets/velodyne_model.hpp>
 #include <glidar/io/packets/velodyne_packet.hpp>
 #include <glidar/math/constants.hpp>
@@ -73,7 +74,11 @@ VelodynePacket make_packet(const VelodyneLayout& layout, std::span<const FiringS
 class VelodyneEncoder final : public PacketEncoder {
  public:
   VelodyneEncoder(const Sensor& sensor, const std::optional<GeoPosition>& position)
-      : sensor_(sensor), layout_(velodyne_layout(sensor)), position_(position) {}
+      : sensor_(sensor), layout_(velodyne_layout(sensor)), position_(position) {
+    if (layout_.model.factory_byte != 0) return;
+    status_.emplace(std::get<Spinning>(sensor_.optics), layout_.returns.mode,
+                    position_.has_value());
+  }
 
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
     for (FiringSequence& sequence : firing_sequences(sensor_, frame, beams)) {
@@ -105,8 +110,14 @@ class VelodyneEncoder final : public PacketEncoder {
 
   void send(std::vector<UdpPacket>& packets) {
     const std::int64_t end_ns = next_stamp_ns();
-    packets.push_back(
-        {end_ns, kVelodynePort, kVelodynePort, glidar::encode(make_packet(layout_, waiting_))});
+    VelodynePacket packet = make_packet(layout_, waiting_);
+    if (status_) {
+      const Hdl64Status::Entry entry = status_->at(count_, waiting_.front().stamp_ns);
+      packet.mode = entry.type;
+      packet.model = entry.value;
+    }
+    ++count_;
+    packets.push_back({end_ns, kVelodynePort, kVelodynePort, glidar::encode(packet)});
     waiting_.clear();
     if (end_ns < next_position_ns_) return;
     next_position_ns_ = end_ns + kPositionPeriod_ns;
@@ -121,6 +132,8 @@ class VelodyneEncoder final : public PacketEncoder {
   Sensor sensor_;
   VelodyneLayout layout_;
   std::optional<GeoPosition> position_;
+  std::optional<Hdl64Status> status_;  ///< of an HDL-64E
+  std::uint64_t count_ = 0;            ///< of data packets
   std::int64_t next_position_ns_ = INT64_MIN;
   std::vector<FiringSequence> waiting_;
 };

@@ -28,8 +28,8 @@ struct VelodynePacket {
   };
   std::array<Block, kVelodyneBlocks> blocks{};
   std::uint32_t hour_us = 0;  ///< microseconds since the full hour, truncated
-  std::uint8_t mode = 0;      ///< 0x37 strongest, 0x38 last, 0x39 both
-  std::uint8_t model = 0;     ///< factory byte
+  std::uint8_t mode = 0;      ///< 0x37 strongest, 0x38 last, 0x39 both; HDL-64E: type of status
+  std::uint8_t model = 0;     ///< factory byte; HDL-64E: value of status
 };
 
 std::vector<std::byte> encode(const VelodynePacket& packet);

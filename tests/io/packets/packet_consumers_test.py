@@ -7,6 +7,7 @@ reads recordings of real sensors with both (GLIDAR_DATA).
 usage: packet_consumers_test.py PACKET_FILES_PROGRAM
 """
 
+import datetime
 import os
 import sqlite3
 import struct
@@ -44,6 +45,12 @@ DATA = Path(os.environ.get("GLIDAR_DATA", "/nonexistent"))
 def encoded_returns(name):
     """x y z stamp ring range of every return, by ring, time and range."""
     return np.fromfile(FOLDER / f"{name}.returns").reshape(-1, 6)
+
+
+def calibration_lasers(file):
+    """The lasers in a calibration of the decoder, by number."""
+    data = yaml.safe_load((Path(os.path.dirname(vd.__file__)) / "calibrations" / file).read_text())
+    return sorted(data["lasers"], key=lambda laser: laser["laser_id"])
 
 
 def calibration_of(file):
@@ -131,6 +138,22 @@ class Velodyne(unittest.TestCase):
               f"time at most {np.abs(time).max():.0f} ns")
         self.assertLess(excess.max(), 0.0)
         self.assertLess(np.abs(time).max(), time_limit)
+
+    def test_hdl64_status_states_the_calibration(self):
+        capture = str(FOLDER / "HDL-64E-S3-calibration.pcap")
+        model, _ = vd.hdl64e.read_calibration_from_pcap(capture)
+        self.assertEqual(model, vd.Model.HDL64E_S3)
+        status = vd.hdl64e.read_status_info(vd.hdl64e.iter_pcap_packets(capture))
+        self.assertEqual((status["RPM"], status["FOV Max"], status["Multiple Return Status"]), (600, 36000, "Strongest"))
+        seconds = status["Current Time"].replace(tzinfo=datetime.timezone.utc).timestamp() - EPOCH
+        self.assertTrue(-1 < seconds < 1.5, seconds)
+        shipped = calibration_lasers("HDL-64E_S3-VeloView.yml")
+        found = vd.hdl64e.status_info_to_calib_dict(status)["lasers"]
+        for mine, theirs in zip(sorted(found, key=lambda laser: laser["laser_id"]), shipped, strict=True):
+            for key in ("rot_correction", "vert_correction"):
+                self.assertAlmostEqual(mine[key], theirs[key], delta=np.radians(0.00501))
+            for key in ("vert_offset_correction", "horiz_offset_correction"):
+                self.assertAlmostEqual(mine[key], theirs[key], delta=0.00051)
 
     def test_telemetry_is_read(self):
         packets = [data for _, data in vd.util.iter_pcap(str(FOLDER / "VLP-16.pcap")) if len(data) == 512]

@@ -34,10 +34,10 @@ void write_returns(const std::filesystem::path& path, const std::vector<FlatRetu
 }
 
 void write_stream(const std::filesystem::path& base, const Sensor& sensor,
-                  const PacketOptions& options) {
+                  const PacketOptions& options, std::uint32_t frames = 3) {
   PacketWriter writer(base.string() + ".pcap", sensor, options);
   std::vector<FlatReturn> flat;
-  for (std::uint32_t number = 0; number < 3; ++number) {
+  for (std::uint32_t number = 0; number < frames; ++number) {
     const DecodedFrame made = room_frame(sensor, number);
     writer.write(made.frame, made.beams);
     flatten(made, flat);
@@ -64,6 +64,8 @@ void write_all(const std::filesystem::path& folder) {
     write_stream(folder / model, consumer_sensor(model, false), fixed);
     write_stream(folder / (std::string(model) + "-dual"), consumer_sensor(model, true), fixed);
   }
+  // its status bytes state the calibration within 1.2 s
+  write_stream(folder / "HDL-64E-S3-calibration", packet_sensor("HDL-64E-S3", false), fixed, 13);
   for (const std::string_view& profile : ouster_profile_names()) {
     PacketOptions options;
     options.ouster.profile = static_cast<OusterProfile>(&profile - ouster_profile_names().data());
