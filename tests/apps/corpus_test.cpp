@@ -50,6 +50,11 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"ros1", {"cloud", "transforms", "scan"}},
       {"mcap", {"chunk", "plain", "lz4"}},
       {"rosbag1", {"chunk", "lz4"}},
+      {"rosbag2", {"database"}},
+      {"ouster_source", {"plain"}},
+      {"packets",
+       {"vlp16", "vlp16_dual", "hdl32", "xt32", "qt64", "pandar64_dual", "ouster", "ouster_dual"}},
+      {"pcap", {"two", "big_endian", "pcapng", "fragments", "cut"}},
   };
   for (const testing::FileDecoder& decoder : testing::file_decoders()) {
     std::size_t files = 0;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_decoders.hpp"
 
+#include "packet_decoders.hpp"
+
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag.hpp>
@@ -14,6 +16,7 @@
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/png_texture.hpp>
+#include <glidar/io/packets/ouster_codec.hpp>
 #include <glidar/io/ros/cloud_from_message.hpp>
 #include <glidar/link/recording.hpp>
 
@@ -121,7 +124,21 @@ void read_bag(const fs::path& file) {
   }
 }
 
-constexpr std::array<FileDecoder, 15> kDecoders = {{
+/// The file is the database of a bag of ROS 2, or its metadata.
+void read_rosbag2(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  in.close();
+  fs::remove(fs::path(file).replace_filename("run.db3"));  // of the last input
+  if (bytes.starts_with("SQLite format 3")) {
+    std::ofstream(fs::path(file).replace_filename("run.db3"), std::ios::binary) << bytes;
+    std::ofstream(file) << "rosbag2_bagfile_information: {storage_identifier: sqlite3, "
+                           "relative_file_paths: [run.db3]}\n";
+  }
+  read_bag(file.parent_path());
+}
+
+constexpr std::array<FileDecoder, 19> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"scene", "scene.yaml", read_scene},
     {"beam_csv", "beams.csv", [](const fs::path& file) { load_scan_csv(file); }},
@@ -137,6 +154,10 @@ constexpr std::array<FileDecoder, 15> kDecoders = {{
     {"ros1", "message.ros1", [](const fs::path& file) { read_ros_message(file, ros::Wire::ros1); }},
     {"mcap", "run.mcap", read_bag},
     {"rosbag1", "run.bag", read_bag},
+    {"rosbag2", "metadata.yaml", read_rosbag2},
+    {"ouster_source", "metadata.json", [](const fs::path& file) { load_ouster_source(file); }},
+    {"packets", "packets.bin", read_packets},
+    {"pcap", "scan.pcap", read_capture},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.
