@@ -26,7 +26,7 @@ struct OutputFlags {
   bool deskew = false;
   std::optional<OusterProfile> ouster_profile;  ///< of packets; empty: by the number of returns
   LivoxDataType livox_type = LivoxDataType::cartesian_mm;  ///< of points in packets
-  ros::ImageTransport images = ros::ImageTransport::raw;  ///< of cameras, in bags and ROS 2
+  ros::ImageTransport images = ros::ImageTransport::raw;   ///< of cameras, in bags and ROS 2
   bool packet_topics = false;  ///< packets of Ouster and Velodyne sensors in bags and ROS 2
   FileSinkOptions sink;
 };

@@ -43,7 +43,7 @@ ApiReply refusal(int status, const std::string& what) {
   return {status, error.dump(-1, ' ', false, ApiJson::error_handler_t::replace)};
 }
 
-/// The characters that %41 and + stand for (RFC 3986, 2.1; HTML forms).
+/// Replaces escapes such as %41, and +, by the characters they encode (RFC 3986, 2.1; HTML forms).
 std::string percent_decoded(std::string_view text) {
   std::string decoded;
   for (std::size_t i = 0; i < text.size(); ++i) {
