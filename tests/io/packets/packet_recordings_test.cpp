@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <ostream>
 
 namespace glidar::testing {
 namespace {
@@ -62,6 +63,10 @@ struct OusterRecording {
   const char* capture;
   std::size_t packets;
 };
+
+void PrintTo(const OusterRecording& recording, std::ostream* out) {
+  *out << recording.capture;
+}
 
 class OusterPacketRecordings : public ::testing::TestWithParam<OusterRecording> {};
 
