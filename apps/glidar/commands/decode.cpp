@@ -31,7 +31,8 @@ namespace {
 
 constexpr const char* kDecodeExamples =
     R"(Writes the clouds of a packet capture (.pcap, .pcapng) or of a bag (.mcap, .bag, .rosbag2 or a
-folder of rosbag2) with messages PointCloud2, CustomMsg, VelodyneScan or PacketMsg: a file for each frame.
+folder of rosbag2) with messages PointCloud2, CustomMsg, VelodyneScan or PacketMsg: a file for each
+frame.
 Examples:
   glidar decode scan.pcap --sensor VLP-16 -o cloud.pcd     # cloud_000000.pcd ...
   glidar decode ouster.pcap -o cloud.npz                   # with ouster.json, the sensor's metadata

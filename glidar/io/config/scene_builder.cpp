@@ -19,7 +19,7 @@ namespace {
 using LoadKey = std::tuple<std::string, std::optional<double>, std::optional<Axis>, bool>;
 
 /// The same text for every spelling of a file's path.
-std::string real_path(const std::string& path) {
+std::string canonical_name(const std::string& path) {
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(path, error);
   return error ? path : real.string();
@@ -30,7 +30,7 @@ using RealPaths = std::unordered_map<std::string, std::string>;
 
 LoadKey load_key(const PlannedInstance& planned, RealPaths& known) {
   const auto [real, is_new] = known.try_emplace(planned.source);
-  if (is_new) real->second = real_path(planned.source);
+  if (is_new) real->second = canonical_name(planned.source);
   return {real->second, planned.options.metres_per_unit, planned.options.up,
           planned.options.centre};
 }
@@ -49,7 +49,7 @@ Model load_for(const PlannedInstance& planned, const ModelLoader& load) {
 /// The texture of a file, loaded when it is named for the first time.
 std::int32_t place_of(const MaterialOverride& change, TexturePlaces& places, Scene& scene) {
   const auto next = static_cast<std::int32_t>(scene.textures.size());
-  const auto [place, is_new] = places.try_emplace(real_path(change.noise_texture), next);
+  const auto [place, is_new] = places.try_emplace(canonical_name(change.noise_texture), next);
   if (!is_new) return place->second;
   try {
     scene.textures.push_back(read_png_texture(change.noise_texture));

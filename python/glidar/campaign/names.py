@@ -20,6 +20,7 @@ OF_SHARDS = re.compile(
     r"|scene_(?:camera|gt|gt_info)\.json)", re.ASCII)
 OF_TRIALS = re.compile(
     r"pcd/(?P<pcd>\d{9,})\.pcd|ply/(?P<ply>\d{9,})\.ply|exr/(?P<exr>\d{9,})\.exr"
+    r"|mcap/(?P<mcap>\d{9,})\.mcap"
     r"|kitti/(?:velodyne|labels|label_2|calib)/(?P<kitti>\d{9,})\.(?:bin|label|txt)", re.ASCII)
 ONCE = re.compile(r"bop/models/(?:obj_\d{6,}\.ply|models_info\.json)|bop/camera\.json", re.ASCII)
 WHOLE = {"campaign.json", "index.parquet", "trajectory.tum", "kitti/poses.txt"}

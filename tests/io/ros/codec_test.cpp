@@ -155,7 +155,7 @@ TEST(MessageTypes, AreFoundByTheirNamesInBothVersions) {
     EXPECT_EQ(find_message_type(type.ros1_name), &type);
   }
   EXPECT_EQ(find_message_type("livox_ros_driver/CustomMsg"), &message_type<CustomMsg>());
-  EXPECT_EQ(find_message_type("std_msgs/msg/String"), nullptr);
+  EXPECT_EQ(find_message_type("std_msgs/msg/Int8"), nullptr);
   EXPECT_EQ(dds_type_name(message_type<PointCloud2>()), "sensor_msgs::msg::dds_::PointCloud2_");
 }
 
