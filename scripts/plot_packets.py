@@ -27,8 +27,7 @@ def decoded_scan(program, folder):
     subprocess.run([program, "render", "examples/street.yaml", "--sensor", "OS1-128", "--duration", "0.2", "--quiet",
                     "-o", str(capture)], check=True)
     source = open_source(str(capture))
-    scan = next(iter(source))
-    scan = scan[0]  # of the only sensor
+    scan = next(iter(source))[0]  # of the only sensor
     info = source.sensor_info[0]
     return info, scan, core.XYZLut(info)(scan)
 

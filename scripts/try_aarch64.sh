@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 # Compiles the program for 64-bit ARM on a bare Debian 12 in a folder, runs it there by QEMU, and compares its clouds
-# with those of this machine's program: every preset, with noise, and the renderers one by one. Needs root and
+# with those of this machine's program: every preset, with noise, the two renderers on the CPU, and a street. Needs root and
 # debootstrap (see bare_debian.sh).
 # usage: try_aarch64.sh [PROGRAM [FOLDER]]
 #   PROGRAM  this machine's program; default: build/dev/apps/glidar/glidar

@@ -36,7 +36,6 @@ enum class Compression : std::uint8_t { none, lz4, zstd };
 struct BagOptions {
   Compression compression = Compression::none;  ///< of chunks; rosbag1: none or lz4
   bool mcap_storage = false;                    ///< rosbag2: one MCAP file instead of SQLite
-  std::string library = "glidar";               ///< name of the writing program
 };
 
 /// Writes a bag, which appears under its name when finish() returns. Without finish() nothing

@@ -76,7 +76,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const BagOptions& opti
   append(start, mcap::kMagic);
   const std::size_t begin = begin_record(start, McapOp::header);
   append_sized(start, "ros2");
-  append_sized(start, options_.library);
+  append_sized(start, "glidar");  // the program that writes
   end_record(start, begin);
   put(start);
   chunk_.reserve(kChunkBytes + kChunkBytes / 4);
