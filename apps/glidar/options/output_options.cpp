@@ -8,6 +8,7 @@
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/imu_samples_file.hpp>
+#include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
 
 #include <fmt/format.h>
@@ -60,7 +61,8 @@ std::vector<std::string> stream_formats() {
 /// The list for an output of this name.
 std::vector<std::string>& paths_for(const std::string& path, OutputFlags& flags) {
   if (is_imu_samples_path(path)) return flags.imu_paths;
-  return bags::is_bag_name(path) || is_capture_name(path) ? flags.recording_paths : flags.paths;
+  const bool is_recording = bags::is_bag_name(path) || is_capture_name(path) || is_kitti_name(path);
+  return is_recording ? flags.recording_paths : flags.paths;
 }
 
 void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
