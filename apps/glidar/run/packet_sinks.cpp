@@ -66,8 +66,8 @@ class CaptureSink final : public FrameSink {
               const PacketSetup& setup)
       : sensor_index_(sensor_index), writer_(path, sensor, setup.options, setup.imu_samples) {}
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override {
-    return sensor_index == sensor_index_ ? kPacketColumns : std::vector<std::string>{};
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override {
+    return sensor_index == sensor_index_ ? hit_columns_for(kPacketColumns) : HitColumnMask{};
   }
   void write(const MeasuredFrame& measured) override {
     if (measured.sensor_index == sensor_index_) writer_.write(measured.frame, *measured.beams);
@@ -91,8 +91,8 @@ class UdpSink final : public FrameSink {
         packets_(sensor, setup.options, setup.imu_samples),
         sender_(route, speed, errors) {}
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override {
-    return sensor_index == sensor_index_ ? kPacketColumns : std::vector<std::string>{};
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override {
+    return sensor_index == sensor_index_ ? hit_columns_for(kPacketColumns) : HitColumnMask{};
   }
   void write(const MeasuredFrame& measured) override {
     if (measured.sensor_index != sensor_index_) return;

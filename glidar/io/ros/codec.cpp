@@ -79,6 +79,11 @@ class MemberWriter {
   }
 
   template <class Member>
+  void write(const Ros2Only<Member>& member) {
+    if (wire_ == Wire::cdr) write(member.value);
+  }
+
+  template <class Member>
   requires std::is_class_v<Member>
   void write(const Member& member) { visit_members(member, *this); }
 
@@ -190,6 +195,11 @@ class MemberReader {
   }
 
   template <class Member>
+  void read(Ros2Only<Member>& member) {
+    if (wire_ == Wire::cdr) read(member.value);
+  }
+
+  template <class Member>
   requires std::is_class_v<Member>
   void read(Member& member) { visit_members(member, *this); }
 
@@ -287,6 +297,7 @@ GLIDAR_ROS_CODEC(Clock)
 GLIDAR_ROS_CODEC(Odometry)
 GLIDAR_ROS_CODEC(CustomMsg)
 GLIDAR_ROS_CODEC(VelodyneScan)
+GLIDAR_ROS_CODEC(MarkerArray)
 
 #undef GLIDAR_ROS_CODEC
 

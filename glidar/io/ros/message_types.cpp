@@ -17,7 +17,7 @@ constexpr Qos kDefault = {};
 
 /// In the order of Index. The type hashes and MD5 sums are computed from the definitions by
 /// independent programs in the tests.
-constexpr std::array<MessageType, 14> kMessageTypes = {{
+constexpr std::array<MessageType, 15> kMessageTypes = {{
     {"std_msgs/msg/Header", "std_msgs/Header", "2176decaecbce78abc3b96ef049fabed",
      "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01", kDefault},
     {"sensor_msgs/msg/PointField", "sensor_msgs/PointField", "268eacb2962780ceac86cbd17e328150",
@@ -59,6 +59,9 @@ constexpr std::array<MessageType, 14> kMessageTypes = {{
     {"velodyne_msgs/msg/VelodyneScan", "velodyne_msgs/VelodyneScan",
      "50804fc9533a0e579e6322c04ae70566",
      "RIHS01_4e4edd7152e8bd604311d8b2e68e4c1b0771c8ce72700de79f6d1418aa242b3c", kDefault},
+    {"visualization_msgs/msg/MarkerArray", "visualization_msgs/MarkerArray",
+     "d155b9ce5188fbaf89745847fd5882d7",
+     "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf", kDefault},
 }};
 
 /// The package and the name of a type of ROS 2 as ROS 1 spells it: without "msg/".
@@ -92,6 +95,7 @@ GLIDAR_ROS_TYPE(Clock, 10)
 GLIDAR_ROS_TYPE(Odometry, 11)
 GLIDAR_ROS_TYPE(CustomMsg, 12)
 GLIDAR_ROS_TYPE(VelodyneScan, 13)
+GLIDAR_ROS_TYPE(MarkerArray, 14)
 
 #undef GLIDAR_ROS_TYPE
 

@@ -3,6 +3,7 @@
 #include <glidar/io/ros/rig_publisher.hpp>
 
 #include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/ros/box_message.hpp>
 #include <glidar/io/ros/image_message.hpp>
 #include <glidar/io/ros/laser_scan.hpp>
 #include <glidar/io/ros/pose_message.hpp>
@@ -84,6 +85,8 @@ RigPublisher::SensorTopics RigPublisher::add_topics(const PublishedSensor& senso
     topics.range = add_image("/range/image_raw");
   }
   if (options_.for_viewers && has_rows) topics.intensity = add_image("/intensity/image_raw");
+  if (has_classes(rig_.scene))
+    topics.boxes = sink_.add_topic(make_topic<MarkerArray>(base + "/boxes"));
   return topics;
 }
 
@@ -137,6 +140,12 @@ std::vector<std::string> RigPublisher::columns(std::size_t sensor) const {
   return columns;
 }
 
+HitColumnMask RigPublisher::hit_columns(std::size_t sensor) const {
+  HitColumnMask hit_columns = hit_columns_for(columns(sensor));
+  hit_columns.boxes = topics_[sensor].boxes.has_value();
+  return hit_columns;
+}
+
 const std::string& RigPublisher::cloud_topic(std::size_t sensor) const {
   return topics_[sensor].cloud_name;
 }
@@ -159,6 +168,9 @@ void RigPublisher::publish(std::size_t sensor, const Frame& frame, const Beams& 
     write(*topics.scan, stamp_ns, laser_scan(source, ring_of(beams, 0), topics.frame_id));
   }
   write_images(topics, source, stamp_ns);
+  if (is_wanted(topics.boxes)) {
+    write(*topics.boxes, stamp_ns, box_markers(rig_.scene, frame, topics.frame_id));
+  }
   const FrameInterval interval = frame_interval(source.sensor, frame.number);
   end_ns_ = std::max(end_ns_, frame.stamp_ns + (interval.end_ns - interval.start_ns));
 }
