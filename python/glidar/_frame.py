@@ -16,32 +16,16 @@ from . import _core
 from ._cloud import Cloud
 from ._errors import Error, shown
 from ._fisher_information import FisherInformation
-from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole, whole_numbers
+from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole
+from ._object_box import ObjectBox, boxes_of
 from ._origin import Origin
-from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, show_images
+from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, set_picture, show_images
 from ._state import Immutable, key_of, part, restoring, make_state
 from ._status import ReturnSource, Status
 from ._point_trace import PointTrace, trace_of
 from ._ground_truth import GroundTruth
 
 _PCD = ("ascii", "binary", "binary_compressed")
-
-
-def _set_picture(
-    options: _core.SaveOptions,
-    colour_by: str,
-    size: tuple[int, int],
-    eye: npt.ArrayLike | None,
-    target: npt.ArrayLike | None,
-) -> None:
-    """Sets the options of pictures of clouds."""
-    one_of(colour_by, "colour_by", _core.colour_by_names())
-    width, height = (int(side) for side in whole_numbers(size, "picture_size", 2, 32))
-    options.set_picture(colour_by, width, height)
-    if eye is not None:
-        options.set_view_eye(floats(eye, "view_eye", (3,)))
-    if target is not None:
-        options.set_view_target(floats(target, "view_target", (3,)))
 
 
 class Frame(Immutable):
@@ -268,8 +252,24 @@ class Frame(Immutable):
         options.set_sidecar(sidecar)
         options.set_layout(layout or "")
         options.set_depth_units_per_m(scale)
-        _set_picture(options, colour_by, picture_size, view_eye, view_target)
-        self._with_scene().save(path_of(path, "path"), options, log)
+        set_picture(options, colour_by, picture_size, view_eye, view_target)
+        core, name = self._with_scene(), path_of(path, "path")
+        if core.needs_boxes(name, options):
+            core = self._with_renderer()
+        core.save(name, options, log)
+
+    def boxes(self, *, frame: str = "sensor", unlabelled: bool = False) -> list[ObjectBox]:
+        """3D bounding boxes of the objects that have a class, when the frame starts, in the order of ``Scene.objects``,
+        with the number of points and the occlusion (docs/boxes.md). The first call casts beams into each object alone.
+
+        Args:
+            frame: coordinate frame, as for ``cloud``.
+            unlabelled: whether objects without a class have boxes too.
+
+        Raises:
+            Error: an unknown coordinate frame.
+        """
+        return boxes_of(self._with_renderer(), frame, unlabelled)
 
     def bird_eye(
         self, *, colour_by: str = "height", size: tuple[int, int] = (1400, 1000), frame: str = "sensor"

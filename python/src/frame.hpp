@@ -48,6 +48,10 @@ struct Measured {
   std::shared_ptr<SensorHandle> sensor;
   std::shared_ptr<const Beams> beams;
   std::shared_ptr<const Motion> motion;
+  bool has_boxes = false;  ///< frame.boxes are found; changed with the turn of `prepared`
 };
+
+/// Finds frame.boxes, unless that is done. Needs the renderer; without Python's lock.
+void ensure_boxes(Measured& measured);
 
 }  // namespace glidar::python
