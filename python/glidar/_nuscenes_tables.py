@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of a nuScenes data set (Caesar et al. 2020; schema: docs/schema_nuscenes.md of nuscenes-devkit 1.2)."""
+"""The tables of a nuScenes data set (Caesar et al. 2020; schema: schema_nuscenes.md of nuscenes-devkit 1.2)."""
 
 from __future__ import annotations
 

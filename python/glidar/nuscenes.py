@@ -8,7 +8,7 @@
         data.add_scene(glidar.Scene("examples/drive.yaml"), duration_s=20.0)
 
 or on the command line ``python3 -m glidar.nuscenes examples/drive.yaml -o nuscenes --duration 20``.
-docs/nuscenes.md describes the files.
+docs/files/nuscenes.md describes the files.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class NuscenesWriter:
     Args:
         folder: the data set's root; created, or an empty folder.
         version: name of the folder of tables, such as "v1.0-mini"; the devkit's splits depend on it.
-        categories: nuScenes' category of each class that has another name; added to those of docs/nuscenes.md.
+        categories: nuScenes' category of each class that has another name; added to those of docs/files/nuscenes.md.
         start_us: time of the first frame of the first scene, µs since 1970; scenes follow each other.
 
     Raises:
