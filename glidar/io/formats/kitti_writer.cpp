@@ -24,14 +24,6 @@ namespace {
 
 constexpr std::size_t kMaxCameras = 2;  // image_2 and image_3
 
-/// A camera of the folder.
-struct ImageCamera {
-  std::size_t sensor = 0;
-  std::string folder;                       ///< image_2
-  std::vector<std::byte> png = {};          ///< of its last frame; empty: none yet
-  std::vector<std::uint32_t> waiting = {};  ///< scans that have no image yet
-};
-
 bool has_pinhole(const KittiSensor& sensor) {
   return std::holds_alternative<Pinhole>(sensor.sensor.optics);
 }
@@ -51,6 +43,14 @@ std::string seconds_text(std::int64_t t_ns) {
 }  // namespace
 
 struct KittiWriter::State {
+  /// A camera of the folder.
+  struct ImageCamera {
+    std::size_t sensor = 0;
+    std::string folder;                       ///< image_2
+    std::vector<std::byte> png = {};          ///< of its last frame; empty: none yet
+    std::vector<std::uint32_t> waiting = {};  ///< scans that have no image yet
+  };
+
   std::filesystem::path folder;
   const Scene& scene;
   std::vector<KittiSensor> sensors;
@@ -170,7 +170,7 @@ KittiWriter::~KittiWriter() = default;
 HitColumnMask KittiWriter::hit_columns(std::size_t sensor) const {
   HitColumnMask hit_columns;
   hit_columns.boxes = sensor == state_->scanner;
-  for (const ImageCamera& camera : state_->images) {
+  for (const State::ImageCamera& camera : state_->images) {
     hit_columns.colour = hit_columns.colour || camera.sensor == sensor;
     hit_columns.incidence = hit_columns.incidence || camera.sensor == sensor;
   }
@@ -178,7 +178,7 @@ HitColumnMask KittiWriter::hit_columns(std::size_t sensor) const {
 }
 
 void KittiWriter::write(std::size_t sensor, const Frame& frame, const Beams& beams) {
-  for (ImageCamera& camera : state_->images) {
+  for (State::ImageCamera& camera : state_->images) {
     if (camera.sensor == sensor) state_->take_image(camera, frame, beams);
   }
   if (sensor == state_->scanner) state_->write_scan(frame, beams);
@@ -186,7 +186,7 @@ void KittiWriter::write(std::size_t sensor, const Frame& frame, const Beams& bea
 
 void KittiWriter::finish() {
   State& state = *state_;
-  for (ImageCamera& camera : state.images) state.write_images(camera);
+  for (State::ImageCamera& camera : state.images) state.write_images(camera);
   StagedFiles files;
   files.protect(state.options.inputs);
   stage_text(state.folder / "times.txt", state.times, files);
