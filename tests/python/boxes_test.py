@@ -15,7 +15,7 @@ ROUNDING_M = 1e-9
 
 SCENE = """models:
   - {model: 'builtin:box:size=4,2,1.5', name: front, id: 7, class: car, pose: {position: [8, 1, 0], euler_deg: {yaw: 30, pitch: 5}}}
-  - {model: 'builtin:box:size=4,2,1.5', name: behind, id: 9, class: car, pose: {position: [14, 1.5, 0]}}
+  - {model: 'builtin:box:size=4,2,1.5', name: behind, id: 9, class: car, pose: {position: [14, 4, 0]}}
   - model: 'builtin:sphere:radius=1'
     name: ball
     id: 3

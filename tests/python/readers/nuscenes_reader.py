@@ -55,7 +55,7 @@ def main(root, pictures):
     data.render_sample_data(top, out_path=f"{pictures}/lidar.png", verbose=False)
     data.render_sample_data(top, out_path=f"{pictures}/lidarseg.png", show_lidarseg=True, verbose=False)
     data.render_sample_data(camera, out_path=f"{pictures}/camera.png", verbose=False)
-    data.render_pointcloud_in_image(first["token"], "LIDAR_TOP", "CAM_FRONT", out_path=f"{pictures}/projected.png", verbose=False)
+    data.render_pointcloud_in_image(first["token"], camera_channel="CAM_FRONT", out_path=f"{pictures}/projected.png", verbose=False)
     data.render_annotation(first["anns"][0], out_path=f"{pictures}/annotation.png")
     sweeps, _ = LidarPointCloud.from_file_multisweep(data, data.sample[1], "LIDAR_TOP", "LIDAR_TOP", nsweeps=3)
     print(json.dumps({"keys": keys, "scans": scans, "sweeps": sweeps.points.shape[1],
