@@ -83,8 +83,8 @@ def test_boxes_contain_the_points_that_they_list(read):
     for key in read["keys"]:
         assert len(key["annotations"]) == 3, "the person behind the house has no points"
         for one in key["annotations"]:
-            # ranges have noise, and the car ahead moves by up to 0.4 m while the beams are fired
-            assert 0.5 * one["listed"] <= one["inside"] <= 1.05 * one["listed"] + 2
+            # ranges have noise, the ground is near, and the car ahead moves by up to 0.4 m while the beams are fired
+            assert 0.5 * one["listed"] <= one["inside"] <= 2.0 * one["listed"]
 
 
 def test_attributes_velocities_and_visibility_follow_the_motion(read):
