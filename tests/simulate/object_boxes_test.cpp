@@ -48,14 +48,14 @@ Pose ahead() {
 }
 
 /// A scene, a sensor and a motion in it.
-struct Setup {
+struct Crowd {
   Scene scene = crowded_scene();
   std::shared_ptr<const BeamCache> beams;
   Motion motion;
   std::unique_ptr<Renderer> renderer;
   std::unique_ptr<Renderer> reference;  ///< for single beams
 
-  explicit Setup(const Sensor& sensor, const std::string& kind = "rays")
+  explicit Crowd(const Sensor& sensor, const std::string& kind = "rays")
       : beams(std::make_shared<const BeamCache>(sensor)),
         motion(static_motion(scene, ahead())),
         renderer(make_renderer(scene, {.kind = kind, .threads = 2})),
@@ -78,21 +78,21 @@ struct Setup {
 };
 
 /// The instance that one beam hits, with everything at its pose at a time; `only` alone, or all.
-std::uint32_t cast_one(const Setup& setup, std::size_t beam, std::int64_t t_ns,
+std::uint32_t cast_one(const Crowd& crowd, std::size_t beam, std::int64_t t_ns,
                        std::uint32_t only) {
-  const Beams& all = *setup.beams->beams(0);
+  const Beams& all = *crowd.beams->beams(0);
   Beams one;
   one.rows = one.cols = 1;
   one.directions = {all.directions[beam]};
   if (!all.origins_m.empty()) one.origins_m = {all.origins_m[beam]};
   std::vector<Pose> poses;
-  for (const Trajectory& path : setup.motion.world_from_instance)
+  for (const Trajectory& path : crowd.motion.world_from_instance)
     poses.push_back(pose_at(path, t_ns));
-  std::vector<std::uint8_t> enabled(setup.scene.instances.size(), only == kInvalidId ? 1 : 0);
+  std::vector<std::uint8_t> enabled(crowd.scene.instances.size(), only == kInvalidId ? 1 : 0);
   if (only != kInvalidId) enabled[only] = 1;
   Hits hits;
-  setup.reference->cast({.beams = one,
-                         .world_from_sensor = pose_at(setup.motion.world_from_sensor, t_ns),
+  crowd.reference->cast({.beams = one,
+                         .world_from_sensor = pose_at(crowd.motion.world_from_sensor, t_ns),
                          .world_from_instance = poses,
                          .instance_enabled = enabled},
                         hits);
@@ -100,16 +100,16 @@ std::uint32_t cast_one(const Setup& setup, std::size_t beam, std::int64_t t_ns,
 }
 
 /// Compares the counts of all boxes with casts of single beams into single objects.
-void expect_counts_of_single_casts(const Setup& setup, const Frame& frame) {
-  const Beams& all = *setup.beams->beams(0);
-  std::vector<std::uint32_t> alone(setup.scene.instances.size());
-  std::vector<std::uint32_t> visible(setup.scene.instances.size());
+void expect_counts_of_single_casts(const Crowd& crowd, const Frame& frame) {
+  const Beams& all = *crowd.beams->beams(0);
+  std::vector<std::uint32_t> alone(crowd.scene.instances.size());
+  std::vector<std::uint32_t> visible(crowd.scene.instances.size());
   for (std::size_t i = 0; i < all.firings(); ++i) {
     const std::int64_t t_ns = frame.stamp_ns + (all.times_ns.empty() ? 0 : all.times_ns[i]);
-    const std::uint32_t first = cast_one(setup, i, t_ns, kInvalidId);
+    const std::uint32_t first = cast_one(crowd, i, t_ns, kInvalidId);
     if (first != kInvalidId) ++visible[first];
     for (const ObjectBox& box : frame.boxes) {
-      if (cast_one(setup, i, t_ns, box.instance) == box.instance) ++alone[box.instance];
+      if (cast_one(crowd, i, t_ns, box.instance) == box.instance) ++alone[box.instance];
     }
   }
   ASSERT_EQ(frame.boxes.size(), 4U);
@@ -124,21 +124,21 @@ void expect_counts_of_single_casts(const Setup& setup, const Frame& frame) {
 
 TEST(ObjectBoxes, CountsAreThoseOfBeamsThatAreCastAlone) {
   for (const char* kind : {"rays", "raster", "auto"}) {
-    const Setup setup(camera(), kind);
-    expect_counts_of_single_casts(setup, setup.shoot());
+    const Crowd crowd(camera(), kind);
+    expect_counts_of_single_casts(crowd, crowd.shoot());
   }
 }
 
 TEST(ObjectBoxes, CountsOfAMovingSensorAndObjectAreThoseAtTheFiringTimes) {
-  Setup setup(camera());
-  setup.fire_one_by_one();
-  setup.motion.world_from_sensor = ConstantTwist{
+  Crowd crowd(camera());
+  crowd.fire_one_by_one();
+  crowd.motion.world_from_sensor = ConstantTwist{
       .pose = ahead(), .angular_rad_s = {0.3, -0.4, 0.8}, .linear_m_s = {1.0, -2.0, 0.5}};
-  setup.motion.world_from_instance[2] =
-      ConstantTwist{.pose = setup.scene.instances[2].world_from_object,
+  crowd.motion.world_from_instance[2] =
+      ConstantTwist{.pose = crowd.scene.instances[2].world_from_object,
                     .angular_rad_s = {0.0, 2.0, 1.0},
                     .linear_m_s = {0.0, 8.0, 1.0}};
-  expect_counts_of_single_casts(setup, setup.shoot());
+  expect_counts_of_single_casts(crowd, crowd.shoot());
 }
 
 TEST(ObjectBoxes, PulsesWithSeveralReturnsCountOnceEachWhereTheirAxisHits) {
@@ -148,21 +148,21 @@ TEST(ObjectBoxes, PulsesWithSeveralReturnsCountOnceEachWhereTheirAxisHits) {
   sensor.footprint = Footprint{.divergence_x_rad = 2e-2, .divergence_y_rad = 2e-2};
   sensor.receiver.returns = {{Return::Order::strongest, 0}, {Return::Order::farthest, 0}};
   sensor.noise = {PointingJitter{.sigma_azimuth_rad = 1e-2}};
-  const Setup setup(sensor);
-  expect_counts_of_single_casts(setup, setup.shoot());
+  const Crowd crowd(sensor);
+  expect_counts_of_single_casts(crowd, crowd.shoot());
 }
 
 TEST(ObjectBoxes, AreTightOrientedAndMoveWithTheirObject) {
-  Setup setup(camera());
-  const Pose& at = setup.scene.instances[4].world_from_object;
+  Crowd crowd(camera());
+  const Pose& at = crowd.scene.instances[4].world_from_object;
   const Eigen::Vector3d angular(0.0, 0.0, 2.0);
   const Eigen::Vector3d linear(3.0, 0.0, 0.0);
-  setup.motion.world_from_instance[4] =
+  crowd.motion.world_from_instance[4] =
       ConstantTwist{.pose = at, .angular_rad_s = angular, .linear_m_s = linear};
-  const Frame frame = setup.shoot();
+  const Frame frame = crowd.shoot();
   const ObjectBox& crate = frame.boxes.back();
   ASSERT_EQ(crate.instance, 4U);
-  const Mesh& mesh = setup.scene.meshes[setup.scene.instances[4].mesh];
+  const Mesh& mesh = crowd.scene.meshes[crowd.scene.instances[4].mesh];
   const Pose sensor_from_object = frame.world_from_sensor.inverse() * frame.world_from_instance[4];
   Eigen::AlignedBox3d inside;
   for (std::uint32_t i = 0; i < mesh.positions_m.size(); ++i) {
@@ -175,7 +175,7 @@ TEST(ObjectBoxes, AreTightOrientedAndMoveWithTheirObject) {
   // the difference quotient of the centre in the world
   constexpr std::int64_t kStep_ns = 1000;
   const auto centre = [&](std::int64_t t_ns) -> Eigen::Vector3d {
-    return pose_at(setup.motion.world_from_instance[4], t_ns) *
+    return pose_at(crowd.motion.world_from_instance[4], t_ns) *
            (sensor_from_object.inverse() * crate.sensor_from_box.translation());
   };
   const Eigen::Vector3d velocity = (centre(frame.stamp_ns + kStep_ns) - centre(frame.stamp_ns)) /
@@ -188,8 +188,8 @@ TEST(ObjectBoxes, AreTightOrientedAndMoveWithTheirObject) {
 TEST(ObjectBoxes, PointsAreTheReturnsOfTheObject) {
   Sensor sensor = camera();
   sensor.limits.far_m = 6.5;  // behind the first asteroid
-  const Setup setup(sensor);
-  const Frame frame = setup.shoot();
+  const Crowd crowd(sensor);
+  const Frame frame = crowd.shoot();
   for (const ObjectBox& box : frame.boxes) {
     std::uint32_t points = 0;
     for (std::size_t i = 0; i < frame.status.size(); ++i) {
@@ -204,17 +204,17 @@ TEST(ObjectBoxes, PointsAreTheReturnsOfTheObject) {
 }
 
 TEST(ObjectBoxes, AreThereOnRequestAndForObjectsWithAClass) {
-  const Setup setup(camera());
+  const Crowd crowd(camera());
   Frame frame;
-  Simulator simulator(setup.scene, setup.beams, *setup.renderer);
-  simulator.simulate(setup.motion, {.boxes = true}, frame);
+  Simulator simulator(crowd.scene, crowd.beams, *crowd.renderer);
+  simulator.simulate(crowd.motion, {.boxes = true}, frame);
   EXPECT_EQ(frame.boxes.size(), 4U);
-  EXPECT_EQ(simulator.find_boxes(setup.motion, frame, BoxSelection::with_class).size(), 4U);
-  const auto all = simulator.find_boxes(setup.motion, frame, BoxSelection::all);
+  EXPECT_EQ(simulator.find_boxes(crowd.motion, frame, BoxSelection::with_class).size(), 4U);
+  const auto all = simulator.find_boxes(crowd.motion, frame, BoxSelection::all);
   ASSERT_EQ(all.size(), 5U);
   EXPECT_EQ(all[0].instance, 0U);
   EXPECT_EQ(all[3].beams, frame.boxes[2].beams);
-  simulator.simulate(setup.motion, {}, frame);
+  simulator.simulate(crowd.motion, {}, frame);
   EXPECT_TRUE(frame.boxes.empty());
 }
 
