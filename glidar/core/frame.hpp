@@ -4,6 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
+#include <glidar/core/object_box.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/math/random.hpp>
 
@@ -96,6 +97,9 @@ struct Frame {
   BeamPoses beam_poses;
   Woods2016Framebuffer framebuffer;  ///< range and intensity were decoded from it; empty: not used
   Hits ground_truth;                 ///< the surfaces, whether reported or not
+  /// Of the objects that have a class, in the order of the scene's instances. Empty unless
+  /// requested (HitColumnMask::boxes).
+  std::vector<ObjectBox> boxes;
 };
 
 /// Resizes the measured columns to `size` entries (contents unspecified).

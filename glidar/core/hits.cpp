@@ -33,7 +33,8 @@ HitColumnMask operator|(const HitColumnMask& a, const HitColumnMask& b) {
           .reflectance = a.reflectance || b.reflectance,
           .object_point = a.object_point || b.object_point,
           .noise_scale = a.noise_scale || b.noise_scale,
-          .poses = a.poses || b.poses};
+          .poses = a.poses || b.poses,
+          .boxes = a.boxes || b.boxes};
 }
 
 void resize(Hits& hits, std::size_t size, const HitColumnMask& hit_columns) {

@@ -26,6 +26,7 @@ struct HitColumnMask {
   bool object_point = false;
   bool noise_scale = false;
   bool poses = false;  ///< Frame::beam_poses, which is not a column of Hits
+  bool boxes = false;  ///< Frame::boxes; not in kAllHitColumns
 };
 
 inline constexpr HitColumnMask kAllHitColumns = {.depth = true,

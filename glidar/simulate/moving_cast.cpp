@@ -188,6 +188,29 @@ const Eigen::AlignedBox3d& mesh_box(const Scene& scene, std::uint32_t mesh,
   return *box;
 }
 
+/// Expresses all beams in the frame in which a body is at rest; nullptr: all that is static.
+void express_all_beams(const TimedScene& timed, const CastRequest& request, const Body* body,
+                       MovingCastWorkspace& memory) {
+  const Motion& motion = timed.motion;
+  const MovingSensor sensor{motion.world_from_sensor, request.world_from_sensor, timed.stamp_ns};
+  timed.renderer.thread_pool().parallel_for(
+      request.beams.size(), kMovedBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+        if (body == nullptr) return express_beams(request, sensor, {begin, end}, memory);
+        express_beams(request, motion, *body, timed.stamp_ns, {begin, end}, memory);
+      });
+}
+
+/// An instance as a moving body.
+Body body_of(const TimedScene& timed, const CastRequest& request, std::uint32_t i,
+             MovingCastWorkspace& memory) {
+  const Instance& instance = timed.scene.instances[i];
+  const Pose& at_start = request.world_from_instance[i];
+  return {.world_from_body = timed.motion.world_from_instance[i],
+          .at_start = at_start,
+          .sphere = bounding_sphere(instance, mesh_box(timed.scene, instance.mesh, memory),
+                                    at_start, request.world_from_sensor)};
+}
+
 /// One cast that is in progress.
 struct MovingCast {
   const TimedScene& timed;
@@ -220,20 +243,15 @@ void cast_body(const MovingCast& cast, const Body* body, const BodyIndex& body_i
   const auto part = [&](std::size_t number) {
     return static_cast<double>(number) / static_cast<double>(body_index.count);
   };
-  const Motion& motion = cast.timed.motion;
-  const MovingSensor sensor{motion.world_from_sensor, request.world_from_sensor,
-                            cast.timed.stamp_ns};
-  cast.parallel_for([&](BeamRange range) {
-    if (body == nullptr) return express_beams(request, sensor, range, memory);
-    express_beams(request, motion, *body, cast.timed.stamp_ns, range, memory);
-  });
+  express_all_beams(cast.timed, request, body, memory);
+  const bool is_sensor_static = is_static(cast.timed.motion.world_from_sensor);
   cast.timed.renderer.cast({.beams = memory.beams,
                             .world_from_sensor = request.world_from_sensor,
                             .world_from_instance = request.world_from_instance,
                             .hit_columns = request.hit_columns,
                             .cull_back_faces = request.cull_back_faces,
                             .instance_enabled = memory.instance_enabled,
-                            .beams_recur = body == nullptr && is_static(motion.world_from_sensor),
+                            .beams_recur = body == nullptr && is_sensor_static,
                             .progress = subrange(request.progress, part(body_index.number),
                                                  part(body_index.number + 1))},
                            hits);
@@ -261,11 +279,7 @@ void cast_bodies(const MovingCast& cast) {
     memory.instance_enabled.assign(scene.instances.size(), 0);
     memory.instance_enabled[i] = 1;
     ++body_index.number;
-    const Instance& instance = scene.instances[i];
-    const Pose& at_start = cast.request.world_from_instance[i];
-    const Sphere sphere = bounding_sphere(instance, mesh_box(scene, instance.mesh, memory),
-                                          at_start, cast.request.world_from_sensor);
-    const Body body{.world_from_body = trajectories[i], .at_start = at_start, .sphere = sphere};
+    const Body body = body_of(cast.timed, cast.request, i, memory);
     cast_body(cast, &body, body_index);
   }
 }
@@ -285,6 +299,18 @@ void cast_moving(const TimedScene& scene, const CastRequest& request,
   const MovingCast cast{scene, request, workspace, hits};
   cast_bodies(cast);
   if (request.on_tile_done) cast.parallel_for(request.on_tile_done);
+}
+
+const Beams& beams_at_rest(const TimedScene& scene, const CastRequest& request,
+                           std::uint32_t instance, MovingCastWorkspace& workspace) {
+  prepare(scene.scene, request.beams, workspace);
+  if (instance == kInvalidId || is_static(scene.motion.world_from_instance[instance])) {
+    express_all_beams(scene, request, nullptr, workspace);
+  } else {
+    const Body body = body_of(scene, request, instance, workspace);
+    express_all_beams(scene, request, &body, workspace);
+  }
+  return workspace.beams;
 }
 
 void deskew(const TimedScene& scene, const Beams& reported, const Beams& fired,

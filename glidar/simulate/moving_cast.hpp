@@ -43,6 +43,12 @@ bool moves_during_frame(const Motion& motion, const Beams& beams);
 void cast_moving(const TimedScene& scene, const CastRequest& request,
                  MovingCastWorkspace& workspace, Hits& hits);
 
+/// The beams of a request as a rigid body sees them that keeps its pose of stamp_ns, in the sensor
+/// frame of that time: an instance, or with kInvalidId all that is static. Beams that cannot hit a
+/// moving instance have no direction. They are in the workspace, until the next call.
+const Beams& beams_at_rest(const TimedScene& scene, const CastRequest& request,
+                           std::uint32_t instance, MovingCastWorkspace& workspace);
+
 /// The reported and the fired beams, which are the same without pointing errors, as seen from the
 /// sensor's pose at stamp_ns. Changes nothing when the sensor does not move while they are fired.
 void deskew(const TimedScene& scene, const Beams& reported, const Beams& fired,

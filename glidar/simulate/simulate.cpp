@@ -7,6 +7,7 @@
 #include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/motion/beam_poses.hpp>
+#include <glidar/simulate/object_boxes.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
 #include <glidar/simulate/pulse_cast.hpp>
 #include <glidar/simulate/waveforms.hpp>
@@ -34,6 +35,7 @@ void reset_frame(const Simulation& s) {
   frame.deskewed.origins_m.clear();
   frame.deskewed.start_from_sensor.clear();
   frame.framebuffer.rgba.clear();
+  frame.boxes.clear();
 }
 
 CastRequest beam_request(const Simulation& s, FunctionRef<void(BeamRange)> on_tile_done) {
@@ -150,6 +152,7 @@ void simulate(std::span<Simulation> frames) {
     record_beam_poses(s.motion, s.beams, s.hit_columns.poses, threads, s.frame);
     apply_noise(s.prepared.noise, s.beams, threads, s.workspace.noise, s.frame, s.noise_steps);
     if (s.fired != &s.beams) s.frame.true_directions.swap(s.workspace.fired.directions);
+    if (s.hit_columns.boxes) find_boxes(s, BoxSelection::with_class, s.frame.boxes);
   }
 }
 

@@ -7,7 +7,9 @@
 #include <glidar/simulate/return_replacement.hpp>
 #include <glidar/simulate/waveform_trace.hpp>
 
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace glidar {
@@ -23,12 +25,25 @@ struct SubRayWorkspace {
   std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-ray
 };
 
+/// What boxes of objects are found with.
+struct BoxWorkspace {
+  std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it is needed
+  Beams nominal;                        ///< one per firing, when pulses have several returns
+  Hits nominal_hits;                    ///< of the nominal beams
+  MovingCastWorkspace moving;           ///< the beams as the object sees them
+  std::vector<std::uint8_t> crosses;    ///< per firing: whether its beam may hit the object
+  Beams candidates;                     ///< beams that may hit the object
+  Hits hits;                            ///< of the candidates, on the object alone
+  std::vector<std::uint8_t> is_object;  ///< per instance, for casts of one of them
+};
+
 /// Memory that simulations of one sensor in one scene reuse from frame to frame.
 struct Workspace {
   Beams fired;  ///< the sensor's beams with their pointing errors
   NoiseWorkspace noise;
   MovingCastWorkspace moving_cast;
   SubRayWorkspace sub_rays;
+  BoxWorkspace boxes;
 };
 
 /// One frame to be simulated: what is measured, with what, and where the result is written.

@@ -3,6 +3,7 @@
 #include <glidar/simulate/simulator.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/simulate/object_boxes.hpp>
 #include <glidar/simulate/simulate.hpp>
 
 #include <deque>
@@ -90,6 +91,14 @@ void Simulator::simulate_batch(std::span<const Motion> motions, const HitColumnM
     }
   }
   if (!together.empty()) glidar::simulate(together);
+}
+
+std::vector<ObjectBox> Simulator::find_boxes(const Motion& motion, Frame& frame,
+                                             BoxSelection selection) {
+  const std::shared_ptr<const Beams> beams = state_->beam_cache->beams(frame.number);
+  std::vector<ObjectBox> boxes;
+  glidar::find_boxes(prepare(*beams, motion, {}, frame, {}), selection, boxes);
+  return boxes;
 }
 
 Simulation Simulator::prepare(const Beams& beams, const Motion& motion,

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace glidar {
 
@@ -48,6 +49,10 @@ class Simulator {
   /// together than one by one. Throws Error unless there is a motion per frame.
   void simulate_batch(std::span<const Motion> motions, const HitColumnMask& hit_columns,
                       std::span<Frame> frames, const ProgressCallback& progress = {});
+
+  /// The boxes of the objects of a frame that was simulated with this motion.
+  [[nodiscard]] std::vector<ObjectBox> find_boxes(const Motion& motion, Frame& frame,
+                                                  BoxSelection selection);
 
   /// Replaces the returns of all further frames; empty: none are replaced.
   void set_return_replacement(ReturnReplacement replacement);

@@ -19,6 +19,7 @@ from ._fisher_information import EigenDirection, FisherInformation
 from ._imu import Imu, ImuSamples, RigImu, imu_names, load_imu, rig_imus, simulate_imu, simulate_imus
 from ._mesh import Mesh, from_open3d, from_trimesh
 from ._object import SceneObject
+from ._object_box import ObjectBox
 from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
 from ._scene import Scene, load_scene, surface_names
@@ -46,6 +47,7 @@ __all__ = [
     "Imu",
     "ImuSamples",
     "Mesh",
+    "ObjectBox",
     "RigImu",
     "RigSensor",
     "SceneObject",

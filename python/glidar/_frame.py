@@ -18,6 +18,7 @@ from ._cloud import Cloud
 from ._errors import Error, shown
 from ._fisher_information import FisherInformation
 from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole
+from ._object_box import ObjectBox, boxes_of
 from ._origin import Origin
 from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, set_picture, show_images
 from ._state import Immutable, key_of, part, restoring, make_state
@@ -260,11 +261,28 @@ class Frame(Immutable):
         options.set_layout(layout or "")
         options.set_depth_units_per_m(scale)
         set_picture(options, colour_by, picture_size, view_eye, view_target)
-        self._with_scene().save(target, options, log)
+        core = self._with_scene()
+        if core.needs_boxes(target, options):
+            core = self._with_renderer()
+        core.save(target, options, log)
 
     def write_to(self, bag: _core.BagWriter) -> None:
         """Adds it to a bag; see ``save_bag``."""
-        bag.add(self._with_scene())
+        core = self._with_scene()
+        bag.add(self._with_renderer() if _core.lacks_boxes(core) else core)
+
+    def boxes(self, *, frame: str = "sensor", unlabelled: bool = False) -> list[ObjectBox]:
+        """3D bounding boxes of the objects that have a class, when the frame starts, in the order of ``Scene.objects``,
+        with the number of points and the occlusion (docs/boxes.md). The first call casts beams into each object alone.
+
+        Args:
+            frame: coordinate frame, as for ``cloud``.
+            unlabelled: whether objects without a class have boxes too.
+
+        Raises:
+            Error: an unknown coordinate frame.
+        """
+        return boxes_of(self._with_renderer(), frame, unlabelled)
 
     def bird_eye(
         self, *, colour_by: str = "height", size: tuple[int, int] = (1400, 1000), frame: str = "sensor"

@@ -21,7 +21,7 @@ void refuse_inputs(const Measured& m, const std::filesystem::path& path) {
   refuse_overwrite_of_inputs(m.sensor->sensor().files, path);
 }
 
-void add_frame(BagWriter& bag, const Measured& frame) {
+void add_frame(BagWriter& bag, Measured& frame) {
   unlocked([&](Watch& /*watch*/) { bag.add(frame); });
 }
 
@@ -34,7 +34,8 @@ void finish_bag(BagWriter& bag) {
 BagWriter::BagWriter(std::filesystem::path path, FrameBagOptions options)
     : path_(std::move(path)), options_(std::move(options)) {}
 
-void BagWriter::add(const Measured& measured) {
+void BagWriter::add(Measured& measured) {
+  if (lacks_boxes(measured)) ensure_boxes(measured);
   if (!bag_) {
     refuse_inputs(measured, path_);
     sensor_ = measured.sensor;
@@ -45,7 +46,7 @@ void BagWriter::add(const Measured& measured) {
     bag_ = std::make_unique<FrameBag>(path_, *measured.scene().scene, sensor_->sensor(), *beams_,
                                       options_);
   }
-  if (measured.beams->size() != beams_->size() ||
+  if (measured.beams->rows != beams_->rows ||
       measured.sensor->sensor().name != sensor_->sensor().name) {
     throw Error({"bag " + path_.string(), "a frame of another sensor", "frames of one sensor",
                  "write a bag for each sensor"});
@@ -61,6 +62,7 @@ void BagWriter::finish() {
 
 void bind_bag(nb::module_& module) {
   module.def("is_bag_name", is_frame_bag_name, nb::arg("path"));
+  module.def("lacks_boxes", lacks_boxes, nb::arg("frame"));
   nb::class_<BagWriter>(module, "BagWriter")
       .def(
           "__init__",

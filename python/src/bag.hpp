@@ -15,8 +15,8 @@ namespace glidar::python {
 class BagWriter {
  public:
   BagWriter(std::filesystem::path path, FrameBagOptions options);
-  /// Throws Error when the frame is of another sensor.
-  void add(const Measured& measured);
+  /// Throws Error when the frame is of another sensor. It needs the renderer if it lacks_boxes().
+  void add(Measured& measured);
   void finish();
 
  private:

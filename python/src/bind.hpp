@@ -18,6 +18,7 @@ void bind_scene_state(nb::module_& module);
 void bind_trajectory_state(nb::module_& module);
 void bind_frame(nb::module_& module);
 void bind_bag(nb::module_& module);
+void bind_boxes(nb::module_& module);
 void bind_frame_state(nb::module_& module);
 void bind_simulator(nb::module_& module);
 void bind_point_trace(nb::module_& module);

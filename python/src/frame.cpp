@@ -132,7 +132,12 @@ struct SaveOptions {
   FileSinkOptions sink;
 };
 
-void save_to(const Measured& m, const std::filesystem::path& path, const SaveOptions& options,
+/// Whether boxes of objects are to be found before the file is written.
+bool needs_boxes(const Measured& m, const std::filesystem::path& path, const SaveOptions& options) {
+  return has_boxes(format_for(path), options.sink) && lacks_boxes(m);
+}
+
+void save_to(Measured& m, const std::filesystem::path& path, const SaveOptions& options,
              const Report& report) {
   std::vector<std::string> inputs = m.scene().files;
   const std::vector<std::string>& more = m.sensor->sensor().files;
@@ -146,6 +151,7 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
   for (const std::string& name : needed_columns(format)) {
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
   }
+  if (needs_boxes(m, path, options)) ensure_boxes(m);
   const auto sink = make_file_sink(path, options.sink,
                                    {.scene = *m.scene().scene,
                                     .sensor = m.sensor->sensor(),
@@ -156,7 +162,7 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
   sink->write(make_cloud(m, columns, options.frame, options.deskew), m.frame);
 }
 
-void save(const Measured& measured, const std::filesystem::path& path, SaveOptions options,
+void save(Measured& measured, const std::filesystem::path& path, SaveOptions options,
           const nb::object& log) {
   unlocked([&](Watch& watch) {
     options.sink.progress = watch.progress();
@@ -341,6 +347,8 @@ void bind_frame(nb::module_& module) {
       .def("picture", beam_picture, nb::arg("number_of_return"))
       .def("cloud", cloud_of, nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
            nb::arg("drop_invalid"))
+      .def("needs_boxes", needs_boxes, nb::arg("path"), nb::arg("options"),
+           nb::sig("def needs_boxes(self, path: str, options: SaveOptions) -> bool"))
       .def("save", save, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
            nb::sig("def save(self, path: str, options: SaveOptions, log: object | None) -> None"));
 }

@@ -4,6 +4,7 @@
 
 #include "scene.hpp"
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -48,6 +49,14 @@ struct Measured {
   std::shared_ptr<SensorHandle> sensor;
   std::shared_ptr<const Beams> beams;
   std::shared_ptr<const Motion> motion;
+  std::atomic<bool> has_boxes =
+      false;  ///< frame.boxes are found; changed with the turn of `prepared`
 };
+
+/// Whether there are objects whose boxes are not found yet.
+bool lacks_boxes(const Measured& measured);
+
+/// Finds frame.boxes, unless that is done. Needs the renderer; without Python's lock.
+void ensure_boxes(Measured& measured);
 
 }  // namespace glidar::python

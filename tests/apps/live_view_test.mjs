@@ -79,13 +79,19 @@ function points({ message }) {
 async function streamsARig() {
   const { port, program, ended } = await start("stream", "rig.yaml", "--rate", "10", "--foxglove", "0");
   const { client, messages, of } = connect(port);
-  const topics = ["/lidar/points", "/lidar/range/image_raw", "/lidar/intensity/image_raw", "/camera/points", "/camera/depth/image_raw", "/camera/depth/camera_info", "/camera/intensity/image_raw", "/imu/data", "/tf", "/tf_static", "/odom", "/clock"];
+  const topics = ["/lidar/points", "/lidar/boxes", "/camera/boxes", "/lidar/range/image_raw", "/lidar/intensity/image_raw", "/camera/points", "/camera/depth/image_raw", "/camera/depth/camera_info", "/camera/intensity/image_raw", "/imu/data", "/tf", "/tf_static", "/odom", "/clock"];
   await waitUntil(() => topics.every((topic) => of(topic).length > 0), "messages of all topics");
   assert.deepEqual([...messages.keys()].sort(), topics.sort());
   const cloud = of("/lidar/points")[0];
   const all = points(cloud);
   assert.deepEqual(Object.keys(all[0]), ["x", "y", "z", "intensity", "ring", "time", "range", "true_range", "instance", "class"]);
   assert.ok(all.length > 100 && all.every(({ range, true_range: truth }) => Math.abs(range - truth) < 0.3));
+  const [box, ...others] = of("/lidar/boxes")[0].message.markers;
+  assert.deepEqual([others.length, box.ns, box.id, box.type, box.header.frame_id], [0, "crate", 1, 1, "lidar"]);
+  assert.deepEqual([box.scale.x, box.pose.position.x, box.pose.position.z], [1, 4, -0.5]);
+  const known = JSON.parse(box.text);
+  assert.deepEqual([known.class, known.points, known.occlusion], ["crate", all.length, 0]);
+  assert.ok(known.beams > 100);
   const { width, height, encoding, data } = of("/lidar/range/image_raw")[0].message;
   assert.deepEqual([height, encoding, data.length], [16, "32FC1", 4 * 16 * width]);
   assert.deepEqual([of("/camera/depth/image_raw")[0].message.width, of("/camera/depth/camera_info")[0].message.width], [32, 32]);

@@ -83,7 +83,7 @@ def test_every_box_fits_the_points_of_its_instance(folder):
             gap = np.minimum(np.abs(own.min(0) - low), np.abs(high - own.max(0)))
             assert min(gap[0], gap[2]) < ROUNDING_M
         assert {"parked_car", "rock"} >= {box["type"]}
-        assert box["occluded"] == 3
+        assert box["occluded"] in (0, 1, 2)
 
 
 def test_boxes_fit_the_meshes_and_their_images(folder):

@@ -13,9 +13,10 @@ from doc_blocks import ROOT, link_inputs, run_page
 import glidar
 
 NAME = "tests/python/pages_test.py"
+PAGES = ["docs/tutorial/3-data-set.md", "docs/cookbook.md", "docs/boxes.md", "docs/files/kitti.md", "docs/files/nuscenes.md"]
 
 
-@pytest.mark.parametrize("page", ["docs/tutorial/3-data-set.md", "docs/cookbook.md"])
+@pytest.mark.parametrize("page", PAGES)
 def test_the_code_blocks_of_a_page_run(page, tmp_path):
     link_inputs(tmp_path)
     run_page(page, NAME, tmp_path)

@@ -33,6 +33,7 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --duration 1 -o scans.mcap -o scans.pcap
+  glidar render examples/drive.yaml --duration 2 -o drive.kitti
   glidar render builtin:box -o - --format csv
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --legacy-output view
 With your own files:
@@ -72,19 +73,34 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
   fmt::print(to, "\n");
 }
 
-/// Writes a frame and prints the summary.
+/// Where results are printed; nullptr: nowhere.
+std::FILE* result_stream(const RenderFlags& flags) {
+  if (flags.quiet) return nullptr;
+  return writes_standard_output(flags.output) ? stderr : stdout;
+}
+
+/// Writes the files of a frame and prints the summary.
 void write(const RenderFlags& flags, const View& view, const std::vector<Output>& outputs,
            Console& console) {
+  if (outputs.empty()) return;
   {
     const ProgressScope progress(console, "writing");
     write_outputs(outputs, view.frame, view.beams, view.scene, console.report());
   }
-  std::FILE* to = writes_standard_output(flags.output) ? stderr : stdout;
-  if (flags.quiet) to = nullptr;
+  std::FILE* to = result_stream(flags);
   if (to != nullptr) print_summary(view, outputs, to);
-  std::optional<std::uint32_t> number;
-  if (flags.duration_s) number = view.frame.number;
-  write_fisher(flags.fisher, view.frame, view.beams, outputs, number, to);
+}
+
+/// The output beside which the Fisher information of a frame is: its first file, else the first
+/// recording.
+std::filesystem::path fisher_neighbour(const RenderFlags& flags, const ActiveSensor& active,
+                                       const std::vector<Output>& outputs) {
+  if (!outputs.empty()) return outputs.front().path;
+  std::filesystem::path path = flags.output.recording_paths.front();
+  if (!path.has_filename()) path = path.parent_path();
+  const std::string label = label_of(flags, active);
+  const std::string stem = path.stem().string() + (label.empty() ? "" : "_" + label);
+  return path.replace_filename(stem + path.extension().string());
 }
 
 /// A run of `render`.
@@ -102,7 +118,7 @@ HitColumnMask needed_hit_columns(const Job& job, std::size_t sensor_index,
   HitColumnMask hit_columns = hit_columns_for_outputs(outputs);
   hit_columns.normal = hit_columns.normal || job.flags.fisher.is_requested;
   for (const auto& recording : job.recordings) {
-    hit_columns = hit_columns | hit_columns_for(recording->columns(sensor_index));
+    hit_columns = hit_columns | recording->hit_columns(sensor_index);
   }
   return hit_columns;
 }
@@ -150,7 +166,7 @@ void finish_recordings(Job& job) {
       names += " " + file.string();
     }
     if (job.flags.quiet) continue;
-    fmt::print(writes_standard_output(job.flags.output) ? stderr : stdout, "wrote{}\n", names);
+    fmt::print(result_stream(job.flags), "wrote{}\n", names);
   }
 }
 
@@ -187,7 +203,13 @@ void measure_and_write(Job& job, const SensorFrame& which, Console& console,
   measure(active, needed_hit_columns(job, which.sensor_index, outputs), console, measured.frame);
   if (which.number == 0) print_advice(view_advice(view), console);
   record(job, measured, console);
-  if (!outputs.empty()) write(flags, view, outputs, console);
+  write(flags, view, outputs, console);
+  if (flags.fisher.is_requested) {
+    std::optional<std::uint32_t> number;
+    if (flags.duration_s) number = which.number;
+    write_fisher(flags.fisher, measured.frame, *measured.beams,
+                 fisher_neighbour(flags, active, outputs), number, result_stream(flags));
+  }
   for (const Output& output : outputs) job.written.push_back(output.path);
 }
 

@@ -8,6 +8,7 @@
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/imu_samples_file.hpp>
+#include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/osi/osi_trace.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
 
@@ -61,8 +62,8 @@ std::vector<std::string> stream_formats() {
 /// The list for an output of this name.
 std::vector<std::string>& paths_for(const std::string& path, OutputFlags& flags) {
   if (is_imu_samples_path(path)) return flags.imu_paths;
-  const bool is_recording =
-      bags::is_bag_name(path) || is_capture_name(path) || osi::is_osi_trace_name(path);
+  const bool is_recording = bags::is_bag_name(path) || is_capture_name(path) ||
+                            osi::is_osi_trace_name(path) || is_kitti_name(path);
   return is_recording ? flags.recording_paths : flags.paths;
 }
 

@@ -18,7 +18,7 @@ namespace glidar::app {
 struct OutputFlags {
   std::vector<std::string> paths;            ///< "-": standard output
   std::vector<std::string> imu_paths;        ///< of IMU samples
-  std::vector<std::string> recording_paths;  ///< bags, OSI traces, packet captures
+  std::vector<std::string> recording_paths;  ///< bags, OSI traces, packet captures, KITTI
   std::string format;                ///< of standard output, without the dot; empty: not given
   std::string legacy_name;           ///< --legacy-output NAME; empty: not given
   std::vector<std::string> columns;  ///< of clouds; empty: default_columns()

@@ -15,8 +15,8 @@ class BagSink final : public FrameSink {
         bag_(bags::create_bag(path)),
         publisher_(make_rig_publisher(*bag_, flags, prepared, origin)) {}
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override {
-    return publisher_->columns(sensor_index);
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override {
+    return publisher_->hit_columns(sensor_index);
   }
   void write(const MeasuredFrame& measured) override {
     publisher_->publish(measured.sensor_index, measured.frame, *measured.beams);

@@ -3,7 +3,9 @@
 #include <apps/glidar/run/fisher_output.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/fisher_information_file.hpp>
+#include <glidar/io/packets/packet_writer.hpp>
 
 #include <fmt/format.h>
 
@@ -19,20 +21,21 @@ void check_fisher(const RenderFlags& flags) {
 std::filesystem::path fisher_path(const std::filesystem::path& output,
                                   std::optional<std::uint32_t> frame) {
   const std::string name = output.string();
-  const FileFormat& format = format_for(output);
-  const bool is_numbered = frame && format.is_folder;  // the names of other formats have the number
-  return name.substr(0, name.size() - format.suffix.size()) +
+  const bool is_recording = bags::is_bag_name(output) || is_capture_name(output);
+  const std::string suffix = is_recording ? output.extension().string() : format_for(output).suffix;
+  // the names of files of one frame have the number
+  const bool is_numbered = frame && (is_recording || format_for(output).is_folder);
+  return name.substr(0, name.size() - suffix.size()) +
          (is_numbered ? fmt::format("_{:06}", *frame) : "") + ".fisher.json";
 }
 
 void write_fisher(const FisherFlags& flags, const Frame& frame, const Beams& beams,
-                  const std::vector<Output>& outputs, std::optional<std::uint32_t> number,
+                  const std::filesystem::path& output, std::optional<std::uint32_t> number,
                   std::FILE* to) {
-  if (!flags.is_requested) return;
   FisherOptions options;
   options.sigma_m = flags.sigma_m.value_or(options.sigma_m);
   const FisherInformation information = pose_information(frame, beams, options);
-  const std::filesystem::path path = fisher_path(outputs.front().path, number);
+  const std::filesystem::path path = fisher_path(output, number);
   write_information(information, path);
   if (to != nullptr) fmt::print(to, "{}wrote {}\n", information_text(information), path.string());
 }

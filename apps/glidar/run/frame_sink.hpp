@@ -23,8 +23,8 @@ class FrameSink {
   FrameSink& operator=(const FrameSink&) = delete;
   virtual ~FrameSink() = default;
 
-  /// The cloud columns that it reads of a sensor's frames.
-  [[nodiscard]] virtual std::vector<std::string> columns(std::size_t sensor_index) const = 0;
+  /// The ground truth that it reads of a sensor's frames.
+  [[nodiscard]] virtual HitColumnMask hit_columns(std::size_t sensor_index) const = 0;
   /// Takes a frame, in the order of time. Throws Error.
   virtual void write(const MeasuredFrame& measured) = 0;
   /// Called often, also between frames.

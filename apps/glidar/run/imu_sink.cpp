@@ -17,7 +17,7 @@ class ImuSink final : public FrameSink {
   ImuSink(const RenderFlags& flags, const PreparedScene& prepared, Console& console)
       : flags_(flags), prepared_(prepared), console_(console) {}
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t /*sensor_index*/) const override {
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t /*sensor_index*/) const override {
     return {};
   }
   void write(const MeasuredFrame& measured) override {

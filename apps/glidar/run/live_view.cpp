@@ -42,8 +42,8 @@ std::string LiveView::url() const {
   return fmt::format("http://{}:{}/", is_here ? "localhost" : host_, server_->port());
 }
 
-std::vector<std::string> LiveView::columns(std::size_t sensor_index) const {
-  return publisher_->columns(sensor_index);
+HitColumnMask LiveView::hit_columns(std::size_t sensor_index) const {
+  return publisher_->hit_columns(sensor_index);
 }
 
 void LiveView::write(const MeasuredFrame& measured) {

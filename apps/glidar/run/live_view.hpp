@@ -30,7 +30,7 @@ class LiveView final : public FrameSink {
   /// The address for a browser on this machine.
   [[nodiscard]] std::string url() const;
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override;
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override;
   void write(const MeasuredFrame& measured) override;
   /// Shows the state of the playback when it changes.
   void serve() override;

@@ -24,12 +24,8 @@ void NumberedFiles::begin(std::vector<std::string> reserved) {
   files_ = outputs_by_sensor(flags_.render, prepared_, console_);
 }
 
-std::vector<std::string> NumberedFiles::columns(std::size_t /*sensor_index*/) const {
-  std::vector<std::string> columns;
-  for (const Output& output : first_) {
-    columns.insert(columns.end(), output.columns.begin(), output.columns.end());
-  }
-  return columns;
+HitColumnMask NumberedFiles::hit_columns(std::size_t /*sensor_index*/) const {
+  return hit_columns_for_outputs(first_);
 }
 
 std::vector<Output> NumberedFiles::plan(const OutputFlags& files, const ActiveSensor& active,

@@ -22,7 +22,7 @@ class NumberedFiles final : public FrameSink {
   /// Call when the scene is prepared. `reserved`: files that no output may replace.
   void begin(std::vector<std::string> reserved);
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override;
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override;
   void write(const MeasuredFrame& measured) override;
   void finish() override {}
 

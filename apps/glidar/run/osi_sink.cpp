@@ -22,8 +22,8 @@ class OsiSink final : public FrameSink {
  public:
   OsiSink(const std::string& path, osi::OsiRig rig) : path_(path), trace_(path, std::move(rig)) {}
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t /*sensor_index*/) const override {
-    return osi::OsiTraceWriter::columns();
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t /*sensor_index*/) const override {
+    return hit_columns_for(osi::OsiTraceWriter::columns());
   }
   void write(const MeasuredFrame& measured) override {
     trace_.write(measured.sensor_index, measured.frame, *measured.beams);

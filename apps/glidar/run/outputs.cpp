@@ -100,6 +100,7 @@ Output plan_output(const std::string& path, const OutputFlags& flags,
                 .columns = columns_of(format, requested_columns(flags)),
                 .frame_name = flags.frame,
                 .deskew = flags.deskew,
+                .has_boxes = path != kStandardOutput && has_boxes(format, options),
                 .sink = nullptr};
   if (path == kStandardOutput) {
     refuse_terminal(format, options);
@@ -215,7 +216,10 @@ HitColumnMask hit_columns_for_outputs(const std::vector<Output>& outputs) {
   for (const Output& output : outputs) {
     for (const std::string& name : output.columns) add_missing(name, columns);
   }
-  return hit_columns_for(columns);
+  HitColumnMask hit_columns = hit_columns_for(columns);
+  hit_columns.boxes = std::any_of(outputs.begin(), outputs.end(),
+                                  [](const Output& output) { return output.has_boxes; });
+  return hit_columns;
 }
 
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,

@@ -29,6 +29,7 @@ struct Output {
   std::vector<std::string> columns;
   std::string frame_name;  ///< optical, ros, gl, world or legacy
   bool deskew = false;     ///< points as fired from where the sensor was
+  bool has_boxes = false;  ///< of the objects, in the file or its sidecar
   std::unique_ptr<FileSink> sink;
 };
 

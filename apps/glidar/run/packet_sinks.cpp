@@ -20,8 +20,8 @@ class CaptureSink final : public FrameSink {
               const ros::PublishedPackets& setup)
       : sensor_index_(sensor_index), writer_(path, sensor, setup.options, setup.imu_samples) {}
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override {
-    return sensor_index == sensor_index_ ? packet_columns() : std::vector<std::string>{};
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override {
+    return sensor_index == sensor_index_ ? hit_columns_for(packet_columns()) : HitColumnMask{};
   }
   void write(const MeasuredFrame& measured) override {
     if (measured.sensor_index == sensor_index_) writer_.write(measured.frame, *measured.beams);

@@ -4,10 +4,12 @@
 
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/bag_sink.hpp>
+#include <apps/glidar/run/kitti_sink.hpp>
 #include <apps/glidar/run/osi_sink.hpp>
 #include <apps/glidar/run/packet_sinks.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/osi/osi_trace.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
 
@@ -26,7 +28,10 @@ void check_names(const std::vector<std::string>& paths) {
 }
 
 std::unique_ptr<FrameSink> make_recording_sink(const std::string& path, const RenderFlags& flags,
-                                               const PreparedScene& prepared, PoseOrigin origin) {
+                                               const PreparedScene& prepared,
+                                               const std::vector<std::string>& read,
+                                               PoseOrigin origin) {
+  if (is_kitti_name(path)) return make_kitti_sink(path, flags, prepared, read);
   if (is_capture_name(path)) return make_capture_sink(path, flags, prepared, origin);
   if (osi::is_osi_trace_name(path)) return make_osi_sink(path, prepared, origin);
   return make_bag_sink(path, flags, prepared, origin);
@@ -43,7 +48,7 @@ std::vector<std::unique_ptr<FrameSink>> make_recording_sinks(const RenderFlags& 
     check_names(flags.output.recording_paths);
     for (const std::string& path : flags.output.recording_paths) {
       refuse_overwrite_of_inputs(read, path);
-      sinks.push_back(make_recording_sink(path, flags, prepared, origin));
+      sinks.push_back(make_recording_sink(path, flags, prepared, read, origin));
     }
   });
   return sinks;

@@ -23,8 +23,8 @@ Ros2Sink::Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2,
       publisher_(make_rig_publisher(topics_, flags, prepared, origin)),
       speed_(speed) {}
 
-std::vector<std::string> Ros2Sink::columns(std::size_t sensor_index) const {
-  return publisher_->columns(sensor_index);
+HitColumnMask Ros2Sink::hit_columns(std::size_t sensor_index) const {
+  return publisher_->hit_columns(sensor_index);
 }
 
 void Ros2Sink::write(const MeasuredFrame& measured) {

@@ -24,7 +24,7 @@ class Ros2Sink final : public FrameSink {
   Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2, const RenderFlags& flags,
            const PreparedScene& prepared, PoseOrigin origin, double speed);
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override;
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override;
   void write(const MeasuredFrame& measured) override;
   /// Publishes poses and samples of IMUs at their times.
   void serve() override;

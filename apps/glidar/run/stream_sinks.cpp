@@ -51,7 +51,7 @@ HitColumnMask needed_hit_columns(const std::vector<std::unique_ptr<FrameSink>>& 
   HitColumnMask needed;
   for (const auto& sink : sinks) {
     for (std::size_t i = 0; i < sensor_count; ++i) {
-      needed = needed | hit_columns_for(sink->columns(i));
+      needed = needed | sink->hit_columns(i);
     }
   }
   return needed;

@@ -36,8 +36,8 @@ class UdpSink final : public FrameSink {
   }
   [[nodiscard]] link::PacketSender& sender() { return *sender_; }
 
-  [[nodiscard]] std::vector<std::string> columns(std::size_t sensor_index) const override {
-    return sensor_index == sensor_index_ ? packet_columns() : std::vector<std::string>{};
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override {
+    return sensor_index == sensor_index_ ? hit_columns_for(packet_columns()) : HitColumnMask{};
   }
   void write(const MeasuredFrame& measured) override {
     if (measured.sensor_index != sensor_index_) return;

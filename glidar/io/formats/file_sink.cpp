@@ -150,7 +150,7 @@ class FormatSink : public FileSink {
 
  private:
   [[nodiscard]] bool has_sidecar() const {
-    return options_.sidecar && format_.content != Content::per_beam && !format_.info.is_folder;
+    return options_.sidecar && glidar::has_sidecar(format_);
   }
   [[nodiscard]] std::filesystem::path sidecar_path() const {
     return target_.path.string() + ".json";

@@ -77,6 +77,7 @@ struct FileFormat {
   /// instance and class for labels).
   std::vector<std::string> optional_columns = {};
   bool reads_framebuffer = false;  ///< requires Frame::framebuffer
+  bool reads_boxes = false;        ///< requires Frame::boxes
   std::string missing = {};  ///< library without which this build cannot write it; empty: it can
 };
 
@@ -102,6 +103,9 @@ std::vector<std::string> needed_columns(const FileFormat& format);
 
 /// True for formats that are plain text with these options and thus readable on a terminal.
 bool is_text(const FileFormat& format, const FileSinkOptions& options);
+
+/// True for formats that store boxes of objects with these options, themselves or in a sidecar.
+bool has_boxes(const FileFormat& format, const FileSinkOptions& options);
 
 /// Why a sensor of a rig has no output of a format.
 struct Misfit {

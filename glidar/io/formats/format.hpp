@@ -40,4 +40,9 @@ struct Format {
   Misfit (*misfit)(const CloudPictureOptions&, const Sensor&, const Beams&) = nullptr;
 };
 
+/// Whether files of the format have a sidecar, unless the options forbid it.
+inline bool has_sidecar(const Format& format) {
+  return format.content != Content::per_beam && !format.info.is_folder;
+}
+
 }  // namespace glidar

@@ -130,6 +130,10 @@ bool is_text(const FileFormat& format, const FileSinkOptions& options) {
   return entry.is_text != nullptr && entry.is_text(options);
 }
 
+bool has_boxes(const FileFormat& format, const FileSinkOptions& options) {
+  return format.reads_boxes || (options.sidecar && has_sidecar(entry_of(format)));
+}
+
 Misfit find_misfit(const FileFormat& format, const CloudPictureOptions& picture,
                    const Sensor& sensor, const Beams& beams) {
   const Format& entry = entry_of(format);

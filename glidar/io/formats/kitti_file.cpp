@@ -3,12 +3,12 @@
 #include <glidar/io/formats/kitti_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/object_box.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -57,11 +57,6 @@ PointCloud kitti_cloud(const PointCloud& cloud, const Sensor& sensor, const Beam
 
 void write_kitti(const CloudFile& job, AtomicFile& file) {
   write_binary_rows(job.fields, job.cloud.size(), file, job.options.progress);
-}
-
-bool has_classes(const Scene& scene) {
-  return std::any_of(scene.instances.begin(), scene.instances.end(),
-                     [](const Instance& instance) { return instance.class_id != 0; });
 }
 
 void write_kitti_labels(const CloudFile& job, AtomicFile& file) {

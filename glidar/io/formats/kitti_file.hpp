@@ -25,9 +25,6 @@ std::vector<PointField> kitti_fields(const PointCloud& cloud);
 /// kitti_cloud().
 void write_kitti(const CloudFile& job, AtomicFile& file);
 
-/// True when an instance of the scene has a class.
-bool has_classes(const Scene& scene);
-
 /// Writes a little-endian uint32 for each point, class in the lower 16 bits, instance in the upper.
 /// Throws Error for ids beyond 16 bits.
 void write_kitti_labels(const CloudFile& job, AtomicFile& file);

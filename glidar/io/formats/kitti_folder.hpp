@@ -3,29 +3,38 @@
 #pragma once
 
 // Private to glidar/io: folders of KITTI's 3D object benchmark (Geiger et al. 2012; formats in the
-// readme of its object development kit).
+// readme of its object development kit), which are also sequences of SemanticKITTI (Behley et al.
+// 2019).
 
 #include <glidar/io/formats/format.hpp>
+#include <glidar/io/formats/kitti_labels.hpp>
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace glidar {
 
-/// Adds one frame to a folder: velodyne/NNNNNN.bin, calib/NNNNNN.txt, label_2/NNNNNN.txt, and
-/// labels/NNNNNN.label for scenes with classes; NNNNNN is the frame's number. Throws Error.
-void stage_kitti_folder(const CloudFile& job, const std::filesystem::path& folder,
-                        StagedFiles& files);
+/// The scan of a frame.
+struct KittiScan {
+  const CloudFile& velodyne;  ///< a kitti_cloud() in the sensor's frame, without misses
+  std::uint32_t number = 0;
+  std::span<const KittiCamera> cameras;  ///< one or two
+};
 
-/// The text of a file in calib/. The camera is the sensor if it is a camera, else one like KITTI's
-/// left colour camera at the LiDAR's origin. Both are rectified, and there is no IMU. The Velodyne
-/// frame is the sensor's own.
-std::string kitti_calibration(const Sensor& sensor);
+/// Six digits, as files of a frame are named.
+std::string kitti_number(std::uint32_t number);
 
-/// The text of a file in label_2/: a line for each visible instance, with its box in the
-/// camera's frame; DontCare for those without a class.
-std::string kitti_labels(const Scene& scene, const Sensor& sensor, const Frame& frame);
+/// Adds one scan to a folder: velodyne/NNNNNN.bin, calib/NNNNNN.txt, label_2/NNNNNN.txt, and
+/// labels/NNNNNN.label for scenes with classes. Throws Error.
+void stage_kitti_scan(const KittiScan& scan, const std::filesystem::path& folder,
+                      StagedFiles& files);
 
+/// Adds a whole text file.
+void stage_text(const std::filesystem::path& path, const std::string& text, StagedFiles& files);
+
+/// A folder for frames that are written one by one; NNNNNN is the frame's number.
 Format kitti_folder_format();
 
 }  // namespace glidar

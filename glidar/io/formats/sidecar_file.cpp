@@ -8,6 +8,7 @@
 #include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/json_numbers.hpp>
 #include <glidar/io/config/sensor_keys.hpp>
+#include <glidar/io/formats/box_json.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
 
@@ -126,6 +127,19 @@ Json instances_json(const CloudFile& job) {
   return instances;
 }
 
+/// In the coordinate frame of the cloud.
+Json boxes_json(const CloudFile& job) {
+  const Pose& world_from_sensor = job.frame.world_from_sensor;
+  const bool is_own = job.cloud.world_from_cloud.matrix() == world_from_sensor.matrix();
+  const Pose cloud_from_sensor =
+      is_own ? Pose::Identity() : job.cloud.world_from_cloud.inverse() * world_from_sensor;
+  Json boxes = Json::array();
+  for (const ObjectBox& box : job.frame.boxes) {
+    boxes.push_back(box_json(job.context.scene, box, cloud_from_sensor));
+  }
+  return boxes;
+}
+
 Json status_json(const Frame& frame) {
   // Neighbours mostly have the same status: separate counters avoid dependencies between
   // consecutive increments.
@@ -190,6 +204,7 @@ std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path
               {"cloud", cloud_json(job, path)},
               {"sensor", sensor_json(job)},
               {"instances", instances_json(job)},
+              {"boxes", boxes_json(job)},
               {"beams_by_status", status_json(job.frame)}};
   remove_negative_zeros(all);
   std::string text;

@@ -19,8 +19,13 @@ namespace {
 constexpr std::uint32_t kMaxGrey = std::numeric_limits<std::uint16_t>::max();
 
 template <class T>
+const std::vector<T>& field_values(const PointCloud& cloud, const char* column) {
+  return std::get<std::vector<T>>(find_column(cloud, column)->values);
+}
+
+template <class T>
 const std::vector<T>& field_values(const CloudFile& job, const char* column) {
-  return std::get<std::vector<T>>(find_column(job.cloud, column)->values);
+  return field_values<T>(job.cloud, column);
 }
 
 template <class T>
@@ -46,17 +51,8 @@ std::vector<Grey> greys_of(const std::vector<std::uint32_t>& ids) {
   return greys;
 }
 
-/// 8-bit RGB: the surface's colour times the cosine of incidence, as lit by a light at the sensor
-/// without attenuation.
 void write_rgb_png(const CloudFile& job, AtomicFile& file) {
-  const auto& colours = field_values<float>(job, "colour");
-  const auto& incidences = field_values<float>(job, "incidence");
-  std::vector<std::uint8_t> pixels(colours.size());
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double light = std::cos(double{incidences[i / 3]});  // NaN for no surface
-    pixels[i] = std::isnan(light) ? 0 : scaled<std::uint8_t>(colours[i] * light, 255.0);
-  }
-  write_pixels(job, PngKind::rgb8, pixels, file);
+  write_pixels(job, PngKind::rgb8, rgb_pixels(job.cloud), file);
 }
 
 /// 16-bit RGB: the triangle's unit normal in the cloud's frame, n = 2 v / 65535 - 1.
@@ -101,6 +97,17 @@ void write_class_png(const CloudFile& job, AtomicFile& file) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> rgb_pixels(const PointCloud& cloud) {
+  const auto& colours = field_values<float>(cloud, "colour");
+  const auto& incidences = field_values<float>(cloud, "incidence");
+  std::vector<std::uint8_t> pixels(colours.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double light = std::cos(double{incidences[i / 3]});  // NaN for no surface
+    pixels[i] = std::isnan(light) ? 0 : scaled<std::uint8_t>(colours[i] * light, 255.0);
+  }
+  return pixels;
+}
 
 Format rgb_png_format() {
   return {.info = {.suffix = ".rgb.png",

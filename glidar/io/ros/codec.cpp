@@ -86,6 +86,11 @@ class MemberWriter {
   }
 
   template <class Member>
+  void write(const Ros2Only<Member>& member) {
+    if (wire_ == Wire::cdr) write(member.value);
+  }
+
+  template <class Member>
   requires std::is_class_v<Member>
   void write(const Member& member) { visit_members(member, *this); }
 
@@ -200,6 +205,11 @@ class MemberReader {
   }
 
   template <class Member>
+  void read(Ros2Only<Member>& member) {
+    if (wire_ == Wire::cdr) read(member.value);
+  }
+
+  template <class Member>
   requires std::is_class_v<Member>
   void read(Member& member) { visit_members(member, *this); }
 
@@ -299,6 +309,7 @@ GLIDAR_ROS_CODEC(CustomMsg)
 GLIDAR_ROS_CODEC(VelodyneScan)
 GLIDAR_ROS_CODEC(PacketMsg)
 GLIDAR_ROS_CODEC(String)
+GLIDAR_ROS_CODEC(MarkerArray)
 
 #undef GLIDAR_ROS_CODEC
 

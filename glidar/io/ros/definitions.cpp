@@ -15,7 +15,7 @@ struct Definition {
   std::string_view ros1_fields = {};  ///< where they differ
 };
 
-constexpr std::array<Definition, 29> kDefinitions = {{
+constexpr std::array<Definition, 35> kDefinitions = {{
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n",
      "uint32 seq\ntime stamp\nstring frame_id\n"},
@@ -77,6 +77,56 @@ constexpr std::array<Definition, 29> kDefinitions = {{
      "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n"},
     {"ouster_ros/PacketMsg", "uint8[] buf\n"},
     {"std_msgs/String", "string data\n"},
+    {"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
+    {"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
+    {"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
+    {"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
+    {"visualization_msgs/Marker",
+     "int32 ARROW=0\n"
+     "int32 CUBE=1\n"
+     "int32 SPHERE=2\n"
+     "int32 CYLINDER=3\n"
+     "int32 LINE_STRIP=4\n"
+     "int32 LINE_LIST=5\n"
+     "int32 CUBE_LIST=6\n"
+     "int32 SPHERE_LIST=7\n"
+     "int32 POINTS=8\n"
+     "int32 TEXT_VIEW_FACING=9\n"
+     "int32 MESH_RESOURCE=10\n"
+     "int32 TRIANGLE_LIST=11\n"
+     "int32 ADD=0\n"
+     "int32 MODIFY=0\n"
+     "int32 DELETE=2\n"
+     "int32 DELETEALL=3\n"
+     "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
+     "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
+     "builtin_interfaces/Duration lifetime\nbool frame_locked\n"
+     "geometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\nstring texture_resource\n"
+     "sensor_msgs/CompressedImage texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\n"
+     "string text\nstring mesh_resource\nvisualization_msgs/MeshFile mesh_file\n"
+     "bool mesh_use_embedded_materials\n",
+     "uint8 ARROW=0\n"
+     "uint8 CUBE=1\n"
+     "uint8 SPHERE=2\n"
+     "uint8 CYLINDER=3\n"
+     "uint8 LINE_STRIP=4\n"
+     "uint8 LINE_LIST=5\n"
+     "uint8 CUBE_LIST=6\n"
+     "uint8 SPHERE_LIST=7\n"
+     "uint8 POINTS=8\n"
+     "uint8 TEXT_VIEW_FACING=9\n"
+     "uint8 MESH_RESOURCE=10\n"
+     "uint8 TRIANGLE_LIST=11\n"
+     "uint8 ADD=0\n"
+     "uint8 MODIFY=0\n"
+     "uint8 DELETE=2\n"
+     "uint8 DELETEALL=3\n"
+     "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
+     "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
+     "duration lifetime\nbool frame_locked\n"
+     "geometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\n"
+     "string text\nstring mesh_resource\nbool mesh_use_embedded_materials\n"},
+    {"visualization_msgs/MarkerArray", "visualization_msgs/Marker[] markers\n"},
 }};
 
 }  // namespace

@@ -18,7 +18,7 @@ constexpr Qos kPackets = {.depth = 100};  // a revolution
 
 /// In the order of Index. The type hashes and MD5 sums are computed from the definitions by
 /// independent programs in the tests.
-constexpr std::array<MessageType, 16> kMessageTypes = {{
+constexpr std::array<MessageType, 17> kMessageTypes = {{
     {"std_msgs/msg/Header", "std_msgs/Header", "2176decaecbce78abc3b96ef049fabed",
      "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01", kDefault},
     {"sensor_msgs/msg/PointField", "sensor_msgs/PointField", "268eacb2962780ceac86cbd17e328150",
@@ -64,6 +64,9 @@ constexpr std::array<MessageType, 16> kMessageTypes = {{
      "RIHS01_c21822af66817068b0850f02afb1a8bba77ec79cd412a2a3aaecddc108022032", kPackets},
     {"std_msgs/msg/String", "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1",
      "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18", kDefault},
+    {"visualization_msgs/msg/MarkerArray", "visualization_msgs/MarkerArray",
+     "d155b9ce5188fbaf89745847fd5882d7",
+     "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf", kDefault},
 }};
 
 /// The package and the name of a type of ROS 2 as ROS 1 spells it: without "msg/".
@@ -99,6 +102,7 @@ GLIDAR_ROS_TYPE(CustomMsg, 12)
 GLIDAR_ROS_TYPE(VelodyneScan, 13)
 GLIDAR_ROS_TYPE(PacketMsg, 14)
 GLIDAR_ROS_TYPE(String, 15)
+GLIDAR_ROS_TYPE(MarkerArray, 16)
 
 #undef GLIDAR_ROS_TYPE
 

@@ -4,8 +4,9 @@
 
 // Messages of ROS as plain structs. The members of each one are listed once, in wire order, by its
 // function visit_members(), from which all codecs follow (codec.hpp). Definitions: the packages
-// std_msgs, sensor_msgs, geometry_msgs, tf2_msgs, nav_msgs and rosgraph_msgs of ROS 1 Noetic and
-// ROS 2, livox_ros_driver2 (CustomMsg), velodyne_msgs (VelodyneScan) and ouster_sensor_msgs.
+// std_msgs, sensor_msgs, geometry_msgs, tf2_msgs, nav_msgs, rosgraph_msgs and visualization_msgs of
+// ROS 1 Noetic and ROS 2 (Marker: Humble and later), livox_ros_driver2 (CustomMsg), velodyne_msgs
+// (VelodyneScan) and ouster_sensor_msgs.
 
 #include <glidar/io/ros/payload.hpp>
 
@@ -29,6 +30,14 @@ struct Ros1Only {
 };
 template <class Type>
 Ros1Only(Type&) -> Ros1Only<Type>;
+
+/// A member that ROS 1 does not have.
+template <class Type>
+struct Ros2Only {
+  Type& value;
+};
+template <class Type>
+Ros2Only(Type&) -> Ros2Only<Type>;
 
 struct Time {
   std::int32_t sec = 0;  ///< unsigned in ROS 1
@@ -252,6 +261,70 @@ struct Odometry {
 void visit_members(Is<Odometry> auto& m, auto&& visit) {
   visit(m.header, m.child_frame_id, m.pose, m.pose_covariance, m.linear_velocity,
         m.angular_velocity, m.twist_covariance);
+}
+
+struct ColorRGBA {
+  float r = 0.0F;  ///< all from 0 to 1
+  float g = 0.0F;
+  float b = 0.0F;
+  float a = 1.0F;
+};
+void visit_members(Is<ColorRGBA> auto& m, auto&& visit) {
+  visit(m.r, m.g, m.b, m.a);
+}
+
+struct UVCoordinate {
+  float u = 0.0F;
+  float v = 0.0F;
+};
+void visit_members(Is<UVCoordinate> auto& m, auto&& visit) {
+  visit(m.u, m.v);
+}
+
+struct MeshFile {
+  std::string filename;
+  Payload data;
+};
+void visit_members(Is<MeshFile> auto& m, auto&& visit) {
+  visit(m.filename, m.data);
+}
+
+/// visualization_msgs/Marker.
+struct Marker {
+  /// A value of `type`.
+  static constexpr std::int32_t kCube = 1;
+  Header header;
+  std::string ns;
+  std::int32_t id = 0;  ///< unique in `ns`
+  std::int32_t type = 0;
+  std::int32_t action = 0;  ///< 0: add or change
+  PoseMessage pose;
+  Vector3 scale;  ///< m
+  ColorRGBA color;
+  Time lifetime;  ///< 0: until it is changed
+  bool frame_locked = false;
+  std::vector<Vector3> points;
+  std::vector<ColorRGBA> colors;
+  std::string texture_resource;
+  CompressedImage texture;
+  std::vector<UVCoordinate> uv_coordinates;
+  std::string text;
+  std::string mesh_resource;
+  MeshFile mesh_file;
+  bool mesh_use_embedded_materials = false;
+};
+void visit_members(Is<Marker> auto& m, auto&& visit) {
+  visit(m.header, m.ns, m.id, m.type, m.action, m.pose, m.scale, m.color, m.lifetime,
+        m.frame_locked, m.points, m.colors, Ros2Only{m.texture_resource}, Ros2Only{m.texture},
+        Ros2Only{m.uv_coordinates}, m.text, m.mesh_resource, Ros2Only{m.mesh_file},
+        m.mesh_use_embedded_materials);
+}
+
+struct MarkerArray {
+  std::vector<Marker> markers;
+};
+void visit_members(Is<MarkerArray> auto& m, auto&& visit) {
+  visit(m.markers);
 }
 
 struct CustomPoint {

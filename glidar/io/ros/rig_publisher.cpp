@@ -3,6 +3,7 @@
 #include <glidar/io/ros/rig_publisher.hpp>
 
 #include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/ros/box_message.hpp>
 #include <glidar/io/ros/image_message.hpp>
 #include <glidar/io/ros/laser_scan.hpp>
 #include <glidar/io/ros/pose_message.hpp>
@@ -85,6 +86,8 @@ void RigPublisher::add_image_topics(const PublishedSensor& sensor, const std::st
     topics.range = add_image("/range/image_raw");
   }
   if (options_.for_viewers && has_rows) topics.intensity = add_image("/intensity/image_raw");
+  if (has_classes(rig_.scene))
+    topics.boxes = sink_.add_topic(make_topic<MarkerArray>(base + "/boxes"));
 }
 
 void RigPublisher::write_static_transforms() {
@@ -148,6 +151,12 @@ std::vector<std::string> RigPublisher::columns(std::size_t sensor) const {
   return columns;
 }
 
+HitColumnMask RigPublisher::hit_columns(std::size_t sensor) const {
+  HitColumnMask hit_columns = hit_columns_for(columns(sensor));
+  hit_columns.boxes = topics_[sensor].boxes.has_value();
+  return hit_columns;
+}
+
 const std::string& RigPublisher::cloud_topic(std::size_t sensor) const {
   return topics_[sensor].cloud_name;
 }
@@ -170,6 +179,10 @@ void RigPublisher::publish(std::size_t sensor, const Frame& frame, const Beams& 
   hold_cloud(sensor, source, stamp_ns);
   hold_images(topics_[sensor], source, stamp_ns);
   hold_compressed_images(topics_[sensor], source, stamp_ns);
+  if (is_wanted(topics_[sensor].boxes)) {
+    held_.hold(*topics_[sensor].boxes, stamp_ns,
+               box_markers(rig_.scene, frame, topics_[sensor].frame_id), sink_.wire());
+  }
   if (topics_[sensor].packets) topics_[sensor].packets->hold(frame, beams, held_);
   release(arrivals_.complete_ns());
   end_ns_ = std::max(end_ns_, frame.stamp_ns + duration_ns);

@@ -44,6 +44,8 @@ class RigPublisher {
 
   /// The cloud columns that it reads of a sensor's frames.
   [[nodiscard]] std::vector<std::string> columns(std::size_t sensor) const;
+  /// The ground truth that it reads of a sensor's frames.
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor) const;
   /// The topic of a sensor's clouds.
   [[nodiscard]] const std::string& cloud_topic(std::size_t sensor) const;
   /// How clouds become messages, for message_points().
@@ -72,6 +74,7 @@ class RigPublisher {
     std::optional<std::size_t> camera_info = {};           ///< of cameras
     std::optional<std::size_t> range = {};                 ///< of scanners with rows, for viewers
     std::optional<std::size_t> intensity = {};             ///< for viewers
+    std::optional<std::size_t> boxes = {};                 ///< in scenes with classes
     std::unique_ptr<PacketTopics> packets = {};
   };
 

@@ -61,6 +61,18 @@ def depth_steps(depth_m, scale_mm):
     return steps.astype(np.uint16)
 
 
+def object_box(box, object_id):
+    """An entry of scene_boxes: rotation and translation from the box to the camera, sizes in mm, and what the camera
+    sees of the object in its image."""
+    return {"obj_id": object_id,
+            "cam_R_b2c": box.frame_from_box[:3, :3].ravel().tolist(),
+            "cam_t_b2c": (MM_PER_M * box.centre_m).tolist(),
+            "size": (MM_PER_M * box.size_m).tolist(),
+            "velocity": (MM_PER_M * box.velocity_m_s).tolist(),
+            "points": box.points, "px_count_image": box.beams, "px_count_visib": box.visible_beams,
+            "occlusion": box.occlusion if box.beams else None}
+
+
 def save_json(path, content):
     """Writes JSON in the toolkit's format: one image per line."""
     lines = ",\n".join(f'  "{key}": {json.dumps(content[key], sort_keys=True)}'
@@ -75,7 +87,7 @@ class BopOutput:
         self._folder = f"{FOLDER}/{self._options.split}/{shard:06}"
         self._first = plan.trials_of(shard)[0]
         self._ids = bop_models.ids_by_scene(plan)
-        self._camera, self._truth, self._info, self._files = {}, {}, {}, []
+        self._camera, self._truth, self._info, self._boxes, self._files = {}, {}, {}, {}, []
 
     def add(self, row, trial, frame):
         """Raises TrialError before it stores anything of the frame."""
@@ -94,6 +106,7 @@ class BopOutput:
         self._image("depth", f"{image:06}", depth)
         self._image("gray", f"{image:06}", np.rint(
             255.0 * np.clip(np.nan_to_num(frame.intensity), 0.0, 1.0)).astype(np.uint8))
+        self._boxes[image] = [object_box(box, self._ids[frame.scene][box.index]) for box in frame.boxes()]
         for i, world_from_object in enumerate(frame.world_from_objects):
             self._add_object(image, self._ids[frame.scene][i],
                              camera_from_world @ world_from_object)
@@ -118,7 +131,7 @@ class BopOutput:
 
     def finish(self):
         for name, content in (("scene_camera", self._camera), ("scene_gt", self._truth),
-                              ("scene_gt_info", self._info)):
+                              ("scene_gt_info", self._info), ("scene_boxes", self._boxes)):
             path = self._temp.path(f"{name}.json")
             save_json(path, content)
             self._files.append((f"{self._folder}/{name}.json", path))

@@ -75,6 +75,10 @@ class MeasuredTrial:
     def intrinsics(self):
         return self._setup.intrinsics
 
+    def boxes(self):
+        """A box for each object that has triangles, whether it has a class or not."""
+        return self._frame.boxes(unlabelled=True)
+
     def silhouettes(self):
         """A mask per object: the pixels of the canvas that would hit it if it were alone. All other objects are moved
         behind the camera, where no beam hits them."""

@@ -129,6 +129,10 @@ class RosbagsTest(unittest.TestCase):
         self.assertEqual(bytes(read["/PacketMsg"].buf), bytes([2, 2, 3, 4, 5]))
         self.assertEqual(read["/String"].data, '{"seq": 2}')
         self.assertEqual(read["/LaserScan"].intensities[2], 30.0)
+        car, empty = read["/MarkerArray"].markers
+        self.assertEqual((car.ns, car.id, car.type, car.text, car.mesh_file.filename), ("car", 7, 1, "a car", "car.obj"))
+        self.assertEqual((car.scale.x, car.pose.orientation.w, car.color.b, car.uv_coordinates[0].v), (4.0, 0.8, 0.75, 0.75))
+        self.assertEqual((empty.ns, len(empty.points)), ("", 0))
 
 
 class McapTest(unittest.TestCase):

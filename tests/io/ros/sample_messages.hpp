@@ -148,6 +148,29 @@ inline String sample(std::uint32_t seq) {
   return {"{\"seq\": " + std::to_string(seq) + "}"};
 }
 
+template <>
+inline MarkerArray sample(std::uint32_t seq) {
+  Marker marker;
+  marker.header = sample_header(seq);
+  marker.ns = "car";
+  marker.id = 7;
+  marker.type = Marker::kCube;
+  marker.pose = {{1.0, 2.0, 3.0}, {0.0, 0.6, 0.0, 0.8}};
+  marker.scale = {4.0, 1.8, 1.5};
+  marker.color = {0.25F, 0.5F, 0.75F, 0.3F};
+  marker.lifetime = {1, 2};
+  marker.points = {{5.0, 6.0, 7.0}};
+  marker.colors = {{1.0F, 0.0F, 0.5F, 1.0F}};
+  marker.texture_resource = "texture";
+  marker.texture = {sample_header(seq), "png", sample_bytes(5)};
+  marker.uv_coordinates = {{0.25F, 0.75F}};
+  marker.text = "a car";
+  marker.mesh_resource = "mesh";
+  marker.mesh_file = {"car.obj", sample_bytes(3)};
+  marker.mesh_use_embedded_materials = true;
+  return {{marker, Marker{}}};
+}
+
 /// Calls `body` with a sample of each message.
 void for_all_messages(std::uint32_t seq, const auto& body) {
   body(sample<Header>(seq));
@@ -166,6 +189,7 @@ void for_all_messages(std::uint32_t seq, const auto& body) {
   body(sample<VelodyneScan>(seq));
   body(sample<PacketMsg>(seq));
   body(sample<String>(seq));
+  body(sample<MarkerArray>(seq));
 }
 
 }  // namespace glidar::ros

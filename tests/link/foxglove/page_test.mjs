@@ -70,6 +70,7 @@ async function showsTheCloud() {
   await until(() => Number(document.body.dataset.points) > 10000, "a cloud");
   await until(() => document.querySelectorAll("#images canvas[data-images]").length === 2, "both images");
   await until(() => [...document.querySelectorAll("#labels span")].map((label) => label.textContent).sort().join() === "base_link,camera,lidar,map", "the frames");
+  await until(() => document.body.dataset.boxes === "2", "both boxes");
   assert.equal(await data("state"), "live");
   assert.equal(await page.locator("#empty").isVisible(), false);
   assert.equal(await page.locator("#banner").isVisible(), false);

@@ -99,6 +99,28 @@ def test_models_are_in_millimetres_with_outward_normals_and_correct_sizes(datase
         assert ((normals * vertices).sum(axis=1) > 0).all()
 
 
+def test_boxes_are_those_of_the_models_in_the_poses_of_the_objects(dataset):
+    models = json.loads((dataset / "models" / "models_info.json").read_text())
+    hidden = 0
+    for scene, key, _, truth, info, _ in images(dataset):
+        boxes = json.loads((scene / "scene_boxes.json").read_text())[str(key)]
+        assert len(boxes) == len(truth)
+        for box, entry, counts in zip(boxes, truth, info):
+            assert box["obj_id"] == entry["obj_id"]
+            model = models[str(box["obj_id"])]
+            assert box["size"] == pytest.approx([model[f"size_{axis}"] for axis in "xyz"], abs=1e-3)
+            (turn, place), (box_turn, box_place) = matrix(entry, "cam_R_m2c", "cam_t_m2c"), matrix(box, "cam_R_b2c", "cam_t_b2c")
+            np.testing.assert_allclose(box_turn, turn, atol=1e-9)
+            middle = np.array([model[f"min_{axis}"] + model[f"size_{axis}"] / 2 for axis in "xyz"])
+            np.testing.assert_allclose(box_place, turn @ middle + place, atol=1e-2)  # mm
+            assert box["px_count_visib"] == counts["px_count_visib"]
+            assert box["px_count_visib"] <= box["px_count_image"] <= counts["px_count_all"]
+            hidden += box["px_count_image"] - box["px_count_visib"]
+            if box["px_count_image"]:
+                assert box["occlusion"] == pytest.approx(1 - box["px_count_visib"] / box["px_count_image"])
+    assert hidden > 0
+
+
 def test_camera_matrices_have_pixel_centres_at_integers(dataset):
     camera = json.loads((dataset / "camera.json").read_text())
     assert (camera["width"], camera["height"]) == (64, 48)

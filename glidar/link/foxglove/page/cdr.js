@@ -29,6 +29,7 @@ export class CdrReader {
   u8() { return this.#view.getUint8(this.#align(1)); }
   u32() { return this.#view.getUint32(this.#align(4), this.#little); }
   i32() { return this.#view.getInt32(this.#align(4), this.#little); }
+  f32() { return this.#view.getFloat32(this.#align(4), this.#little); }
   f64() { return this.#view.getFloat64(this.#align(8), this.#little); }
 
   string() {
@@ -43,6 +44,12 @@ export class CdrReader {
   f64s(count) {
     const values = new Array(count);
     for (let i = 0; i < count; ++i) values[i] = this.f64();
+    return values;
+  }
+
+  f32s(count) {
+    const values = new Array(count);
+    for (let i = 0; i < count; ++i) values[i] = this.f32();
     return values;
   }
 

@@ -76,6 +76,7 @@ function draw() {
   drawTimes.push(performance.now());
   document.body.dataset.draws = String(Number(document.body.dataset.draws ?? 0) + 1);
   document.body.dataset.points = String(shownPoints);
+  document.body.dataset.boxes = String(shown.boxes);
 }
 
 /** One handler per kind of message. */
@@ -87,6 +88,7 @@ const HANDLERS = {
   "sensor_msgs/msg/Image": (topic, message) => images.show(topic, message),
   "sensor_msgs/msg/CompressedImage": (topic, message) => images.show(topic, message),
   "tf2_msgs/msg/TFMessage": (topic, message) => scene.addTransforms(message),
+  "visualization_msgs/msg/MarkerArray": (topic, message) => scene.addBoxes(topic, message),
   "nav_msgs/msg/Odometry": (topic, message) => scene.addOdometry(topic, message),
   [PLAYBACK_SCHEMA]: (topic, message) => playback.show(message),
 };
@@ -119,6 +121,7 @@ function toggle(channel, isOn) {
     connection.unsubscribe(channel);
     view.release(scene.clouds.get(channel.topic));
     scene.removeCloud(channel.topic);
+    scene.removeBoxes(channel.topic);
     images.remove(channel.topic);
   }
   requestDraw();

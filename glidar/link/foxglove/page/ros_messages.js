@@ -63,12 +63,47 @@ function odometry(reader) {
   return { header, childFrameId: reader.string(), ...readPose(reader) };
 }
 
+/** The parts of a marker that only other shapes than cubes use. */
+function skipMarkerParts(reader) {
+  reader.i32(); // lifetime
+  reader.u32();
+  reader.bool(); // frame_locked
+  for (let left = reader.count(24); left > 0; --left) reader.f64s(3); // points
+  for (let left = reader.count(16); left > 0; --left) reader.f32s(4); // colors
+  reader.string(); // texture_resource
+  compressedImage(reader);
+  for (let left = reader.count(8); left > 0; --left) reader.f32s(2); // uv_coordinates
+}
+
+function marker(reader) {
+  const header = readHeader(reader);
+  const ns = reader.string();
+  const [id, type, action] = [reader.i32(), reader.i32(), reader.i32()];
+  const pose = readPose(reader);
+  const scale = reader.f64s(3);
+  const colour = reader.f32s(4);
+  skipMarkerParts(reader);
+  const text = reader.string();
+  reader.string(); // mesh_resource
+  reader.string(); // mesh_file
+  reader.bytes();
+  reader.bool(); // mesh_use_embedded_materials
+  return { header, ns, id, type, action, ...pose, scale, colour, text };
+}
+
+function markerArray(reader) {
+  const markers = [];
+  for (let left = reader.count(180); left > 0; --left) markers.push(marker(reader));
+  return { markers };
+}
+
 const DECODERS = new Map([
   ["sensor_msgs/msg/PointCloud2", pointCloud2],
   ["sensor_msgs/msg/Image", image],
   ["sensor_msgs/msg/CompressedImage", compressedImage],
   ["tf2_msgs/msg/TFMessage", tfMessage],
   ["nav_msgs/msg/Odometry", odometry],
+  ["visualization_msgs/msg/MarkerArray", markerArray],
 ]);
 
 export const PLAYBACK_SCHEMA = "glidar.Playback";

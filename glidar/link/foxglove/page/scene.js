@@ -4,10 +4,12 @@
 /** What the 3D view shows: the newest cloud of every topic, frames, trajectories. */
 import { checkLayout, positions, scalars, typicalInterval } from "/cloud.js";
 import { TransformTree } from "/transforms.js";
-import { origin, transformPoint } from "/vectors.js";
+import { fromPose, multiply, origin, transformPoint } from "/vectors.js";
 
 const MAX_TRAIL = 20000;
 const MIN_STEP_M = 0.02;
+/** Type of a visualization_msgs/Marker. */
+const CUBE = 1;
 const JUMP_BACK_NS = 1000000000n;
 /** Positions and values of points that are not drawn or have no colour; see shaders.js. */
 const HIDDEN = 1e30;
@@ -17,6 +19,7 @@ export class Scene {
   transforms = new TransformTree();
   clouds = new Map();
   trails = new Map();
+  boxes = new Map();
   #newestNs = 0n;
 
   addCloud(topic, message) {
@@ -28,6 +31,29 @@ export class Scene {
   }
 
   removeCloud(topic) { this.clouds.delete(topic); }
+
+  /** The cubes of a message, which replace those of the topic. */
+  addBoxes(topic, message) {
+    const boxes = message.markers.filter(({ type, action }) => type === CUBE && action === 0).map((marker) => {
+      if (![...marker.position, ...marker.rotation, ...marker.scale].every(Number.isFinite)) throw new Error("a box is not finite");
+      const [x, y, z] = marker.scale;
+      return {
+        frame: marker.header.frameId.replace(/^\//, ""),
+        timeNs: marker.header.timeNs,
+        colour: [...marker.colour.slice(0, 3), 1],
+        frameFromUnit: multiply(fromPose(marker.position, marker.rotation), [x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1]),
+      };
+    });
+    this.boxes.set(topic, boxes);
+  }
+
+  removeBoxes(topic) { this.boxes.delete(topic); }
+
+  /** Pose and scale of a box of edge length 1; undefined: its frame is not connected to the fixed one. */
+  modelOfBox(box) {
+    const model = this.transforms.lookup(this.fixedFrame(), box.frame, box.timeNs);
+    return model === undefined ? undefined : multiply(model, box.frameFromUnit);
+  }
 
   addTransforms(message) {
     for (const transform of message.transforms) this.transforms.add(transform);

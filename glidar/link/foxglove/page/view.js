@@ -23,6 +23,7 @@ export class View {
   #mapName;
   #grid;
   #axes;
+  #cube;
 
   constructor(canvas) {
     this.#canvas = canvas;
@@ -40,6 +41,7 @@ export class View {
     this.#mapName = undefined;
     this.#grid = this.#makeLines(gridLines());
     this.#axes = AXES.map(([x, y, z]) => this.#makeLines([0, 0, 0, x, y, z]));
+    this.#cube = this.#makeLines(cubeEdges());
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(0.055, 0.07, 0.086, 1);
   }
@@ -51,7 +53,7 @@ export class View {
   }
 
   /** settings: key, map, interval (or undefined), size, showGrid, showFrames, showTrails. Returns what the
-   * colour bar shows: {interval, isCategory, points}. */
+   * colour bar shows, and the number of boxes: {interval, isCategory, points, boxes}. */
   draw(scene, camera, settings) {
     const gl = this.#gl;
     const ratio = window.devicePixelRatio || 1;
@@ -66,7 +68,7 @@ export class View {
     if (settings.showGrid) this.#drawGrid(camera);
     if (settings.showTrails) this.#drawTrails(scene);
     if (settings.showFrames) this.#drawFrames(scene, camera);
-    return shown;
+    return { ...shown, boxes: this.#drawBoxes(scene) };
   }
 
   #drawClouds(scene, projection, settings, ratio) {
@@ -176,6 +178,17 @@ export class View {
     }
   }
 
+  #drawBoxes(scene) {
+    let drawn = 0;
+    for (const box of [...scene.boxes.values()].flat()) {
+      const model = scene.modelOfBox(box);
+      if (model === undefined) continue;
+      this.#drawLines(this.#cube, model, box.colour, this.#gl.LINES);
+      ++drawn;
+    }
+    return drawn;
+  }
+
   #drawFrames(scene, camera) {
     const size = Math.min(Math.max(camera.distance / 20, 0.1), 3);
     const scale = [size, 0, 0, 0, 0, size, 0, 0, 0, 0, size, 0, 0, 0, 0, 1];
@@ -185,6 +198,21 @@ export class View {
       this.#axes.forEach((lines, i) => this.#drawLines(lines, multiply(model, scale), AXES[i][3], this.#gl.LINES));
     }
   }
+}
+
+/** The edges of a cube of edge length 1 around the origin. */
+function cubeEdges() {
+  const xyz = [];
+  for (const [axis, u, v] of [[0, 1, 2], [1, 2, 0], [2, 0, 1]]) {
+    for (const [a, b] of [[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]]) {
+      for (const end of [-0.5, 0.5]) {
+        const corner = [0, 0, 0];
+        [corner[axis], corner[u], corner[v]] = [end, a, b];
+        xyz.push(...corner);
+      }
+    }
+  }
+  return xyz;
 }
 
 function gridLines() {

@@ -46,7 +46,7 @@ struct Requests {
 };
 
 struct Channels {
-  foxglove::ChannelId cloud, depth, picture, tf, tf_static, odometry;
+  foxglove::ChannelId cloud, depth, picture, tf, tf_static, odometry, boxes;
 };
 
 void obey(Requests& requests, foxglove::PlaybackCommand command) {
@@ -81,7 +81,35 @@ Channels add_channels(foxglove::FoxgloveServer& server) {
           .picture = add("/camera/compressed", ros::message_type<ros::CompressedImage>()),
           .tf = add("/tf", transforms, 100),
           .tf_static = add("/tf_static", transforms),
-          .odometry = add("/odom", ros::message_type<ros::Odometry>(), 100)};
+          .odometry = add("/odom", ros::message_type<ros::Odometry>(), 100),
+          .boxes = add("/boxes", ros::message_type<ros::MarkerArray>())};
+}
+
+/// Two cubes beside the sensor, of which the second has all parts of a marker.
+link::Payload boxes_at(std::uint64_t stamp_ns) {
+  ros::Marker cube;
+  cube.header = {.stamp = ros::time_from_ns(static_cast<std::int64_t>(stamp_ns)),
+                 .frame_id = "lidar"};
+  cube.type = ros::Marker::kCube;
+  cube.pose.position = {5.0, 2.0, 0.0};
+  cube.scale = {4.0, 1.8, 1.5};
+  cube.color = {1.0F, 0.5F, 0.0F, 0.3F};
+  ros::Marker other = cube;
+  other.id = 1;
+  other.ns = "car";
+  other.pose.position.y = -2.0;
+  other.points = {{1.0, 2.0, 3.0}};
+  other.colors = {{}};
+  other.texture_resource = "texture";
+  other.texture.format = "png";
+  other.uv_coordinates = {{0.5F, 0.5F}};
+  other.text = "a car";
+  other.mesh_file.filename = "car.obj";
+  const std::vector<std::byte> bytes =
+      ros::serialize(ros::MarkerArray{{cube, other}}, ros::Wire::cdr);
+  link::Payload payload = link::PayloadPool().take(bytes.size());
+  std::memcpy(payload.memory.get(), bytes.data(), bytes.size());
+  return payload;
 }
 
 /// Forward and back again.
@@ -100,6 +128,7 @@ void publish(foxglove::FoxgloveServer& server, const Channels& to, const StreetD
   server.publish(to.odometry, stamp, drive.odometry(frame, stamp));
   server.publish(to.cloud, stamp, drive.cloud(frame, stamp));
   server.publish(to.depth, stamp, drive.depth_image(frame, stamp));
+  server.publish(to.boxes, stamp, boxes_at(stamp));
 }
 
 void answer_question(Requests& requests, StreetDrive& drive) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <gtest/gtest.h>
-#include <glidar/io/formats/kitti_folder.hpp>
+#include <glidar/io/formats/kitti_labels.hpp>
 
 #include <sstream>
 #include <string>
@@ -41,7 +41,7 @@ TEST(KittiLabels, BoxesContainAllPartsOfAMeshWithSeveralOrigins) {
   frame.world_from_sensor = make_pose({-10.0, 0.0, 0.0}, Eigen::Quaterniond::Identity());
   frame.world_from_instance = {Pose::Identity()};
   frame.ground_truth.instance = {0};
-  const std::vector<double> box = only_line(kitti_labels(scene, sensor, frame));
+  const std::vector<double> box = only_line(kitti_labels(scene, kitti_camera(sensor), frame));
   // h w l: the object's z, y and x; x y z of the lower face in the camera's frame: right, down,
   // ahead
   const std::vector<double> expected = {4.0, 20.0, 100.0, -10.0, 0.0, 60.0};
