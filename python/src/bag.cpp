@@ -7,7 +7,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 
-#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -45,7 +44,7 @@ void BagWriter::add(const Measured& measured) {
     bag_ = std::make_unique<FrameBag>(path_, *measured.scene().scene, sensor_->sensor(), *beams_,
                                       options_);
   }
-  if (measured.beams->size() != beams_->size() ||
+  if (measured.beams->rows != beams_->rows ||
       measured.sensor->sensor().name != sensor_->sensor().name) {
     throw Error({"bag " + path_.string(), "a frame of another sensor", "frames of one sensor",
                  "write a bag for each sensor"});
@@ -60,11 +59,13 @@ void BagWriter::finish() {
 }
 
 void bind_bag(nb::module_& module) {
-  module.def("is_bag_name", is_frame_bag_name, nb::arg("path"));
+  module.def(
+      "is_bag_name", [](const std::string& path) { return is_frame_bag_name(path); },
+      nb::arg("path"));
   nb::class_<BagWriter>(module, "BagWriter")
       .def(
           "__init__",
-          [](BagWriter* self, const std::filesystem::path& path, const std::string& layout,
+          [](BagWriter* self, const std::string& path, const std::string& layout,
              const std::vector<std::string>& columns, bool deskew) {
             new (self) BagWriter(path, {layout, columns, deskew});
           },
