@@ -8,9 +8,10 @@ With a COMMIT, only sources are checked that differ from it or include, also ind
 All are checked if the repository lacks the commit.
 It uses the clang-tidy that ./dev installs from PyPI, because it skips the headers of others, in which older versions
 spend most of the time; without that package, the one in PATH. Reading these headers still takes time, so several sources
-that are compiled alike are checked as one. Sources that do not go together, because they define the same name, are in other groups; a group with a finding is split until
-the source is known. A group that passed is not checked again until one of its files, a header of
-the project or the configuration changes: BUILD_FOLDER/tidy keeps one empty file per hash of them.
+that are compiled alike are checked as one. Sources that do not go together, because they define the same name, are in
+other groups; a group with a finding is split until the source is known. A group that passed is not checked again until
+one of its files, a header of the project or the configuration changes: BUILD_FOLDER/tidy keeps one empty file per hash
+of them.
 """
 
 import hashlib

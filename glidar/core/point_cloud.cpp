@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace glidar {
 namespace {
@@ -152,6 +153,11 @@ void fill_incidence(const Source& s, Column& column) {
   fill_each<float>(s, column, [&](std::size_t i) {
     return std::acos(std::min(s.frame.ground_truth.cos_incidence[i], 1.0F));
   });
+}
+
+template <class Grid>
+std::string shape(const Grid& grid) {
+  return std::to_string(grid.rows) + " x " + std::to_string(grid.cols);
 }
 
 /// A member of the instance that each beam hits.
@@ -354,6 +360,12 @@ HitColumnMask hit_columns_for(std::span<const std::string> column_names) {
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
                       const OutputFrame& target_frame, std::span<const std::string> column_names,
                       PointCloud& cloud) {
+  if (beams.rows != frame.rows || beams.cols != frame.cols) {
+    throw Error({.where = "point cloud",
+                 .found = "a frame of " + shape(frame) + " and beams of " + shape(beams),
+                 .allowed = "the beams with which the frame was measured",
+                 .remedy = "pass Simulator::beams() of the frame's number"});
+  }
   cloud.rows = frame.rows;
   cloud.cols = frame.cols;
   cloud.frame_id = target_frame.frame_id;

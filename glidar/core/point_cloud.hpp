@@ -68,7 +68,9 @@ HitColumnMask hit_columns_for(std::span<const std::string> column_names);
 ///  sensor_pose   f64 x7, world_from_sensor at the firing time: metres, quaternion w x y z
 ///  object_pose   f64 x7, world_from_object of the instance hit, at the firing time, without scale;
 ///                NaN for a miss
-/// Throws Error for an unknown column, and when the frame was cast without a column that it needs.
+/// Throws Error for an unknown column, for a frame that was cast without a column that it needs,
+/// and for beams of another size than the frame: the number of columns can change from frame to
+/// frame.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
                       const OutputFrame& target_frame, std::span<const std::string> column_names,
                       PointCloud& cloud);

@@ -7,7 +7,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 
-#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -61,12 +60,14 @@ void BagWriter::finish() {
 }
 
 void bind_bag(nb::module_& module) {
-  module.def("is_bag_name", is_frame_bag_name, nb::arg("path"));
+  module.def(
+      "is_bag_name", [](const std::string& path) { return is_frame_bag_name(path); },
+      nb::arg("path"));
   module.def("lacks_boxes", lacks_boxes, nb::arg("frame"));
   nb::class_<BagWriter>(module, "BagWriter")
       .def(
           "__init__",
-          [](BagWriter* self, const std::filesystem::path& path, const std::string& layout,
+          [](BagWriter* self, const std::string& path, const std::string& layout,
              const std::vector<std::string>& columns, bool deskew) {
             new (self) BagWriter(path, {layout, columns, deskew});
           },

@@ -146,6 +146,13 @@ TEST(PointCloud, RejectsUnknownAndUncastColumns) {
               ::testing::HasSubstr("the frame was cast without it"));
 }
 
+TEST(PointCloud, RejectsBeamsOfAnotherFrame) {
+  Fixture f;
+  f.beams.cols = 3;
+  EXPECT_THAT(error_text([&] { f.cloud({"range"}); }),
+              ::testing::HasSubstr("a frame of 1 x 2 and beams of 1 x 3"));
+}
+
 TEST(PointCloud, RequiresTheHitFieldsOfItsColumns) {
   const std::vector<std::string> names = {"xyz", "normal", "colour"};
   const HitColumnMask hit_columns = hit_columns_for(names);

@@ -24,6 +24,10 @@ def messages(path):
         return found
 
 
+def first_firing_ns(frame):
+    return frame.stamp_ns + int(frame.cloud("time")["time"].min())
+
+
 def points(cloud):
     """x, y and z of the points of a PointCloud2."""
     data = np.frombuffer(cloud.data, dtype=np.uint8).reshape(-1, cloud.point_step)
@@ -36,7 +40,7 @@ def test_a_frame_is_saved_as_a_bag(scene, tmp_path, name):
     frame.save(tmp_path / name)
     found = messages(tmp_path / name)
     (_, cloud), = found["/lidar/points"]
-    expected = frame.cloud("xyz", drop_invalid=True).xyz
+    expected = frame.cloud("xyz", drop_invalid=True)["xyz"]
     assert np.array_equal(np.sort(points(cloud), axis=0), np.sort(expected.reshape(-1, 3).astype(np.float32), axis=0))
     (_, odometry), = found["/odom"]
     assert [odometry.pose.pose.position.x, odometry.pose.pose.position.y] == [0.5, 0.25]
@@ -49,9 +53,9 @@ def test_frames_are_saved_in_one_bag_in_the_order_of_time(scene, tmp_path, name)
     frames = [simulator.simulate(glidar.pose([0.1 * k, 0, 0]), frame=k) for k in range(3)]
     glidar.save_bag(tmp_path / name, iter(frames), layout="velodyne")
     found = messages(tmp_path / name)
-    assert [time_ns for time_ns, _ in found["/lidar/points"]] == [0, 100_000_000, 200_000_000]
+    assert [time_ns for time_ns, _ in found["/lidar/points"]] == [first_firing_ns(frame) for frame in frames]
     assert [field.name for field in found["/lidar/points"][0][1].fields] == ["x", "y", "z", "intensity", "ring", "time"]
-    assert found["/odom"][2][1].twist.twist.linear.x == pytest.approx(1.0)
+    assert found["/odom"][2][1].twist.twist.linear.x == pytest.approx(1.0, rel=1e-3)
     assert "/tf_static" in found
 
 
@@ -60,7 +64,7 @@ def test_the_depth_of_a_camera_is_an_image(scene, tmp_path):
     frame.save(tmp_path / "run.mcap")
     (_, image), = messages(tmp_path / "run.mcap")["/camera/depth/image_raw"]
     depth = np.frombuffer(image.data, dtype="<f4").reshape(10, 20)
-    assert np.array_equal(depth, frame.cloud("depth")["depth"].astype(np.float32))
+    assert np.array_equal(depth, frame.cloud("depth")["depth"].astype(np.float32), equal_nan=True)
 
 
 def test_errors_leave_an_existing_bag_unchanged(scene, tmp_path):

@@ -77,7 +77,7 @@ struct PairOfSensors {
   void publish(ros::RigPublisher& publisher) const {
     for (const std::uint32_t number : {0U, 1U}) {
       const MeasuredFrame measured = scene_of->measure(number);
-      publisher.publish(0, measured.frame, late_beams);
+      publisher.publish(0, measured.frame, delayed(*measured.beams));
       publisher.publish(1, measured.frame, *measured.beams);
     }
     publisher.finish();
@@ -138,7 +138,7 @@ TEST(RigMessages, OfOdometryHaveTheVelocitiesOfTheMotionInTheAxesOfTheBody) {
   ros::MemorySink sink;
   publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
   const auto poses = sink.of<ros::Odometry>("/odom");
-  ASSERT_EQ(poses.size(), 21U);
+  ASSERT_EQ(poses.size(), 22U);  // every 10 ms of 0.2 s, and the start of the second frame
   for (const ros::Odometry& odometry : poses) {
     EXPECT_NEAR(odometry.linear_velocity.x, 1.0, 1e-12);
     EXPECT_NEAR(odometry.linear_velocity.y, 2.0, 1e-12);

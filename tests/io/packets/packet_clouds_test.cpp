@@ -53,7 +53,7 @@ void append_points(const DecodedFrame& from, const Sensor& sensor,
   const auto bytes = ros::serialize(sent, ros::Wire::cdr);
   const auto message = ros::deserialize<ros::PointCloud2>(bytes, ros::Wire::cdr);
   const PointCloud received = ros::to_point_cloud(message);
-  const auto& xyz = column_of<float>(received, "xyz");
+  const auto& xyz = column_of<double>(received, "xyz");
   const auto& rings = column_of<std::uint16_t>(received, "ring");
   const auto& times = column_of<std::uint32_t>(received, "time");
   for (std::size_t i = 0; i < received.size(); ++i)
