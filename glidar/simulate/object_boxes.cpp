@@ -42,14 +42,24 @@ ObjectBox place_box(const Simulation& s, std::uint32_t i) {
   return box;
 }
 
+/// How many of `count` hits are on each instance; `is_counted` selects them.
+template <class Function>
+std::vector<std::uint32_t> hits_per_instance(const Simulation& s, std::size_t count,
+                                             const std::vector<std::uint32_t>& instances,
+                                             Function is_counted) {
+  std::vector<std::uint32_t> hits(s.scene.instances.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (instances[i] != kInvalidId && is_counted(i)) ++hits[instances[i]];
+  }
+  return hits;
+}
+
 /// Counts the returns whose ground truth is one of the objects.
 void count_points(const Simulation& s, std::span<ObjectBox> boxes) {
-  std::vector<std::uint32_t> points(s.scene.instances.size());
-  const Frame& frame = s.frame;
-  for (std::size_t i = 0; i < frame.status.size(); ++i) {
-    const std::uint32_t instance = frame.ground_truth.instance[i];
-    if (frame.status[i] == Status::hit && instance != kInvalidId) ++points[instance];
-  }
+  const std::vector<Status>& status = s.frame.status;
+  const std::vector<std::uint32_t> points =
+      hits_per_instance(s, status.size(), s.frame.ground_truth.instance,
+                        [&](std::size_t i) { return status[i] == Status::hit; });
   for (ObjectBox& box : boxes) box.points = points[box.instance];
 }
 
@@ -224,6 +234,8 @@ bool is_at_rest(const Simulation& s, std::uint32_t instance) {
 void count_beams(const Simulation& s, std::span<ObjectBox> boxes) {
   const Beams& nominal = nominal_beams(s);
   const std::vector<std::uint32_t>& first = first_instances(s, nominal);
+  const std::vector<std::uint32_t> visible =
+      hits_per_instance(s, nominal.size(), first, [](std::size_t) { return true; });
   const CastRequest request = cast_request(s, nominal, {});
   const Beams* beams = &nominal;
   std::optional<std::uint32_t> seen_by;  ///< the body as which `beams` are expressed
@@ -233,8 +245,7 @@ void count_beams(const Simulation& s, std::span<ObjectBox> boxes) {
       beams = &beams_at_rest(timed_scene(s), request, body, s.workspace.boxes.moving);
       seen_by = body;
     }
-    const auto last = first.begin() + static_cast<std::ptrdiff_t>(nominal.size());
-    box.visible_beams = static_cast<std::uint32_t>(std::count(first.begin(), last, box.instance));
+    box.visible_beams = visible[box.instance];
     const CountedObject object{s, box, *beams, first};
     mark_candidates(object);
     box.beams = box.visible_beams + count_hidden(object);
