@@ -22,7 +22,7 @@ constexpr std::size_t kLasers = 64;
 constexpr std::size_t kParameters = kFirstLaser + kLasers * kLaserValues - kGroupValues;
 // What a simulation has no values for: those of the manual's examples.
 constexpr std::uint8_t kThreshold = 24;
-constexpr std::uint8_t kTemperature_C = 27;
+constexpr std::uint8_t kTemperature = 27;  // degrees Celsius
 constexpr std::uint8_t kFirmware = 0x47;
 constexpr std::uint8_t kHasSync = 'P';
 constexpr std::uint8_t kAutomaticPower = 0xA8;
@@ -116,7 +116,7 @@ std::uint8_t Hdl64Status::unit_state(std::size_t index, std::int64_t stamp_ns) c
       static_cast<std::uint8_t>(static_cast<unsigned>(date.month())),
       static_cast<std::uint8_t>(static_cast<int>(date.year()) % 100),
       has_position_ ? kHasSync : std::uint8_t{0},
-      kTemperature_C,
+      kTemperature,
       kFirmware};
   return state[index];
 }

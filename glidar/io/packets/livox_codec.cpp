@@ -43,8 +43,9 @@ const Prism& checked_prism(const Sensor& sensor) {
 
 /// Duration of a packet in 0.1 us.
 std::uint16_t packet_interval(const Sensor& sensor, const Prism& prism) {
-  const double firings = static_cast<double>(kLivoxPoints / prism.incidence_tangent.size());
-  const double interval = std::round(firings * kSecond_ns / prism.pulse_hz / kInterval_ns);
+  const std::size_t firings = kLivoxPoints / prism.incidence_tangent.size();  // whole firings only
+  const double interval =
+      std::round(static_cast<double>(firings) * kSecond_ns / prism.pulse_hz / kInterval_ns);
   if (interval >= 1.0 && interval <= 65'535.0) return static_cast<std::uint16_t>(interval);
   fail_of_livox(sensor, std::to_string(interval * 1e-4) + " ms for 96 points", "up to 6.5 ms",
                 "raise optics.pulse_hz");
