@@ -5,6 +5,7 @@
 #include <utility>
 
 namespace glidar::app {
+
 Delivery::Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
                    std::function<void()> failed, std::chrono::milliseconds idle_interval)
     : deliver_(std::move(deliver)),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/measured_frame.hpp>
 
 #include <array>
@@ -22,7 +23,8 @@ class Delivery {
   /// The thread calls `deliver`, `idle` (after each frame, and every `idle_interval` while there is
   /// nothing to deliver), and `failed` (once, after one of them threw).
   Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
-           std::function<void()> failed, std::chrono::milliseconds idle_interval = kIdleInterval);
+           std::function<void()> failed,
+           std::chrono::milliseconds idle_interval = kDefaultServeInterval);
   /// Delivers the submitted frames.
   ~Delivery();
   Delivery(const Delivery&) = delete;
@@ -36,8 +38,6 @@ class Delivery {
   void finish();
 
  private:
-  static constexpr std::chrono::milliseconds kIdleInterval{20};
-
   void run();
   void join();
   void rethrow();

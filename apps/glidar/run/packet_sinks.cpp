@@ -38,11 +38,6 @@ class CaptureSink final : public FrameSink {
 
 }  // namespace
 
-const std::vector<std::string>& packet_columns() {
-  static const std::vector<std::string> kColumns = {"xyz", "intensity", "range"};
-  return kColumns;
-}
-
 std::size_t packet_sensor(const PreparedScene& prepared, const std::string& name,
                           const std::string& where) {
   std::vector<std::size_t> found;

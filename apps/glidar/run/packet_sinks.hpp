@@ -9,12 +9,8 @@
 #include <cstddef>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace glidar::app {
-
-/// The cloud columns that packets need.
-const std::vector<std::string>& packet_columns();
 
 /// Index of the sensor of this name, or of the only one that has packets; `where` is for errors.
 /// Throws Error when there is none, or several.

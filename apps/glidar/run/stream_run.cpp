@@ -26,6 +26,7 @@ namespace glidar::app {
 namespace {
 
 const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
+
 /// How often the status line changes.
 constexpr std::chrono::milliseconds kStatusInterval{200};
 

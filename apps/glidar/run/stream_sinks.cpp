@@ -6,9 +6,8 @@
 #include <apps/glidar/run/recording_sinks.hpp>
 #include <apps/glidar/run/udp_sink.hpp>
 
-#include <utility>
-
 #include <algorithm>
+#include <utility>
 
 namespace glidar::app {
 

@@ -89,14 +89,14 @@ void Hdl64Status::put_number(std::size_t at, double number, int bytes) {
 /// Angles, and the offsets across the beam that move its origin: the height turns with the beam.
 /// Distances need no correction, and intensities have the whole range of a byte.
 void Hdl64Status::put_laser(std::size_t laser, const SpinningChannel& channel) {
-  constexpr double kCentidegree = 0.01 * kDegree;
+  constexpr double kCentidegree_rad = 0.01 * kDegree;
   const std::size_t at = kFirstLaser + laser * kLaserValues;
   const double elevation = channel.elevation_rad;
   const double height_m =
       channel.origin_m.z() * std::cos(elevation) - channel.origin_m.x() * std::sin(elevation);
   values_[at] = static_cast<std::uint8_t>(laser);
-  put_number(at + 1, elevation / kCentidegree);
-  put_number(at + 3, channel.azimuth_offset_rad / kCentidegree);
+  put_number(at + 1, elevation / kCentidegree_rad);
+  put_number(at + 3, channel.azimuth_offset_rad / kCentidegree_rad);
   put_number(at + 11, height_m / kMillimetre_m);
   put_number(at + 13, channel.origin_m.y() / kMillimetre_m);
   put_number(at + 20, 255.0, 1);

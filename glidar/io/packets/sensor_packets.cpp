@@ -50,6 +50,11 @@ bool is_earlier_packet(const UdpPacket& a, const UdpPacket& b) {
 
 }  // namespace
 
+const std::vector<std::string>& packet_columns() {
+  static const std::vector<std::string> kPacketColumns = {"xyz", "intensity", "range"};
+  return kPacketColumns;
+}
+
 bool has_packets(const Sensor& sensor) {
   return is_velodyne(sensor) || is_ouster(sensor) || is_hesai(sensor) || is_livox(sensor);
 }

@@ -24,6 +24,9 @@ struct PacketOptions {
   LivoxDataType livox_type = LivoxDataType::cartesian_mm;  ///< of points
 };
 
+/// The cloud columns that packets need.
+const std::vector<std::string>& packet_columns();
+
 /// Whether the sensor is named after a model whose packets are known.
 bool has_packets(const Sensor& sensor);
 

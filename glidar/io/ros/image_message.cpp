@@ -123,6 +123,7 @@ CompressedImage compressed_depth_image(const Image& image) {
   bytes.insert(bytes.end(), png.begin(), png.end());
   return {image.header, "16UC1; compressedDepth png", Payload(std::move(bytes))};
 }
+
 CameraInfo camera_info(const CloudSource& source, const std::string& frame_id) {
   std::optional<CameraModel> model = camera_model(source.sensor.optics);
   if (!model) {

@@ -67,6 +67,10 @@ template <>
 const MessageType& message_type<CustomMsg>();
 template <>
 const MessageType& message_type<VelodyneScan>();
+template <>
+const MessageType& message_type<PacketMsg>();
+template <>
+const MessageType& message_type<String>();
 
 /// The type of this name in ROS 1 or ROS 2; nullptr if there is none. Accepts the CustomMsg of
 /// livox_ros_driver too, which has the same definition.

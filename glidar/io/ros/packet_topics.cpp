@@ -48,10 +48,6 @@ void PacketTopics::add_ouster_topics(const std::string& name, const Sensor& sens
   write_message(sink_, sink_.add_topic(metadata), 0, String{ouster_metadata(sensor, options)});
 }
 
-std::vector<std::string> PacketTopics::columns() {
-  return {"xyz", "intensity", "range"};
-}
-
 void PacketTopics::hold(const Frame& frame, const Beams& beams, HeldMessages& held) {
   packets_.encode(frame, beams, made_);
   hold_packets(held);

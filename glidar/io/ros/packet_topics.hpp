@@ -24,8 +24,6 @@ class PacketTopics {
   /// the sensor has no packets of these manufacturers.
   PacketTopics(MessageSink& sink, const PublishedSensor& sensor, std::string frame_id);
 
-  /// The columns of frames that packets contain.
-  [[nodiscard]] static std::vector<std::string> columns();
   /// Adds the packets that a frame completes to the messages that are to be written.
   void hold(const Frame& frame, const Beams& beams, HeldMessages& held);
   /// The same for the last packet, filled with firings without returns.

@@ -146,7 +146,7 @@ std::vector<std::string> RigPublisher::columns(std::size_t sensor) const {
   if (topics_[sensor].depth || topics_[sensor].compressed_depth) add_once("depth", columns);
   if (topics_[sensor].compressed_intensity) add_once("intensity", columns);
   if (topics_[sensor].packets) {
-    for (const std::string& name : PacketTopics::columns()) add_once(name, columns);
+    for (const std::string& name : packet_columns()) add_once(name, columns);
   }
   return columns;
 }

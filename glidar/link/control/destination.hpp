@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -32,5 +35,11 @@ struct DestinationRule {
 
 /// The text of an IPv4 address in its canonical form; empty if it is none.
 std::string canonical_ipv4(const std::string& text);
+
+/// The four bytes of an IPv4 address, as all protocols send them; 0.0.0.0 if the text is none.
+std::array<std::byte, 4> ipv4_bytes(const std::string& text);
+
+/// The text of the first four of these bytes, of which there must be as many.
+std::string ipv4_text(std::span<const std::byte> bytes);
 
 }  // namespace glidar::control

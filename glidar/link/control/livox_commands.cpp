@@ -55,18 +55,8 @@ std::uint32_t data_checksum(ByteView data) {
 }
 
 Bytes address_bytes(const std::string& address) {
-  Bytes bytes;
-  unsigned value = 0;
-  for (const char letter : address + ".") {
-    if (letter != '.') {
-      value = value * 10 + static_cast<unsigned>(letter - '0');
-      continue;
-    }
-    bytes.push_back(static_cast<std::byte>(value));
-    value = 0;
-  }
-  bytes.resize(4);
-  return bytes;
+  const std::array<std::byte, 4> parts = ipv4_bytes(address);
+  return {parts.begin(), parts.end()};
 }
 
 Bytes number_value(std::uint64_t value, std::size_t size) {
@@ -88,13 +78,6 @@ Bytes destination_value(const std::string& address, std::uint16_t port, std::uin
   put_little(bytes, port, 2);
   put_little(bytes, sensor_port, 2);
   return bytes;
-}
-
-std::string destination_address(ByteView value) {
-  std::string text;
-  for (std::size_t i = 0; i < 4; ++i)
-    text += (i > 0 ? "." : "") + std::to_string(std::to_integer<unsigned>(value[i]));
-  return text;
 }
 
 /// The keys of the Mid-360 (general_command_handler.cpp, GetQueryLidarInternalInfoKeys).
@@ -254,7 +237,7 @@ std::uint8_t LivoxCommands::check(std::uint16_t key, std::span<const std::byte> 
   if (std::equal(value.begin(), value.end(), known->second.begin())) return kLivoxSuccess;
   if (key < kStateDestination || key > kImuDestination) return kOutOfRange;
   const bool has_port = get<std::uint16_t>(value, 4) != 0;
-  const bool may_go = sensor_.destinations.allows(destination_address(value), client);
+  const bool may_go = sensor_.destinations.allows(ipv4_text(value), client);
   const bool is_source = get<std::uint16_t>(value, 6) == get<std::uint16_t>(known->second, 6);
   return has_port && may_go && is_source ? kLivoxSuccess : kOutOfRange;
 }
@@ -263,7 +246,7 @@ void LivoxCommands::apply(std::uint16_t key, std::span<const std::byte> value) {
   values_[key].assign(value.begin(), value.end());
   const bool is_points = key == kPointDestination;
   if ((!is_points && key != kImuDestination) || !sensor_.on_destination) return;
-  sensor_.on_destination({is_points ? kLivoxPointPort : kLivoxImuPort, destination_address(value),
+  sensor_.on_destination({is_points ? kLivoxPointPort : kLivoxImuPort, ipv4_text(value),
                           get<std::uint16_t>(value, 4)});
 }
 

@@ -38,22 +38,8 @@ void put_text(Bytes& bytes, std::string_view text, std::size_t size) {
 }
 
 void put_ipv4(Bytes& bytes, const std::string& address) {
-  std::size_t begin = 0;
-  for (int part = 0; part < 4; ++part) {
-    const std::size_t end = std::min(address.find('.', begin), address.size());
-    unsigned value = 0;
-    for (std::size_t i = begin; i < end; ++i)
-      value = value * 10 + static_cast<unsigned>(address[i] - '0');
-    bytes.push_back(static_cast<std::byte>(value));
-    begin = std::min(end + 1, address.size());
-  }
-}
-
-std::string ipv4_text(ByteView bytes) {
-  std::string text;
-  for (std::size_t i = 0; i < 4; ++i)
-    text += (i > 0 ? "." : "") + std::to_string(std::to_integer<unsigned>(bytes[i]));
-  return text;
+  const std::array<std::byte, 4> parts = ipv4_bytes(address);
+  bytes.insert(bytes.end(), parts.begin(), parts.end());
 }
 
 Bytes bytes_of(std::string_view text) {
