@@ -166,20 +166,3 @@ def html_picture(write: Callable[[Path], None]) -> str:
     """The PNG file that `write` writes, as an HTML image."""
     text = base64.b64encode(picture_of(write, "preview.png").data).decode()
     return f"<img src='data:image/png;base64,{text}' style='max-width:100%'>"
-
-
-def set_picture(
-    options: _core.SaveOptions,
-    colour_by: str,
-    size: tuple[int, int],
-    eye: npt.ArrayLike | None,
-    target: npt.ArrayLike | None,
-) -> None:
-    """Sets the options of pictures of clouds."""
-    one_of(colour_by, "colour_by", _core.colour_by_names())
-    width, height = (int(side) for side in whole_numbers(size, "picture_size", 2, 32))
-    options.set_picture(colour_by, width, height)
-    if eye is not None:
-        options.set_view_eye(floats(eye, "view_eye", (3,)))
-    if target is not None:
-        options.set_view_target(floats(target, "view_target", (3,)))

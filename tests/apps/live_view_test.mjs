@@ -88,7 +88,7 @@ async function streamsARig() {
   assert.ok(all.length > 100 && all.every(({ range, true_range: truth }) => Math.abs(range - truth) < 0.3));
   const [box, ...others] = of("/lidar/boxes")[0].message.markers;
   assert.deepEqual([others.length, box.ns, box.id, box.type, box.header.frame_id], [0, "crate", 1, 1, "lidar"]);
-  assert.deepEqual([box.scale.x, box.pose.position.x, box.pose.position.z], [1, 4, -0.5]);
+  assert.deepEqual([box.scale.x, box.pose.position.x, box.pose.position.z], [2, 4, -0.5]);
   const known = JSON.parse(box.text);
   assert.deepEqual([known.class, known.points, known.occlusion], ["crate", all.length, 0]);
   assert.ok(known.beams > 100);

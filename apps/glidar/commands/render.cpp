@@ -33,7 +33,7 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --duration 1 -o scans.mcap -o scans.pcap
-  glidar render examples/drive.yaml --duration 2 -o drive.kitti
+  glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --duration 0.2 -o drive.kitti
   glidar render builtin:box -o - --format csv
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --legacy-output view
 With your own files:

@@ -17,7 +17,7 @@ IMAGES = "depth|gray|mask|mask_visib"
 OF_SHARDS = re.compile(
     rf"parts/(?P<part>\d{{6,}})\.parquet|npz/shard-(?P<npz>\d{{6,}})-{HASH}\.npz"
     rf"|bop/(?:train|val|test)/(?P<bop>\d{{6,}})/(?:(?:{IMAGES})/\d{{6,}}(?:_\d{{6,}})?\.png"
-    r"|scene_(?:camera|gt|gt_info)\.json)", re.ASCII)
+    r"|scene_(?:boxes|camera|gt|gt_info)\.json)", re.ASCII)
 OF_TRIALS = re.compile(
     r"pcd/(?P<pcd>\d{9,})\.pcd|ply/(?P<ply>\d{9,})\.ply|exr/(?P<exr>\d{9,})\.exr"
     r"|mcap/(?P<mcap>\d{9,})\.mcap"
