@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numbers>
 #include <span>
 
 namespace glidar {
@@ -108,47 +110,100 @@ bool crosses_box(const Eigen::Vector3d& half_m, const Eigen::Vector3d& origin,
   return near <= far;  // false for a beam without a direction
 }
 
-/// An object whose beams are counted, and the beams as it sees them.
-struct CountedObject {
+/// The beams as objects see them that are at rest, or move alike.
+struct ObservedBeams {
   const Simulation& s;
-  ObjectBox& box;
   const Beams& beams;
+  double reach_m;                           ///< greatest distance of an origin of a beam
   const std::vector<std::uint32_t>& first;  ///< instance of each beam
 };
 
-/// Marks the beams that may hit the object behind another one, or beside what others hit.
-void mark_candidates(const CountedObject& object) {
-  constexpr double kMargin = 1e-6;
-  const Pose box_from_sensor = object.box.sensor_from_box.inverse();
-  const double distance_m = box_from_sensor.translation().norm();
-  const double margin_m = kMargin * (object.box.size_m.norm() + 1e-3 * distance_m);
-  const Eigen::Vector3d half_m = (0.5 * object.box.size_m).array() + margin_m;
-  const Eigen::Matrix3d turn = box_from_sensor.linear();
-  const Beams& beams = object.beams;
-  std::vector<std::uint8_t>& crosses = object.s.workspace.boxes.crosses;
-  crosses.assign(beams.size(), 0);
-  const auto mark = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d direction = turn * beams.directions[i];
-      if (object.first[i] == object.box.instance || std::isnan(direction.x())) continue;
-      Eigen::Vector3d origin = box_from_sensor.translation();
-      if (!beams.origins_m.empty()) origin += turn * beams.origins_m[i];
-      crosses[i] = static_cast<std::uint8_t>(crosses_box(half_m, origin, direction));
-    }
-  };
-  object.s.renderer.thread_pool().parallel_for(beams.size(), kFiringsPerTask, mark);
+/// The firings whose beams pass near the sphere around an object's box.
+const std::vector<std::uint32_t>& firings_near(const ObservedBeams& observed, const ObjectBox& box,
+                                               double radius_m) {
+  BoxWorkspace& memory = observed.s.workspace.boxes;
+  const Eigen::Vector3d& centre_m = box.sensor_from_box.translation();
+  const double distance_m = centre_m.norm();
+  const double sine = (radius_m + observed.reach_m) / distance_m;
+  const double angle_rad = sine < 1.0 ? std::asin(sine) : std::numbers::pi;
+  memory.grid.find(centre_m / distance_m, angle_rad, memory.near);
+  return memory.near;
 }
 
-/// The marked beams of a camera in a smaller camera, since some renderers know only cameras.
-bool crop_camera(const CountedObject& object, Beams& cropped) {
-  const Beams& beams = object.beams;
-  const std::vector<std::uint8_t>& crosses = object.s.workspace.boxes.crosses;
+/// Appends the firings to `crossing` whose beams may hit the object behind another one, or beside
+/// what others hit. Returns how many these are.
+std::size_t find_crossing(const ObservedBeams& observed, const ObjectBox& box) {
+  constexpr double kMargin = 1e-6;
+  const Pose box_from_sensor = box.sensor_from_box.inverse();
+  const double distance_m = box_from_sensor.translation().norm();
+  const double margin_m = kMargin * (box.size_m.norm() + 1e-3 * distance_m);
+  const Eigen::Vector3d half_m = (0.5 * box.size_m).array() + margin_m;
+  const Eigen::Matrix3d turn = box_from_sensor.linear();
+  const Beams& beams = observed.beams;
+  BoxWorkspace& memory = observed.s.workspace.boxes;
+  const std::vector<std::uint32_t>& near = firings_near(observed, box, half_m.norm() + margin_m);
+  const auto mark = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = near[k];
+      const Eigen::Vector3d direction = turn * beams.directions[i];
+      Eigen::Vector3d origin = box_from_sensor.translation();
+      if (!beams.origins_m.empty()) origin += turn * beams.origins_m[i];
+      memory.crosses[i] = static_cast<std::uint8_t>(observed.first[i] != box.instance &&
+                                                    crosses_box(half_m, origin, direction));
+    }
+  };
+  observed.s.renderer.thread_pool().parallel_for(near.size(), kFiringsPerTask, mark);
+  const std::size_t before = memory.crossing.size();
+  std::copy_if(near.begin(), near.end(), std::back_inserter(memory.crossing),
+               [&](std::uint32_t i) { return memory.crosses[i] != 0; });
+  return memory.crossing.size() - before;
+}
+
+/// An object and its part of `crossing`, of which it is the only owner while they are cast.
+struct CrossedObject {
+  std::uint32_t instance;
+  std::span<const std::uint32_t> firings;
+};
+
+/// Whether no other object that is cast into has one of the firings, or would be hit by one.
+bool is_apart(const ObservedBeams& observed, const CrossedObject& object) {
+  const BoxWorkspace& memory = observed.s.workspace.boxes;
+  const auto is_free = [&](std::uint32_t i) {
+    const std::uint32_t first = observed.first[i];
+    return memory.owners[i] == kInvalidId && (first == kInvalidId || memory.is_object[first] == 0);
+  };
+  return memory.hides[object.instance] == 0 &&
+         std::all_of(object.firings.begin(), object.firings.end(), is_free);
+}
+
+/// Gives their firings to objects, in their order, that do not affect each other. The other objects
+/// stay in the list.
+void claim_firings(const ObservedBeams& observed, std::vector<CrossedObject>& objects) {
+  BoxWorkspace& memory = observed.s.workspace.boxes;
+  std::fill(memory.is_object.begin(), memory.is_object.end(), std::uint8_t{0});
+  std::fill(memory.hides.begin(), memory.hides.end(), std::uint8_t{0});
+  memory.owned.clear();
+  const auto claim = [&](const CrossedObject& object) {
+    if (!is_apart(observed, object)) return false;
+    for (const std::uint32_t i : object.firings) {
+      memory.owners[i] = object.instance;
+      if (observed.first[i] != kInvalidId) memory.hides[observed.first[i]] = 1;
+    }
+    memory.owned.insert(memory.owned.end(), object.firings.begin(), object.firings.end());
+    memory.is_object[object.instance] = 1;
+    return true;
+  };
+  objects.erase(std::remove_if(objects.begin(), objects.end(), claim), objects.end());
+  std::sort(memory.owned.begin(), memory.owned.end());
+}
+
+/// A smaller camera around the firings with an owner, since some renderers know only cameras.
+/// `owned` then has all its pixels.
+void crop_camera(const Beams& beams, BoxWorkspace& memory) {
   Eigen::AlignedBox<std::int64_t, 2> window;
-  for (std::size_t i = 0; i < crosses.size(); ++i) {
-    if (crosses[i] == 0) continue;
+  for (const std::uint32_t i : memory.owned) {
     window.extend(Eigen::Vector2<std::int64_t>(i % beams.cols, i / beams.cols));
   }
-  if (window.isEmpty()) return false;
   PinholeIntrinsics camera = *beams.pinhole;
   const auto left = static_cast<std::uint32_t>(window.min().x());
   const auto top = static_cast<std::uint32_t>(window.min().y());
@@ -156,99 +211,127 @@ bool crop_camera(const CountedObject& object, Beams& cropped) {
   camera.height = static_cast<std::uint32_t>(window.max().y()) - top + 1;
   camera.cx -= left;
   camera.cy -= top;
+  Beams& cropped = memory.candidates;
   cropped.rows = camera.height;
   cropped.cols = camera.width;
-  cropped.directions.clear();
+  memory.owned.clear();
   for (std::uint32_t v = 0; v < camera.height; ++v) {
     for (std::uint32_t u = 0; u < camera.width; ++u) {
       cropped.directions.push_back(direction_through(plane_x(camera, u), plane_y(camera, v)));
+      memory.owned.push_back((top + v) * beams.cols + left + u);
     }
   }
   cropped.pinhole = camera;
-  return true;
 }
 
-/// The marked beams in one row.
-bool select_candidates(const CountedObject& object, Beams& selected) {
-  const Beams& beams = object.beams;
-  const std::vector<std::uint8_t>& crosses = object.s.workspace.boxes.crosses;
-  selected.directions.clear();
-  for (std::size_t i = 0; i < crosses.size(); ++i) {
-    if (crosses[i] == 0) continue;
+/// The firings with an owner in one row.
+void select_owned(const Beams& beams, BoxWorkspace& memory) {
+  Beams& selected = memory.candidates;
+  for (const std::uint32_t i : memory.owned) {
     selected.directions.push_back(beams.directions[i]);
     if (!beams.origins_m.empty()) selected.origins_m.push_back(beams.origins_m[i]);
   }
   selected.rows = 1;
   selected.cols = static_cast<std::uint32_t>(selected.directions.size());
-  return selected.cols > 0;
 }
 
-/// Casts the candidates into the object alone.
-bool cast_alone(const CountedObject& object) {
-  const Simulation& s = object.s;
+/// Casts the firings with an owner into all owners, and counts those that hit their own.
+void count_owned(const ObservedBeams& observed) {
+  const Simulation& s = observed.s;
   BoxWorkspace& memory = s.workspace.boxes;
   Beams& candidates = memory.candidates;
-  candidates.boresight = object.beams.boresight;
+  candidates.boresight = observed.beams.boresight;
+  candidates.directions.clear();
   candidates.origins_m.clear();
   candidates.pinhole.reset();
-  const bool is_camera = object.beams.pinhole && object.beams.origins_m.empty();
-  if (is_camera ? !crop_camera(object, candidates) : !select_candidates(object, candidates)) {
-    return false;
+  if (observed.beams.pinhole && observed.beams.origins_m.empty()) {
+    crop_camera(observed.beams, memory);
+  } else {
+    select_owned(observed.beams, memory);
   }
-  memory.is_object.assign(s.scene.instances.size(), 0);
-  memory.is_object[object.box.instance] = 1;
   CastRequest request = cast_request(s, candidates, {});
   request.instance_enabled = memory.is_object;
   request.beams_recur = false;
   s.renderer.cast(request, memory.hits);
-  return true;
+  for (std::size_t k = 0; k < memory.owned.size(); ++k) {
+    std::uint32_t& owner = memory.owners[memory.owned[k]];
+    if (owner == kInvalidId) continue;
+    if (memory.hits.instance[k] == owner) ++memory.hidden[owner];
+    owner = kInvalidId;
+  }
 }
 
-/// Counts the beams that hit the object behind others, which were cast. Of a cropped camera only
-/// those that are no other's: its other pixels hit the object first and are already counted.
-std::uint32_t count_hidden(const CountedObject& object) {
-  if (!cast_alone(object)) return 0;
-  const BoxWorkspace& memory = object.s.workspace.boxes;
-  const std::vector<std::uint32_t>& alone = memory.hits.instance;
-  if (!memory.candidates.pinhole) {
-    return static_cast<std::uint32_t>(std::count(alone.begin(), alone.end(), object.box.instance));
+/// Counts the beams that hit each object behind others. Objects are cast into at once where no beam
+/// that crosses the box of one of them can hit another one.
+void count_hidden(const ObservedBeams& observed, std::vector<CrossedObject>& objects) {
+  BoxWorkspace& memory = observed.s.workspace.boxes;
+  while (!objects.empty()) {
+    claim_firings(observed, objects);
+    count_owned(observed);
   }
-  const PinholeIntrinsics& whole = *object.beams.pinhole;
-  const PinholeIntrinsics& part = *memory.candidates.pinhole;
-  const auto left = static_cast<std::size_t>(std::lround(whole.cx - part.cx));
-  const auto top = static_cast<std::size_t>(std::lround(whole.cy - part.cy));
-  std::uint32_t count = 0;
-  for (std::size_t k = 0; k < alone.size(); ++k) {
-    const std::size_t pixel = (top + k / part.width) * object.beams.cols + left + k % part.width;
-    const bool is_hidden = memory.crosses[pixel] != 0 && alone[k] == object.box.instance;
-    count += static_cast<std::uint32_t>(is_hidden);
+  memory.crossing.clear();
+}
+
+/// Counts the hidden beams of objects that see the beams alike.
+void count_hidden(const ObservedBeams& observed, std::span<const ObjectBox> boxes) {
+  constexpr std::size_t kMaxCrossing = 1U << 22U;  // bounds the memory of many large objects
+  BoxWorkspace& memory = observed.s.workspace.boxes;
+  memory.crossing.clear();
+  memory.crossing.reserve(kMaxCrossing + observed.beams.size());
+  std::vector<CrossedObject> objects;
+  for (const ObjectBox& box : boxes) {
+    const std::size_t count = find_crossing(observed, box);
+    if (count > 0) objects.push_back({box.instance, std::span(memory.crossing).last(count)});
+    if (memory.crossing.size() > kMaxCrossing) count_hidden(observed, objects);
   }
-  return count;
+  count_hidden(observed, objects);
 }
 
 bool is_at_rest(const Simulation& s, std::uint32_t instance) {
   return std::holds_alternative<ConstantPose>(s.motion.world_from_instance[instance]);
 }
 
+double greatest_norm(const std::vector<Eigen::Vector3d>& vectors) {
+  double greatest = 0.0;
+  for (const Eigen::Vector3d& vector : vectors) greatest = std::max(greatest, vector.norm());
+  return greatest;
+}
+
 /// Counts the beams that would hit each object, and that do.
 void count_beams(const Simulation& s, std::span<ObjectBox> boxes) {
+  BoxWorkspace& memory = s.workspace.boxes;
   const Beams& nominal = nominal_beams(s);
   const std::vector<std::uint32_t>& first = first_instances(s, nominal);
+  memory.crosses.resize(nominal.size());
+  memory.owners.assign(nominal.size(), kInvalidId);
+  memory.is_object.resize(s.scene.instances.size());
+  memory.hides.resize(s.scene.instances.size());
+  memory.hidden.assign(s.scene.instances.size(), 0);
+  const auto count_of = [&](const Beams& beams, std::span<const ObjectBox> alike) {
+    memory.grid.build(beams.directions);
+    count_hidden({s, beams, greatest_norm(beams.origins_m), first}, alike);
+  };
+  if (s.is_moving) {
+    const CastRequest request = cast_request(s, nominal, {});
+    std::vector<ObjectBox> at_rest;
+    for (const ObjectBox& box : boxes) {
+      if (is_at_rest(s, box.instance)) {
+        at_rest.push_back(box);
+      } else {
+        count_of(beams_at_rest(timed_scene(s), request, box.instance, memory.moving), {&box, 1});
+      }
+    }
+    if (!at_rest.empty()) {
+      count_of(beams_at_rest(timed_scene(s), request, kInvalidId, memory.moving), at_rest);
+    }
+  } else {
+    count_of(nominal, boxes);
+  }
   const std::vector<std::uint32_t> visible =
       hits_per_instance(s, nominal.size(), first, [](std::size_t) { return true; });
-  const CastRequest request = cast_request(s, nominal, {});
-  const Beams* beams = &nominal;
-  std::optional<std::uint32_t> seen_by;  ///< the body as which `beams` are expressed
   for (ObjectBox& box : boxes) {
-    const std::uint32_t body = is_at_rest(s, box.instance) ? kInvalidId : box.instance;
-    if (s.is_moving && seen_by != body) {
-      beams = &beams_at_rest(timed_scene(s), request, body, s.workspace.boxes.moving);
-      seen_by = body;
-    }
     box.visible_beams = visible[box.instance];
-    const CountedObject object{s, box, *beams, first};
-    mark_candidates(object);
-    box.beams = box.visible_beams + count_hidden(object);
+    box.beams = box.visible_beams + memory.hidden[box.instance];
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/simulate/direction_grid.hpp>
 #include <glidar/simulate/moving_cast.hpp>
 #include <glidar/simulate/prepared_sensor.hpp>
 #include <glidar/simulate/return_replacement.hpp>
@@ -31,10 +32,17 @@ struct BoxWorkspace {
   Beams nominal;                        ///< one per firing, when pulses have several returns
   Hits nominal_hits;                    ///< of the nominal beams
   MovingCastWorkspace moving;           ///< the beams as the object sees them
-  std::vector<std::uint8_t> crosses;    ///< per firing: whether its beam may hit the object
-  Beams candidates;                     ///< beams that may hit the object
-  Hits hits;                            ///< of the candidates, on the object alone
-  std::vector<std::uint8_t> is_object;  ///< per instance, for casts of one of them
+  DirectionGrid grid;                   ///< of the beams as the objects see them
+  std::vector<std::uint32_t> near;      ///< firings whose beams pass near an object
+  std::vector<std::uint8_t> crosses;    ///< per firing: whether its beam may hit this object
+  std::vector<std::uint32_t> crossing;  ///< such firings of several objects, one after the other
+  std::vector<std::uint32_t> owners;    ///< per firing: the instance for which it is cast
+  std::vector<std::uint32_t> owned;     ///< the firings that have an owner, ascending
+  std::vector<std::uint8_t> is_object;  ///< per instance: whether beams are cast into it
+  std::vector<std::uint8_t> hides;      ///< per instance: whether it hides an owner from its beam
+  std::vector<std::uint32_t> hidden;    ///< per instance: beams that hit it behind others
+  Beams candidates;                     ///< the beams of the firings with an owner
+  Hits hits;                            ///< of the candidates
 };
 
 /// Memory that simulations of one sensor in one scene reuse from frame to frame.

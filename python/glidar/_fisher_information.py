@@ -9,8 +9,11 @@ import os
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _core
-from ._inputs import FloatArray, path_of
+from ._inputs import FloatArray, floats, path_of, whole
 from ._state import Immutable, SameContent, key_of, part, restoring, make_state
 
 
@@ -99,3 +102,13 @@ class FisherInformation(Immutable):
 
     def __str__(self) -> str:
         return self._core.text()
+
+
+def fisher_information_of(
+    core: _core.Frame, sigma_m: float, reference: npt.ArrayLike | None, instance: int | None
+) -> FisherInformation:
+    """The information of a frame; see ``Frame.fisher_information``."""
+    pose = floats(np.eye(4) if reference is None else reference, "reference", (4, 4))[None]
+    sigma = float(floats(sigma_m, "sigma_m", ()))
+    only = None if instance is None else whole(instance, "instance", len(core.world_from_objects) - 1)
+    return FisherInformation(_core.fisher_information(core, sigma, pose, only))

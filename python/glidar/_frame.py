@@ -16,14 +16,14 @@ from . import _core
 from ._bag_writer import bag_writer
 from ._cloud import Cloud
 from ._errors import Error, shown
-from ._fisher_information import FisherInformation
+from ._fisher_information import FisherInformation, fisher_information_of
 from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole
 from ._object_box import ObjectBox, boxes_of
 from ._origin import Origin
 from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, set_picture, show_images
 from ._state import Immutable, key_of, part, restoring, make_state
 from ._status import ReturnSource, Status
-from ._point_trace import PointTrace, trace_of
+from ._point_trace import PointTrace, entry_of, trace_of
 from ._ground_truth import GroundTruth
 
 _PCD = ("ascii", "binary", "binary_compressed")
@@ -375,19 +375,8 @@ class Frame(Immutable):
         Raises:
             Error: there is no such entry.
         """
-        return trace_of(_core.explain(self._with_renderer(), self._entry(index, row, col, drop_invalid)))
-
-    def _entry(self, index: int | None, row: int | None, col: int | None, drop_invalid: bool) -> int:
-        if index is None and row is not None and col is not None:
-            return whole(row, "row", self.rows - 1) * self.cols + whole(col, "col", self.cols - 1)
-        if index is None or row is not None or col is not None:
-            raise Error("explain", "a point is given twice or not at all", "index, or row and col")
-        if not drop_invalid:
-            return whole(index, "index", self.rows * self.cols - 1)
-        entries = np.flatnonzero(self.status == Status.hit)
-        if len(entries) == 0:
-            raise Error("index", f"{index}", "", "the frame has no hits")
-        return int(entries[whole(index, "index", len(entries) - 1)])
+        entry = entry_of(self.status, index, row, col, drop_invalid)
+        return trace_of(_core.explain(self._with_renderer(), entry))
 
     def fisher_information(
         self, *, sigma_m: float = 0.01, reference: npt.ArrayLike | None = None, instance: int | None = None
@@ -403,11 +392,7 @@ class Frame(Immutable):
         Raises:
             Error: normals were not kept, or a number is out of range.
         """
-        pose = floats(np.eye(4) if reference is None else reference, "reference", (4, 4))[None]
-        sigma = float(floats(sigma_m, "sigma_m", ()))
-        objects = len(self._core.world_from_objects)
-        only = None if instance is None else whole(instance, "instance", objects - 1)
-        return FisherInformation(_core.fisher_information(self._core, sigma, pose, only))
+        return fisher_information_of(self._core, sigma_m, reference, instance)
 
     def __repr__(self) -> str:
         return f"<glidar.Frame {self.number} of {self.rows} x {self.cols} beams, {self.hits} hits, seed {self.seed}>"

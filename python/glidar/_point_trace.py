@@ -6,8 +6,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _core
-from ._inputs import FloatArray
+from ._errors import Error
+from ._inputs import FloatArray, whole
 from ._state import SameContent
 from ._status import ReturnSource, Status
 
@@ -90,6 +94,23 @@ def _measurement(core: _core.Measurement) -> Measurement:
 
 def _sample(core: _core.RandomSample) -> RandomSample:
     return RandomSample("normal" if core.is_normal else "uniform", core.value, core.use, core.probability)
+
+
+def entry_of(
+    status: npt.NDArray[np.uint8], index: int | None, row: int | None, col: int | None, drop_invalid: bool
+) -> int:
+    """The number of an entry of a frame with these statuses: of a point of its cloud, or at a row and a column."""
+    if index is None and row is not None and col is not None:
+        rows, cols = status.shape
+        return whole(row, "row", rows - 1) * cols + whole(col, "col", cols - 1)
+    if index is None or row is not None or col is not None:
+        raise Error("explain", "a point is given twice or not at all", "index, or row and col")
+    if not drop_invalid:
+        return whole(index, "index", status.size - 1)
+    entries = np.flatnonzero(status == Status.hit)
+    if len(entries) == 0:
+        raise Error("index", f"{index}", "", "the frame has no hits")
+    return int(entries[whole(index, "index", len(entries) - 1)])
 
 
 def trace_of(core: _core.PointTrace) -> PointTrace:

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 
@@ -27,7 +28,9 @@ std::vector<std::string> requested_columns(const OutputFlags& flags) {
 }
 
 void check_layout(const OutputFlags& flags) {
-  if (flags.sink.layout.empty() || !flags.recording_paths.empty()) return;
+  if (flags.sink.layout.empty()) return;
+  const std::vector<std::string>& recordings = flags.recording_paths;
+  if (std::any_of(recordings.begin(), recordings.end(), bags::is_bag_name)) return;
   const auto takes_columns = [&](const std::string& path) {
     return format_of(flags, path).takes_more;
   };
