@@ -297,6 +297,32 @@ double greatest_norm(const std::vector<Eigen::Vector3d>& vectors) {
   return greatest;
 }
 
+/// Counts the hidden beams of objects that see these beams alike.
+void count_hidden_of(const Simulation& s, const Beams& beams,
+                     const std::vector<std::uint32_t>& first, std::span<const ObjectBox> boxes) {
+  s.workspace.boxes.grid.build(beams.directions);
+  count_hidden({s, beams, greatest_norm(beams.origins_m), first}, boxes);
+}
+
+/// Counts the hidden beams while something moves. Each moving object sees the beams in its own way.
+void count_hidden_in_motion(const Simulation& s, const Beams& nominal,
+                            const std::vector<std::uint32_t>& first,
+                            std::span<const ObjectBox> boxes) {
+  const CastRequest request = cast_request(s, nominal, {});
+  const auto beams_of = [&](std::uint32_t body) -> const Beams& {
+    return beams_at_rest(timed_scene(s), request, body, s.workspace.boxes.moving);
+  };
+  std::vector<ObjectBox> at_rest;
+  for (const ObjectBox& box : boxes) {
+    if (is_at_rest(s, box.instance)) {
+      at_rest.push_back(box);
+    } else {
+      count_hidden_of(s, beams_of(box.instance), first, {&box, 1});
+    }
+  }
+  if (!at_rest.empty()) count_hidden_of(s, beams_of(kInvalidId), first, at_rest);
+}
+
 /// Counts the beams that would hit each object, and that do.
 void count_beams(const Simulation& s, std::span<ObjectBox> boxes) {
   BoxWorkspace& memory = s.workspace.boxes;
@@ -307,25 +333,10 @@ void count_beams(const Simulation& s, std::span<ObjectBox> boxes) {
   memory.is_object.resize(s.scene.instances.size());
   memory.hides.resize(s.scene.instances.size());
   memory.hidden.assign(s.scene.instances.size(), 0);
-  const auto count_of = [&](const Beams& beams, std::span<const ObjectBox> alike) {
-    memory.grid.build(beams.directions);
-    count_hidden({s, beams, greatest_norm(beams.origins_m), first}, alike);
-  };
   if (s.is_moving) {
-    const CastRequest request = cast_request(s, nominal, {});
-    std::vector<ObjectBox> at_rest;
-    for (const ObjectBox& box : boxes) {
-      if (is_at_rest(s, box.instance)) {
-        at_rest.push_back(box);
-      } else {
-        count_of(beams_at_rest(timed_scene(s), request, box.instance, memory.moving), {&box, 1});
-      }
-    }
-    if (!at_rest.empty()) {
-      count_of(beams_at_rest(timed_scene(s), request, kInvalidId, memory.moving), at_rest);
-    }
+    count_hidden_in_motion(s, nominal, first, boxes);
   } else {
-    count_of(nominal, boxes);
+    count_hidden_of(s, nominal, first, boxes);
   }
   const std::vector<std::uint32_t> visible =
       hits_per_instance(s, nominal.size(), first, [](std::size_t) { return true; });
