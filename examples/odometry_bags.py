@@ -31,7 +31,8 @@ TOPIC = "/lidar/points"
 EXAMPLE = """examples:
   examples/odometry_bags.py                             # 20 s through the street with a VLP-16
   examples/odometry_bags.py --sensor OS1-32 --seconds 8 --format .bag
-  examples/odometry_bags.py --keep bags                 # the bags, for other programs"""
+  examples/odometry_bags.py --keep bags                 # the bags, for other programs
+  examples/odometry_bags.py --picture odometry.png      # the trajectories"""
 
 # What the clouds contain, and the phase of the revolution to which a pose belongs: KISS-ICP deskews to the end of the
 # revolution; what is not deskewed is seen, on average, from where the sensor is half-way.
@@ -89,6 +90,7 @@ def flags_of(arguments):
     parser.add_argument("--seed", type=int, default=1, help="of the sensor's noise [1]")
     parser.add_argument("--format", choices=[".rosbag2", ".bag"], default=".rosbag2", help="of the bags [.rosbag2]")
     parser.add_argument("--keep", metavar="FOLDER", help="existing folder for the bags [a temporary one]")
+    parser.add_argument("--picture", metavar="FILE", help="draws the trajectories and errors, for example as PNG")
     flags = parser.parse_args(arguments)
     if not 2 <= flags.seconds <= 60:
         parser.error("--seconds: from 2 to 60")
@@ -97,6 +99,8 @@ def flags_of(arguments):
 
 def main(arguments=None):
     flags = flags_of(arguments)
+    if flags.picture:
+        from odometry_pictures import draw_runs  # needs matplotlib
     with tempfile.TemporaryDirectory() as folder:
         runs = run(flags, flags.keep or folder)
     print(f"{len(runs[0].poses)} clouds; ATE after alignment, RPE over a second\n"
@@ -104,6 +108,8 @@ def main(arguments=None):
     for found in runs:
         print(f"{found.name:<14} {found.ate_m():6.3f} {found.errors_m.max():10.3f} {found.drift_percent:13.3f} "
               f"{found.turn_deg_m:10.4f}")
+    if flags.picture:
+        draw_runs(runs, flags.picture)
 
 
 if __name__ == "__main__":

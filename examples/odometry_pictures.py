@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of examples/lidar_odometry.py: the street with the trajectories, a wall as it is seen, errors over time."""
+"""The pictures of examples/lidar_odometry.py and examples/odometry_bags.py: trajectories, a revolution of the sensor, errors over time."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -9,27 +9,31 @@ from study_tools import aligned, relative_errors
 COLOURS = ("tab:red", "tab:orange", "tab:green")
 
 
-def draw_map(panel, runs, scans):
-    """From above: points where they truly are, and the trajectories, aligned."""
-    truth = runs[-1]
+def draw_points(panel, truth, scans):
+    """Points of the street from above, where they truly are."""
     for number in range(0, len(scans), 10):
-        pose, points = truth.ground_truth[number], scans[number].deskewed[::3]
+        pose, points = truth.truth[number], scans[number].deskewed[::3]
         world = points @ pose[:3, :3].T + pose[:3, 3]
         world = world[(world[:, 2] > 0.4) & (np.linalg.norm(points, axis=1) < 40)]
         panel.plot(world[:, 0], world[:, 1], ",", color="0.6", rasterized=True)
-    panel.plot(*truth.ground_truth[:, :2, 3].T, "k-", linewidth=2.5, label="ground truth")
-    for run, colour in zip(runs, COLOURS, strict=True):
-        found = aligned(run.poses[:, :3, 3], run.ground_truth[:, :3, 3]) @ run.poses
+
+
+def draw_trajectories(panel, runs):
+    """The trajectories from above, aligned with the ground truth."""
+    truth = runs[-1]
+    panel.plot(*truth.truth[:, :2, 3].T, "k-", linewidth=2.5, label="ground truth")
+    for run, colour in zip(runs, COLOURS, strict=False):
+        found = aligned(run.poses[:, :3, 3], run.truth[:, :3, 3]) @ run.poses
         panel.plot(*found[:, :2, 3].T, "-", color=colour, linewidth=1, label=run.name)
-    low, high = truth.ground_truth[:, :2, 3].min(axis=0) - 18, truth.ground_truth[:, :2, 3].max(axis=0) + 18
+    low, high = truth.truth[:, :2, 3].min(axis=0) - 18, truth.truth[:, :2, 3].max(axis=0) + 18
     panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x, m", ylabel="y, m", aspect="equal")
     panel.legend(fontsize=7, loc="upper left")
-    panel.set_title("the street and the trajectories", fontsize=9)
+    panel.set_title("trajectories from above", fontsize=9)
 
 
 def draw_scan(panel, runs, scans):
     """One turn, as it comes and deskewed, where the turning is quickest."""
-    truth = runs[-1].ground_truth
+    truth = runs[-1].truth
     headings = np.unwrap(np.arctan2(truth[:, 1, 0], truth[:, 0, 0]))
     scan = scans[int(np.abs(np.diff(headings)).argmax())]
     keep = (scan.deskewed[:, 2] > -1.2) & (np.abs(scan.deskewed[:, :2]).max(axis=1) < 25)
@@ -41,10 +45,10 @@ def draw_scan(panel, runs, scans):
 
 
 def draw_errors(upper, lower, runs):
-    for run, colour in zip(runs, COLOURS, strict=True):
+    for run, colour in zip(runs, COLOURS, strict=False):
         upper.plot(run.times_s, 100 * run.errors_m, color=colour, label=f"{run.name}: ATE {100 * run.ate_m():.1f} cm")
         apart = round(1 / (run.times_s[1] - run.times_s[0]))
-        metres, _ = relative_errors(run.poses, run.ground_truth, apart)
+        metres, _ = relative_errors(run.poses, run.truth, apart)
         lower.plot(run.times_s[apart:], 100 * metres, color=colour, label=f"{run.name}: {run.drift_percent:.2f} % of the way")
     upper.set_title("error of the position, cm", fontsize=9)
     lower.set_title("error of the motion over a second, cm", fontsize=9)
@@ -58,8 +62,20 @@ def draw_errors(upper, lower, runs):
 def draw(runs, scans, path):
     figure = Figure(figsize=(13, 4.2), dpi=100, layout="constrained")
     panels = figure.subplot_mosaic([["map", "scan", "upper"], ["map", "scan", "lower"]], width_ratios=[1.2, 1, 1.1])
-    draw_map(panels["map"], runs, scans)
+    draw_points(panels["map"], runs[-1], scans)
+    draw_trajectories(panels["map"], runs)
     draw_scan(panels["scan"], runs, scans)
+    draw_errors(panels["upper"], panels["lower"], runs)
+    for panel in panels.values():
+        panel.tick_params(labelsize=7)
+    figure.savefig(path)
+
+
+def draw_runs(runs, path):
+    """The trajectories and their errors."""
+    figure = Figure(figsize=(9.5, 4.2), dpi=100, layout="constrained")
+    panels = figure.subplot_mosaic([["map", "upper"], ["map", "lower"]], width_ratios=[1.2, 1.1])
+    draw_trajectories(panels["map"], runs)
     draw_errors(panels["upper"], panels["lower"], runs)
     for panel in panels.values():
         panel.tick_params(labelsize=7)

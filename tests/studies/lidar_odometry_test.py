@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples"))
-for package in ("numpy", "kiss_icp", "glidar"):
+for package in ("numpy", "kiss_icp", "matplotlib", "glidar"):
     if importlib.util.find_spec(package) is None:
         print(f"skipped: no package {package}")
         sys.exit(77)
@@ -19,6 +19,7 @@ for package in ("numpy", "kiss_icp", "glidar"):
 import lidar_odometry as study
 import numpy as np
 import study_tools as tools
+from odometry_pictures import draw
 
 import glidar
 
@@ -53,6 +54,12 @@ class Odometry(unittest.TestCase):
         moved = np.linalg.norm(scan.xyz - scan.deskewed, axis=1)[late]
         self.assertGreater(np.median(moved), 0.7 * way)
         self.assertLess(np.abs(scan.xyz - scan.deskewed)[scan.phase < 0.01].max(), 0.1 * way)
+
+    def test_the_picture_is_drawn(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = Path(folder, "odometry.png")
+            draw(list(self.runs.values()), self.scans, picture)
+            self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
 
     def test_files_hold_the_trajectories_and_scans(self):
         with tempfile.TemporaryDirectory() as folder:

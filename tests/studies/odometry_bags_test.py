@@ -11,12 +11,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples"))
-for package in ("numpy", "kiss_icp", "rosbags", "glidar"):
+for package in ("numpy", "kiss_icp", "matplotlib", "rosbags", "glidar"):
     if importlib.util.find_spec(package) is None:
         print(f"skipped: no package {package}")
         sys.exit(77)
 
 import odometry_bags as study
+from odometry_pictures import draw_runs
 
 SECONDS = 4.0
 # A second's way is 9 m, and the motion during a revolution 10 % of it; see docs/studies/lidar-odometry.md.
@@ -33,6 +34,9 @@ class OdometryOfBags(unittest.TestCase):
                 self.assertLess(with_times.drift_percent, MAX_DRIFT_PERCENT)
                 self.assertGreater(without.drift_percent, 1.1 * with_times.drift_percent)
                 self.assertGreater(without.turn_deg_m, with_times.turn_deg_m)
+                picture = Path(folder, "odometry.png")
+                draw_runs([with_times, without], picture)
+                self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
 
 
 if __name__ == "__main__":
