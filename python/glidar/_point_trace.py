@@ -102,7 +102,7 @@ def entry_of(
     """The number of an entry of a frame with these statuses: of a point of its cloud, or at a row and a column."""
     if index is None and row is not None and col is not None:
         rows, cols = status.shape
-        return whole(row, "row", rows - 1) * cols + whole(col, "col", cols - 1)
+        return int(whole(row, "row", rows - 1) * cols + whole(col, "col", cols - 1))
     if index is None or row is not None or col is not None:
         raise Error("explain", "a point is given twice or not at all", "index, or row and col")
     if not drop_invalid:

@@ -127,8 +127,9 @@ class Refusals(CliTest):
         for columns in ("xyz", "default"):
             error = self.refused(*render, "--layout", "velodyne", "--columns", columns)
             self.assertIn("both are given; give one of them", error)
-        error = self.refused("render", "nofile.ply", "-o", "x.png", "-o", "x.bin", "--layout", "ouster")
-        self.assertIn("no output takes a layout", error)
+        for outputs in (["-o", "x.png", "-o", "x.bin"], ["-o", "x.kitti"], ["-o", "x.osi"], ["-o", "x.pcap"]):
+            error = self.refused("render", "nofile.ply", *outputs, "--layout", "ouster")
+            self.assertIn("no output takes a layout", error)
         self.assertIn(".pcd .ply .npz .csv .las", error)
 
     def test_options_are_checked_before_anything_is_loaded(self):

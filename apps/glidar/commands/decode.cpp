@@ -208,6 +208,7 @@ int run_decode(DecodeFlags flags) {
     throw Error({"--output", "there is no -o, so nothing would be written",
                  "files of clouds: " + suffixes_with_columns(), "add -o cloud.pcd, for example"});
   }
+  check_layout(flags.output);
   Written written(flags);
   if (are_clouds) {
     decode_clouds(flags, console, written);

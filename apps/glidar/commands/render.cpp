@@ -241,6 +241,7 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
                             .renderer = renderer_name(flags)},
                            console.report());
   }
+  check_layout(flags.output);
   prepare_scene(
       flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
   Job job{flags, command, prepared, outputs_by_sensor(flags, prepared, console),

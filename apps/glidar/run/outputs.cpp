@@ -27,20 +27,6 @@ std::vector<std::string> requested_columns(const OutputFlags& flags) {
   return flags.columns.empty() ? default_columns() : flags.columns;
 }
 
-void check_layout(const OutputFlags& flags) {
-  if (flags.sink.layout.empty()) return;
-  const std::vector<std::string>& recordings = flags.recording_paths;
-  if (std::any_of(recordings.begin(), recordings.end(), bags::is_bag_name)) return;
-  const auto takes_columns = [&](const std::string& path) {
-    return format_of(flags, path).takes_more;
-  };
-  if (std::any_of(flags.paths.begin(), flags.paths.end(), takes_columns)) return;
-  throw Error({.where = "--layout",
-               .found = "no output takes a layout",
-               .allowed = "an output with the suffix " + suffixes_with_columns(),
-               .remedy = "add one, such as -o scan.pcd, or leave --layout out"});
-}
-
 /// Throws Error unless there is at most one standard output and its format is given.
 void check_standard_output(const OutputFlags& flags) {
   const auto count = std::count(flags.paths.begin(), flags.paths.end(), kStandardOutput);
@@ -179,6 +165,20 @@ OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
   return result;
 }
 
+void check_layout(const OutputFlags& flags) {
+  if (flags.sink.layout.empty()) return;
+  const std::vector<std::string>& recordings = flags.recording_paths;
+  if (std::any_of(recordings.begin(), recordings.end(), bags::is_bag_name)) return;
+  const auto takes_columns = [&](const std::string& path) {
+    return format_of(flags, path).takes_more;
+  };
+  if (std::any_of(flags.paths.begin(), flags.paths.end(), takes_columns)) return;
+  throw Error({.where = "--layout",
+               .found = "no output takes a layout",
+               .allowed = "an output with the suffix " + suffixes_with_columns(),
+               .remedy = "add one, such as -o scan.pcd, or leave --layout out"});
+}
+
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
                                  const SidecarContext& context, const Report& report,
                                  const ProgressCallback& progress) {
@@ -201,7 +201,6 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
     with_option_name("--legacy-output",
                      [&] { plan_legacy(flags.legacy_name, context, report, outputs); });
   }
-  check_layout(flags);
   check_names(outputs, input);
   return outputs;
 }

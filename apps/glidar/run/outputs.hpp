@@ -33,6 +33,9 @@ struct Output {
   std::unique_ptr<FileSink> sink;
 };
 
+/// Throws Error when a layout is given, but no output takes one.
+void check_layout(const OutputFlags& flags);
+
 /// All files, checked as far as possible before any work: suffix, folder, columns, no name twice,
 /// not the input itself. Writing uses the context, calls `progress` and sends warnings to `report`.
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,

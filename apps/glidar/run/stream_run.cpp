@@ -5,6 +5,7 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/peer_wait.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/placement.hpp>
@@ -110,6 +111,7 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
 
 void StreamRun::open_scene() {
   std::unique_ptr<NumberedFiles> files;
+  if (!flags_.foxglove && !flags_.ros2.publishes) check_layout(flags_.render.output);
   if (has_outputs(flags_.render.output)) {
     files = std::make_unique<NumberedFiles>(flags_, prepared_, console_);
   }
