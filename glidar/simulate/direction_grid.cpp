@@ -14,16 +14,14 @@ namespace {
 std::vector<Eigen::Vector3d> make_cell_centres(std::uint32_t side) {
   std::vector<Eigen::Vector3d> centres;
   const double scale = 2.0 / side;
-  for (Eigen::Index face = 0; face < 6; ++face) {
-    for (std::uint32_t row = 0; row < side; ++row) {
-      for (std::uint32_t column = 0; column < side; ++column) {
-        Eigen::Vector3d centre;
-        centre[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
-        centre[(face / 2 + 1) % 3] = scale * (column + 0.5) - 1.0;
-        centre[(face / 2 + 2) % 3] = scale * (row + 0.5) - 1.0;
-        centres.push_back(centre.normalized());
-      }
-    }
+  for (std::uint32_t cell = 0; cell < 6 * side * side; ++cell) {
+    const std::uint32_t face = cell / (side * side);
+    const auto axis = static_cast<Eigen::Index>(face / 2);
+    Eigen::Vector3d centre;
+    centre[axis] = face % 2 == 0 ? 1.0 : -1.0;
+    centre[(axis + 1) % 3] = scale * (cell % side + 0.5) - 1.0;
+    centre[(axis + 2) % 3] = scale * (cell / side % side + 0.5) - 1.0;
+    centres.push_back(centre.normalized());
   }
   return centres;
 }

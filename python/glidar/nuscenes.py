@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -35,8 +36,8 @@ START_US = 1_577_836_800_000_000  # 2020-01-01
 
 
 class NuscenesWriter:
-    """Writes a data set of one or more scenes. Files of measurements are written at once, the tables by ``close``,
-    or at the end of a ``with`` block without an exception.
+    """Writes a data set of one or more scenes. The folder appears when it is complete: by ``close``, or at the end of a
+    ``with`` block. If that ends by an exception, nothing remains.
 
     Args:
         folder: the data set's root; created, or an empty folder.
@@ -65,14 +66,20 @@ class NuscenesWriter:
         self._tables = tables.fixed_tables()
         self._indices = {"noise": 0}  # of categories, in lidarseg files
         self._scenes: set[str] = set()
-        self._root.mkdir(parents=True, exist_ok=True)
+        self._folder = self._root.resolve()
+        self._root = self._folder.with_name(f".{self._folder.name}.{os.getpid()}.tmp")
+        shutil.rmtree(self._root, ignore_errors=True)
+        self._root.mkdir(parents=True)
 
     def __enter__(self) -> NuscenesWriter:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        if kind is None:
-            self.close()
+        try:
+            if kind is None:
+                self.close()
+        finally:
+            shutil.rmtree(self._root, ignore_errors=True)
 
     def add_scene(
         self,
@@ -129,13 +136,13 @@ class NuscenesWriter:
         return category
 
     def close(self) -> None:
-        """Writes the tables.
+        """Writes the tables, and gives the folder its name.
 
         Raises:
-            Error: there is no scene.
+            Error: there is no scene, or the folder was made or filled meanwhile.
         """
         if not self._scenes:
-            raise Error(str(self._root), "it has no scene", "at least one scene", "call add_scene")
+            raise Error(str(self._folder), "it has no scene", "at least one scene", "call add_scene")
         for name, index in self._indices.items():
             self._tables["category"].append({"token": token("category", name), "name": name, "description": "", "index": index})
         has_colours = set(self._indices) <= set(tables.KNOWN_CATEGORIES)
@@ -144,6 +151,10 @@ class NuscenesWriter:
         for name in written:
             text = json.dumps(self._tables[name], indent=0)
             _core.write_file(str(self._root / self._version / f"{name}.json"), f"{text}\n".encode())
+        try:
+            self._root.rename(self._folder)  # replaces an empty folder
+        except OSError as error:
+            raise Error(str(self._folder), f"{error.strerror}", "a new or empty folder", "choose another name") from error
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -177,6 +188,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Error as error:
         print(f"glidar.nuscenes: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("glidar.nuscenes: interrupted; nothing was written", file=sys.stderr)
+        return 130
     print(f"wrote {given.output}")
     return 0
 

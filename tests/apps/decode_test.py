@@ -12,11 +12,13 @@ from cli_support import CliTest
 ROOM = ("builtin:box:size=20,16,6", "--eye", "1,2,0", "--sensor-rate", "0,0.3,0", "--duration", "0.2", "--ground-truth")
 
 
-class Decode(CliTest):
+class DecodeTest(CliTest):
     def arrays(self, name):
         with np.load(os.path.join(self.folder, name)) as stored:
             return {key: stored[key] for key in stored.files}
 
+
+class Decode(DecodeTest):
     def render(self, sensor, *outputs, options=(), columns="xyz,intensity,range,ring,time"):
         words = [word for output in outputs for word in ("-o", output)]
         self.succeed("render", *ROOM, "--sensor", sensor, "--columns", columns, *options, *words)
@@ -81,6 +83,31 @@ class Decode(CliTest):
         self.assertIn("a format without", self.refused("decode", "run.mcap", "-o", "a.png"))
         self.assertIn("no such file", self.refused("decode", "missing.pcap", "-o", "a.pcd").lower())
         self.assertIn("missing.pcap", self.refused("decode", "missing.pcap", "--sensor", "VLP-16", "-o", "a.pcd"))
+
+
+class Outputs(DecodeTest):
+    def setUp(self):
+        super().setUp()
+        self.succeed("render", *ROOM, "--sensor", "VLP-16", "-o", "scan.pcap")
+
+    def test_every_format_and_column_that_needs_no_measurement_is_written(self):
+        for name in ("a.las", "a.bin", "a.csv", "a.exr", "a.bev.png", "a.view.png", "a.instance.png", "a.class.png"):
+            with self.subTest(name):
+                self.succeed("decode", "scan.pcap", "--sensor", "VLP-16", "--frames", "1", "-o", name)
+        self.succeed("decode", "scan.pcap", "--sensor", "VLP-16", "--frames", "1", "--columns",
+                     "xyz,true_xyz,true_range,instance,class,primitive", "-o", "b.npz")
+        [name] = [name for name in self.files() if name.startswith("b")]
+        found = self.arrays(name)
+        self.assertTrue(np.isnan(found["true_range"]).all())
+        for column in ("instance", "class", "primitive"):
+            self.assertTrue((found[column] == 0xFFFFFFFF).all(), column)
+
+    def test_what_packets_do_not_have_is_refused(self):
+        decode = ("decode", "scan.pcap", "--sensor", "VLP-16")
+        self.assertIn("a recording of all sensors", self.refused(*decode, "-o", "a.mcap"))
+        self.assertIn("packets have no poses", self.refused(*decode, "-o", "a.pcd", "--frame", "world"))
+        self.assertIn("packets have no poses", self.refused(*decode, "-o", "a.pcd", "--deskew"))
+        self.assertIn("the frame was cast without it", self.refused(*decode, "-o", "a.pcd", "--columns", "normal"))
 
 
 if __name__ == "__main__":

@@ -127,8 +127,8 @@ class Refusals(CliTest):
         for columns in ("xyz", "default"):
             error = self.refused(*render, "--layout", "velodyne", "--columns", columns)
             self.assertIn("both are given; give one of them", error)
-        for outputs in (["-o", "x.png", "-o", "x.bin"], ["-o", "x.kitti"], ["-o", "x.osi"], ["-o", "x.pcap"]):
-            error = self.refused("render", "nofile.ply", *outputs, "--layout", "ouster")
+        for outputs in (["-o", "x.png", "-o", "x.bin"], ["-o", "x.kitti"], ["-o", "x.osi"], ["-o", "x.las"], ["-o", "x.pcap"]):
+            error = self.refused("render", "builtin:box", *outputs, "--sensor", "VLP-16", "--layout", "ouster")
             self.assertIn("no output takes a layout", error)
         self.assertIn(".pcd .ply .npz .csv .las", error)
 

@@ -150,3 +150,27 @@ def test_errors_name_what_is_missing(scene, tmp_path):
     data.add_scene(glidar.Scene(scene), duration_s=0.1, name="one")
     with pytest.raises(glidar.Error, match="name"):
         data.add_scene(glidar.Scene(scene), duration_s=0.1, name="one")
+
+
+def test_nothing_remains_of_a_data_set_that_ends_by_an_exception(scene, tmp_path, monkeypatch, capsys):
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("glidar._nuscenes_scene.SceneWriter.write", interrupt)
+        assert main([str(scene), "-o", str(tmp_path / "data"), "--duration", "0.2"]) == 130
+    assert "interrupted" in capsys.readouterr().err
+    assert main([str(tmp_path / "none.yaml"), "-o", str(tmp_path / "data")]) == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_empty_folder_is_filled_and_one_that_was_filled_meanwhile_is_kept(scene, tmp_path):
+    for name in ("empty", "filled"):
+        (tmp_path / name).mkdir()
+    assert main([str(scene), "-o", str(tmp_path / "empty"), "--duration", "0.05"]) == 0
+    assert (tmp_path / "empty" / "v1.0-mini" / "scene.json").exists()
+    with pytest.raises(glidar.Error, match="choose another name"), NuscenesWriter(tmp_path / "filled") as data:
+        data.add_scene(glidar.Scene(scene), duration_s=0.05)
+        (tmp_path / "filled" / "mine.txt").write_text("mine")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["empty", "filled"]
+    assert [path.name for path in (tmp_path / "filled").iterdir()] == ["mine.txt"]

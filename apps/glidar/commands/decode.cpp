@@ -138,6 +138,10 @@ void decode_packets(const DecodeFlags& flags, Console& console, Written& written
   auto packets = open_packets(flags.input, flags.topic);
   Sender sender = sender_of(flags);
   PacketFrames frames(std::move(packets), std::move(sender.decoder));
+  if (flags.output.frame == "world" || flags.output.deskew) {
+    throw Error({"--frame world and --deskew", "given for packets", "the axes of the sensor",
+                 "leave them out: packets have no poses"});
+  }
   const Scene nothing;
   DecodedFrame decoded;
   while (!written.is_enough() && frames.next(decoded)) {
@@ -199,11 +203,18 @@ void decode_clouds(const DecodeFlags& flags, Console& console, Written& written)
   }
 }
 
+void check_recordings(const DecodeFlags& flags) {
+  if (flags.output.recording_paths.empty()) return;
+  throw Error({"--output, " + flags.output.recording_paths.front(), "a recording of all sensors",
+               "files of clouds: " + suffixes_with_columns(), "choose one of these"});
+}
+
 int run_decode(DecodeFlags flags) {
   Console console(flags.quiet);
   flags.output.sink.sidecar = false;  // there is no measurement to describe
   const bool are_clouds = has_clouds(flags);
   if (!are_clouds && flags.output.columns.empty()) flags.output.columns = kDecodedColumns;
+  check_recordings(flags);
   if (flags.output.paths.empty()) {
     throw Error({"--output", "there is no -o, so nothing would be written",
                  "files of clouds: " + suffixes_with_columns(), "add -o cloud.pcd, for example"});

@@ -64,7 +64,11 @@ std::vector<std::string>& paths_for(const std::string& path, OutputFlags& flags)
   if (is_imu_samples_path(path)) return flags.imu_paths;
   const bool is_recording = bags::is_bag_name(path) || is_capture_name(path) ||
                             osi::is_osi_trace_name(path) || is_kitti_name(path);
-  return is_recording ? flags.recording_paths : flags.paths;
+  if (is_recording) return flags.recording_paths;
+  if (path != kStandardOutput && !has_format(path)) {
+    refuse_suffix(path, {".mcap", ".rosbag2", ".bag", ".pcap", ".osi", ".imu.csv", ".imu.npz"});
+  }
+  return flags.paths;
 }
 
 void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
@@ -170,7 +174,7 @@ std::string output_names_text() {
     names += (names.empty() ? "" : " ") + name + (contains(default_columns(), name) ? "*" : "");
   }
   text += indented(names);
-  text += "\nLayouts of clouds (" + suffixes_with_columns() + "):\n";
+  text += "\nLayouts of clouds (" + suffixes_with_layouts() + " and bags):\n";
   for (const PointFieldLayout& layout : cloud_layouts()) {
     text += fmt::format("  {:<12} {}\n", layout.name, layout.description);
   }

@@ -169,13 +169,13 @@ void check_layout(const OutputFlags& flags) {
   if (flags.sink.layout.empty()) return;
   const std::vector<std::string>& recordings = flags.recording_paths;
   if (std::any_of(recordings.begin(), recordings.end(), bags::is_bag_name)) return;
-  const auto takes_columns = [&](const std::string& path) {
-    return format_of(flags, path).takes_more;
+  const auto is_laid_out = [&](const std::string& path) {
+    return takes_layout(path == kStandardOutput ? "stdout." + flags.format : path);
   };
-  if (std::any_of(flags.paths.begin(), flags.paths.end(), takes_columns)) return;
+  if (std::any_of(flags.paths.begin(), flags.paths.end(), is_laid_out)) return;
   throw Error({.where = "--layout",
                .found = "no output takes a layout",
-               .allowed = "an output with the suffix " + suffixes_with_columns(),
+               .allowed = "a bag, or an output with the suffix " + suffixes_with_layouts(),
                .remedy = "add one, such as -o scan.pcd, or leave --layout out"});
 }
 

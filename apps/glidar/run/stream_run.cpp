@@ -47,12 +47,10 @@ woods2016::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
   return {.endpoint = *flags.pose_source, .queue = flags.pose_queue};
 }
 
-/// The bags and captures; empty: none.
-std::string written_text(const std::vector<std::unique_ptr<FrameSink>>& sinks) {
+/// The names of bags and captures.
+std::string names_of(const std::vector<std::filesystem::path>& files) {
   std::string text;
-  for (const auto& sink : sinks) {
-    for (const std::filesystem::path& file : sink->files()) text += " " + file.string();
-  }
+  for (const std::filesystem::path& file : files) text += " " + file.string();
   return text.empty() ? text : "wrote" + text + "\n";
 }
 
@@ -354,7 +352,14 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     }
   };
   if (publisher_) attempt([&] { publisher_->shut_down(is_urgent ? kUrgent : kUnhurried); });
-  for (const auto& sink : sinks_) attempt([&] { sink->finish(); });
+  std::vector<std::filesystem::path> written;
+  for (const auto& sink : sinks_) {
+    attempt([&] {
+      sink->finish();
+      const std::vector<std::filesystem::path> files = sink->files();
+      written.insert(written.end(), files.begin(), files.end());
+    });
+  }
   errors_.flush();
   StreamSummary summary{.stats = stats_,
                         .ending = ending,
@@ -370,7 +375,7 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     });
   }
   if (recorder_) attempt([&] { recorder_->commit(); });
-  if (!flags_.render.quiet) fmt::print("{}{}", summary_text(summary), written_text(sinks_));
+  if (!flags_.render.quiet) fmt::print("{}{}", summary_text(summary), names_of(written));
   if (failure) std::rethrow_exception(failure);
 }
 

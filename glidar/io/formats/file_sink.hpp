@@ -98,6 +98,18 @@ std::string all_suffixes();
 /// The suffixes of formats that store any column: ".pcd .ply .npz .csv .las .exr".
 std::string suffixes_with_columns();
 
+/// Whether the file of this name has the fields of a layout, and the suffixes of such files. Throws
+/// Error as format_for() does.
+bool takes_layout(const std::filesystem::path& path);
+std::string suffixes_with_layouts();
+
+/// Whether a name has the suffix of a format.
+bool has_format(const std::filesystem::path& path);
+
+/// Throws the Error of a name that is not one of a file, nor has one of these other suffixes.
+[[noreturn]] void refuse_suffix(const std::filesystem::path& path,
+                                const std::vector<std::string>& others);
+
 /// All columns that a format may read.
 std::vector<std::string> needed_columns(const FileFormat& format);
 

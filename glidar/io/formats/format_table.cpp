@@ -23,6 +23,7 @@
 #include <glidar/io/formats/woods2016_png_file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <string>
 
@@ -66,30 +67,45 @@ std::filesystem::path without_separators(const std::filesystem::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-}  // namespace
-
-std::filesystem::path output_path(const std::filesystem::path& path) {
-  return find_format(path).info.is_folder ? without_separators(path) : path;
-}
-
-const Format& find_format(const std::filesystem::path& given) {
-  const std::filesystem::path path = without_separators(given);
-  const std::string name = lower_case(path.filename().string());
+/// The format with the longest suffix that a name has; null: none.
+const Format* matching_format(const std::filesystem::path& path) {
+  const std::string name = lower_case(without_separators(path).filename().string());
   const Format* best = nullptr;
   for (const Format& format : formats()) {
     const std::string& suffix = format.info.suffix;
     if (name.size() <= suffix.size() || !name.ends_with(suffix)) continue;
     if (best == nullptr || suffix.size() > best->info.suffix.size()) best = &format;
   }
-  if (best != nullptr) return *best;
-  const std::string suffix = lower_case(path.extension().string());
+  return best;
+}
+
+}  // namespace
+
+std::filesystem::path output_path(const std::filesystem::path& path) {
+  return find_format(path).info.is_folder ? without_separators(path) : path;
+}
+
+const Format& find_format(const std::filesystem::path& path) {
+  const Format* format = matching_format(path);
+  if (format == nullptr) refuse_suffix(path, {});
+  return *format;
+}
+
+bool has_format(const std::filesystem::path& path) {
+  return matching_format(path) != nullptr;
+}
+
+void refuse_suffix(const std::filesystem::path& given, const std::vector<std::string>& others) {
+  const std::string suffix = lower_case(without_separators(given).extension().string());
   std::vector<std::string> all;
   for (const Format& format : formats()) all.push_back(format.info.suffix);
+  all.insert(all.end(), others.begin(), others.end());
   const std::string nearest = suffix.empty() ? "" : closest_match(suffix, all);
   throw Error({given.string(),
                suffix.empty() ? "the name has no suffix that selects a format"
                               : fmt::format("no format has the suffix {}", excerpt(suffix)),
-               all_suffixes(), nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
+               fmt::format("{}", fmt::join(all, " ")),
+               nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
 }
 
 std::span<const FileFormat> file_formats() {
@@ -108,6 +124,20 @@ const FileFormat& format_for(const std::filesystem::path& path) {
 std::string all_suffixes() {
   std::string text;
   for (const Format& format : formats()) text += (text.empty() ? "" : " ") + format.info.suffix;
+  return text;
+}
+
+bool takes_layout(const std::filesystem::path& path) {
+  const Format& format = find_format(path);
+  return format.info.takes_more && format.content == Content::points;
+}
+
+std::string suffixes_with_layouts() {
+  std::string text;
+  for (const Format& format : formats()) {
+    if (takes_layout("a" + format.info.suffix))
+      text += (text.empty() ? "" : " ") + format.info.suffix;
+  }
   return text;
 }
 

@@ -228,6 +228,8 @@ void RevolutionAssembler::emit(std::vector<DecodedFrame>& frames) {
   made.beams.times_ns.resize(size);
   made.beams.rings.resize(size);
   resize(made.frame, size);
+  resize(made.frame.ground_truth, size, {});
+  write_misses({}, 0, size, made.frame.ground_truth);  // packets have none
   made.frame.rows = made.beams.rows;
   made.frame.cols = made.beams.cols;
   made.frame.frame_id = made.beams.frame_id;

@@ -64,6 +64,8 @@ void PointAssembler::emit(std::vector<DecodedFrame>& frames) {
   made.beams.times_ns.resize(points_.size());
   made.beams.rings.resize(points_.size());
   resize(made.frame, points_.size());
+  resize(made.frame.ground_truth, points_.size(), {});
+  write_misses({}, 0, points_.size(), made.frame.ground_truth);  // packets have none
   made.frame.rows = made.beams.rows;
   made.frame.cols = made.beams.cols;
   made.frame.frame_id = made.beams.frame_id;
