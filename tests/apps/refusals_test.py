@@ -130,7 +130,7 @@ class Refusals(CliTest):
         for outputs in (["-o", "x.png", "-o", "x.bin"], ["-o", "x.kitti"], ["-o", "x.osi"], ["-o", "x.las"], ["-o", "x.pcap"]):
             error = self.refused("render", "builtin:box", *outputs, "--sensor", "VLP-16", "--layout", "ouster")
             self.assertIn("no output takes a layout", error)
-        self.assertIn(".pcd .ply .npz .csv .las", error)
+        self.assertIn("a bag, or an output with the suffix .pcd .ply .npz .csv;", error)
 
     def test_options_are_checked_before_anything_is_loaded(self):
         for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: auto, rays"),

@@ -66,7 +66,9 @@ std::vector<std::string>& paths_for(const std::string& path, OutputFlags& flags)
                             osi::is_osi_trace_name(path) || is_kitti_name(path);
   if (is_recording) return flags.recording_paths;
   if (path != kStandardOutput && !has_format(path)) {
-    refuse_suffix(path, {".mcap", ".rosbag2", ".bag", ".pcap", ".osi", ".imu.csv", ".imu.npz"});
+    with_option_name("--output", [&] {
+      refuse_suffix(path, {".mcap", ".rosbag2", ".bag", ".pcap", ".osi", ".imu.csv", ".imu.npz"});
+    });
   }
   return flags.paths;
 }
