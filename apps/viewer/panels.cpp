@@ -44,7 +44,7 @@ bool choose(const char* label, const std::string& shown, const Names& names, std
 const std::vector<std::string>& preset_names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
-    for (const std::filesystem::path& path : preset_files()) names.push_back(path.stem().string());
+    for (const SensorPreset& preset : sensor_presets()) names.push_back(preset.name);
     return names;
   }();
   return kNames;

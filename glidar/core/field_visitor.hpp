@@ -68,6 +68,13 @@ struct NamesAccess {
   FunctionRef<void(const std::string&)> add;
 };
 
+/// Keys of a file that describes several sensors. Readers merge them before they read the rest.
+enum class FamilyKey : std::uint8_t {
+  overrides,  ///< maps of overrides of the document's keys, by names of the user's own
+  name,       ///< one of these names
+  names       ///< a list of further names
+};
+
 /// A word of files for a value.
 template <class Value>
 struct Named {
@@ -166,6 +173,9 @@ class FieldVisitor {
                        DescribeAt describe) = 0;
   /// Where numbers come from: a map of texts by other keys of this map, or a list of such keys.
   virtual void provenance(const FieldInfo& field, bool /*is_map*/) { key(field); }
+
+  /// A key of a file that describes several sensors.
+  virtual void family(const FieldInfo& field, FamilyKey /*key*/) { key(field); }
 
   /// Keys of which a map has at most one.
   virtual void at_most_one(const KeyChoice& /*choice*/) {}

@@ -55,6 +55,8 @@ struct Sensor {
   std::vector<NoiseStep> noise;         ///< applied in this order
   bool cull_back_faces = false;         ///< true: beams pass through the backs of triangles
   std::vector<std::string> files = {};  ///< the files that define it
+  std::string variant = {};             ///< of a family of sensors in a file; empty: none
+  std::string mode = {};                ///< of the file, such as "1024x10"; empty: none
 };
 
 /// The status of a surface at this true range on a beam: hit, too_near or too_far.

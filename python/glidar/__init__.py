@@ -24,7 +24,18 @@ from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
 from ._scene import Scene, load_scene, surface_names
 from ._scene_data import RigSensor
-from ._sensor import Sensor, DatasheetEntry, camera, load_sensor, sensor, sensor_file, sensor_names, datasheet
+from ._sensor import (
+    DatasheetEntry,
+    Sensor,
+    SensorPreset,
+    camera,
+    datasheet,
+    load_sensor,
+    sensor,
+    sensor_file,
+    sensor_names,
+    sensor_presets,
+)
 from ._simulate import simulate, simulate_batch, simulate_iter, simulate_rig
 from ._simulator import Simulator
 from ._status import ReturnSource, Status
@@ -55,6 +66,7 @@ __all__ = [
     "Measurement",
     "Scene",
     "Sensor",
+    "SensorPreset",
     "DatasheetEntry",
     "Simulator",
     "Status",
@@ -79,6 +91,7 @@ __all__ = [
     "sensor",
     "sensor_file",
     "sensor_names",
+    "sensor_presets",
     "datasheet",
     "simulate",
     "simulate_batch",

@@ -228,7 +228,7 @@ def _plain_arrays(mesh: dict[str, Any]) -> dict[str, Any]:
 
 def _is_preset(name: str) -> bool:
     """Presets have other paths on another machine; the digest of the scene shows whether they differ."""
-    return os.path.dirname(name) == os.path.dirname(_core.sensor_file(_core.preset_names()[0]))
+    return os.path.dirname(name) == os.fspath(_core.sensor_folder())
 
 
 def _hash_of(name: str) -> str:

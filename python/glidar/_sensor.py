@@ -150,13 +150,21 @@ class Sensor(Immutable):
 
     def __getstate__(self) -> dict[str, Any]:
         core = self._core
-        return make_state("Sensor", document=core.document(), table=core.beam_table(), files=core.files)
+        return make_state(
+            "Sensor",
+            document=core.document(),
+            table=core.beam_table(),
+            files=core.files,
+            variant=core.variant,
+            mode=core.mode,
+        )
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         with restoring("Sensor", state):
             table = None if state["table"] is None else stored_table(part(state, "table", dict))
             files = [text_of(name, "files") for name in part(state, "files", list)]
-            self._core = _core.parse_sensor(part(state, "document", str), table, files)
+            names = (part(state, "variant", str), part(state, "mode", str))
+            self._core = _core.parse_sensor(part(state, "document", str), table, files, names)
 
     @property
     def name(self) -> str:
@@ -187,6 +195,11 @@ class Sensor(Immutable):
     def rate_hz(self) -> float:
         """Frames per second, Hz."""
         return self._core.rate_hz
+
+    @property
+    def mode(self) -> str | None:
+        """Name of the mode in which it was loaded; None: its file has no modes."""
+        return self._core.mode or None
 
     @property
     def frame_id(self) -> str:
@@ -285,6 +298,7 @@ def _return_names(returns: object) -> list[str]:
 def load_sensor(
     name_or_path: str | os.PathLike[str],
     *,
+    mode: str | None = None,
     returns: int | str | Iterable[str] | None = None,
     rate_hz: float | None = None,
     columns_per_turn: int | None = None,
@@ -295,15 +309,17 @@ def load_sensor(
     """A sensor by the name of a preset (``sensor_names()``), or from a sensor file (YAML).
 
     Args:
-        name_or_path: name of a preset, or path of a sensor file.
+        name_or_path: name or alias of a preset, or path of a sensor file; ``FILE#VARIANT`` for a file with variants.
+            Names are compared without case, "-", "_" and spaces.
+        mode: mode of the sensor, such as "2048x10"; None: its default mode.
         returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h: settings that replace
             those of the preset or file, as for ``Sensor.replace``.
 
     Raises:
-        Error: there is no such sensor (with the nearest names), the file is malformed (with line, column and
-            field), a setting is out of range, or the sensor does not have it.
+        Error: there is no such sensor (with the nearest names) or mode (with those that exist), the file is malformed
+            (with line, column and field), a setting is out of range, or the sensor does not have it.
     """
-    loaded = Sensor(_core.load_sensor(path_of(name_or_path, "sensor")))
+    loaded = Sensor(_core.load_sensor(path_of(name_or_path, "sensor"), _mode(mode)))
     return loaded.replace(
         returns=returns,
         rate_hz=rate_hz,
@@ -318,18 +334,51 @@ def load_sensor(
 sensor = load_sensor
 
 
+def _mode(mode: str | None) -> str:
+    if mode is None:
+        return ""
+    given = text_of(mode, "mode")
+    if not given:
+        raise Error("mode", "an empty text", "the name of a mode", "None means the default mode")
+    return given
+
+
 def sensor_file(name: str) -> str:
-    """The path of a preset's sensor file.
+    """The path of the sensor file that a preset is read from, which is that of its family for a variant.
 
     Raises:
         Error: there is no preset of this name; with the nearest names.
     """
-    return os.fspath(_core.sensor_file(path_of(name, "sensor")))
+    return os.fspath(_core.sensor_file(path_of(name, "sensor"))[0])
 
 
 def sensor_names() -> list[str]:
     """Names of the presets."""
-    return _core.preset_names()
+    return [preset.name for preset in sensor_presets()]
+
+
+@dataclass(frozen=True)
+class SensorPreset:
+    """A bundled sensor."""
+
+    name: str
+    title: str
+    """Name of the sensor with that of its manufacturer."""
+    aliases: tuple[str, ...]
+    """Further names."""
+    modes: tuple[str, ...]
+    """Names of its modes, for ``load_sensor(name, mode=...)``."""
+    default_mode: str | None
+    """The mode that is used if none is chosen; None: it has none."""
+
+
+def sensor_presets(text: str = "") -> list[SensorPreset]:
+    """The presets, sorted by name: all, or those whose name, alias or title contains the text. Case, "-", "_" and
+    spaces do not count."""
+    return [
+        SensorPreset(name, title, tuple(aliases), tuple(modes), default or None)
+        for name, title, aliases, modes, default in _core.sensor_presets(text_of(text, "text"))
+    ]
 
 
 @dataclass(frozen=True)
@@ -344,9 +393,10 @@ class DatasheetEntry:
     """Whether the value was checked against the manufacturer's documents."""
 
 
-def datasheet(name_or_path: str | os.PathLike[str]) -> list[DatasheetEntry]:
-    """Every value of a preset or sensor file with its source, in the order of the file."""
-    return [DatasheetEntry(*entry) for entry in _core.datasheet(path_of(name_or_path, "sensor"))]
+def datasheet(name_or_path: str | os.PathLike[str], *, mode: str | None = None) -> list[DatasheetEntry]:
+    """Every value of a preset or sensor file with its source, in the order of the file; ``mode`` as for
+    ``load_sensor``."""
+    return [DatasheetEntry(*entry) for entry in _core.datasheet(path_of(name_or_path, "sensor"), _mode(mode))]
 
 
 def camera(

@@ -53,8 +53,8 @@ Shared make(Sensor sensor) {
   return std::make_shared<SensorHandle>(std::move(sensor));
 }
 
-Shared load(const std::string& name_or_path) {
-  return make(load_sensor_file(find_sensor_file(name_or_path)));
+Shared load(const std::string& name_or_path, const std::string& mode) {
+  return make(load_sensor_file(find_sensor_file(name_or_path, mode)));
 }
 
 /// A table of beams from Python: `shape` (rows, cols), `period_ns`, and arrays of one row per
@@ -72,11 +72,15 @@ RayTable table_of(const nb::dict& arrays) {
 }
 
 /// A sensor from the keys of a sensor file; `files` lists the files that it was originally read
-/// from.
+/// from, and the pair names the variant and mode of these.
 Shared parse(const std::string& text, const std::optional<nb::dict>& table,
-             const std::vector<std::string>& files) {
+             const std::vector<std::string>& files,
+             const std::pair<std::string, std::string>& variant_and_mode) {
   Sensor sensor = table ? parse_sensor(text, table_of(*table)) : parse_sensor(text);
   sensor.files.insert(sensor.files.end(), files.begin(), files.end());
+  const auto& [variant, mode] = variant_and_mode;
+  if (!variant.empty()) sensor.variant = variant;
+  if (!mode.empty()) sensor.mode = mode;
   return make(std::move(sensor));
 }
 
@@ -129,9 +133,10 @@ nb::object directions(const nb::handle& self) {
 }
 
 /// One entry per number of the file: key, value, source, whether it is verified.
-nb::list sheet(const std::string& name_or_path) {
+nb::list sheet(const std::string& name_or_path, const std::string& mode) {
   nb::list list;
-  for (const DatasheetEntry& entry : load_datasheet(find_sensor_file(name_or_path)).entries) {
+  const SensorReference reference = find_sensor_file(name_or_path, mode);
+  for (const DatasheetEntry& entry : load_datasheet(reference).entries) {
     list.append(nb::make_tuple(entry.key, entry.value, entry.source, entry.verified));
   }
   return list;
@@ -141,10 +146,20 @@ std::string description(const SensorHandle& handle) {
   return sensor_to_json(handle.sensor(), *handle.beams(0));
 }
 
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  for (const std::filesystem::path& file : preset_files()) names.push_back(file.stem().string());
-  return names;
+/// One entry per preset: name, title, aliases, modes, default mode ("": none).
+nb::list presets(const std::string& text) {
+  nb::list list;
+  for (const SensorPreset& preset : matching_presets(text)) {
+    list.append(nb::make_tuple(preset.name, preset.title, preset.aliases, preset.modes,
+                               preset.default_mode));
+  }
+  return list;
+}
+
+/// The file, and the variant of a family or an empty text.
+nb::tuple sensor_file(const std::string& name_or_path) {
+  const SensorReference reference = find_sensor_file(name_or_path);
+  return nb::make_tuple(reference.file, reference.variant);
 }
 
 void bind_options(nb::module_& module) {
@@ -177,6 +192,8 @@ void bind_sensor(nb::module_& module) {
       .def_prop_ro("returns", [](const SensorHandle& self) { return self.beams(0)->returns; })
       .def_prop_ro("frame_id", [](const SensorHandle& self) { return self.beams(0)->frame_id; })
       .def_prop_ro("directions", directions, nb::sig("def directions(self) -> numpy.ndarray"))
+      .def_prop_ro("variant", [](const SensorHandle& self) { return self.sensor().variant; })
+      .def_prop_ro("mode", [](const SensorHandle& self) { return self.sensor().mode; })
       .def_prop_ro("files", [](const SensorHandle& self) { return self.sensor().files; })
       .def("description", description)
       .def("document", [](const SensorHandle& self) { return sensor_document(self.sensor()); })
@@ -184,15 +201,22 @@ void bind_sensor(nb::module_& module) {
            nb::sig("def beam_table(self) -> dict[str, typing.Any] | None"))
       .def("changed", changed, nb::arg("options"))
       .def("ground_truth", made_ground_truth);
-  module.def("load_sensor", load, nb::arg("name_or_path"));
-  module.def("parse_sensor", parse, nb::arg("text"), nb::arg("table").none() = nb::none(),
-             nb::arg("files") = std::vector<std::string>(),
-             nb::sig("def parse_sensor(text: str, table: dict[str, typing.Any] | None = None, "
-                     "files: list[str] = []) -> Sensor"));
-  module.def("datasheet", sheet, nb::arg("name_or_path"),
-             nb::sig("def datasheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
-  module.def("sensor_file", find_sensor_file, nb::arg("name_or_path"));
-  module.def("preset_names", preset_names);
+  module.def("load_sensor", load, nb::arg("name_or_path"), nb::arg("mode") = "");
+  module.def(
+      "parse_sensor", parse, nb::arg("text"), nb::arg("table").none() = nb::none(),
+      nb::arg("files") = std::vector<std::string>(),
+      nb::arg("variant_and_mode") = std::pair<std::string, std::string>(),
+      nb::sig("def parse_sensor(text: str, table: dict[str, typing.Any] | None = None, "
+              "files: list[str] = [], variant_and_mode: tuple[str, str] = ('', '')) -> Sensor"));
+  module.def("datasheet", sheet, nb::arg("name_or_path"), nb::arg("mode") = "",
+             nb::sig("def datasheet(name_or_path: str, mode: str = '') -> "
+                     "list[tuple[str, str, str, bool]]"));
+  module.def("sensor_file", sensor_file, nb::arg("name_or_path"),
+             nb::sig("def sensor_file(name_or_path: str) -> tuple[pathlib.Path, str]"));
+  module.def("sensor_folder", sensor_folder);
+  module.def("sensor_presets", presets, nb::arg("text") = "",
+             nb::sig("def sensor_presets(text: str = '') -> "
+                     "list[tuple[str, str, list[str], list[str], str]]"));
 }
 
 }  // namespace glidar::python

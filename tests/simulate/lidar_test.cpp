@@ -54,9 +54,9 @@ struct Room {
 };
 
 TEST(Lidar, EveryPresetCastsInARoom) {
-  for (const auto& file : preset_files()) {
-    SCOPED_TRACE(file.string());
-    Sensor sensor = ground_truth_sensor(load_sensor_file(file));
+  for (const SensorPreset& preset : sensor_presets()) {
+    SCOPED_TRACE(preset.name);
+    Sensor sensor = ground_truth_sensor(load_sensor_file(preset.reference));
     EXPECT_LT(sensor.limits.near_m, kHalfSide_m);
     sensor.limits.far_m = 100.0;  // the room's corners may be beyond a sensor's far limit
     const Room room(sensor);

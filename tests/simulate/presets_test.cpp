@@ -76,9 +76,9 @@ struct Ball {
 };
 
 TEST(Presets, MeasureARoomWithIntensityAndNoise) {
-  for (const auto& file : preset_files()) {
-    SCOPED_TRACE(file.stem().string());
-    Sensor sensor = load_sensor_file(file);
+  for (const SensorPreset& one : sensor_presets()) {
+    SCOPED_TRACE(one.name);
+    Sensor sensor = load_sensor_file(one.reference);
     sensor.limits = {.along = Limits::Along::range};
     const Ball room(sensor, 2.0, 0.5);
     EXPECT_GT(room.share_of_hits(), 0.999);

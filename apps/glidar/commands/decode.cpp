@@ -8,11 +8,10 @@
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/packet_frames.hpp>
+#include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_clouds.hpp>
 #include <glidar/io/bags/bag_topics.hpp>
-#include <glidar/io/config/sensor_file.hpp>
-#include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
 
 #include <fmt/format.h>
@@ -41,6 +40,7 @@ Examples:
 struct DecodeFlags {
   std::string input;
   std::string sensor;    ///< that sent the packets
+  std::string mode;      ///< of this sensor; empty: its default mode
   std::string metadata;  ///< of an Ouster sensor; empty: FILE.json
   std::string topic;     ///< of a bag; empty: the first that fits
   std::optional<std::uint64_t> frames;
@@ -83,7 +83,7 @@ Sender sender_of(const DecodeFlags& flags) {
          "--sensor with a preset of Velodyne, Ouster, Hesai or Livox, or --metadata of an Ouster",
          "add --sensor VLP-16, for example"});
   }
-  Sender sender{load_sensor_file(find_sensor_file(flags.sensor)), nullptr};
+  Sender sender{load_sensor(flags.sensor, flags.mode), nullptr};
   PacketOptions options;
   options.ouster.profile = flags.output.ouster_profile;
   with_option_name("--sensor",
@@ -241,6 +241,8 @@ Command add_decode(CLI::App& program) {
   const OptionGroup input(command, "Input");
   input.add("--sensor", "NAME|FILE", "Preset or file of the sensor that sent the packets",
             flags->sensor);
+  input.add("--mode", "NAME", "Mode of the sensor, for example 2048x10 [its default mode]",
+            flags->mode);
   input.add("--metadata", "FILE", "Metadata of an Ouster sensor [FILE.json, or of the bag]",
             flags->metadata);
   input.add("--topic", "NAME", "Topic of a bag [the first one with clouds or packets]",
@@ -248,6 +250,7 @@ Command add_decode(CLI::App& program) {
   input.add("--frames", "N", "End after N frames [all]", flags->frames,
             whole<std::uint64_t>(1, std::numeric_limits<std::uint32_t>::max()));
   forbid_together(command, {"--sensor"}, {"--metadata"});
+  require_option(command, {"--mode"}, "--sensor");
   add_output_options(command, flags->output);
   hide_standard_output(command);
   command.remove_option(command.get_option("--no-sidecar"));

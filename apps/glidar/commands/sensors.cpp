@@ -3,13 +3,14 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/options/sensor_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/imu_list.hpp>
+#include <apps/glidar/run/surface_list.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/text.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
-#include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/pictures/pattern_picture.hpp>
 #include <glidar/math/constants.hpp>
@@ -21,7 +22,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -33,9 +33,10 @@ namespace {
 
 constexpr const char* kSensorsExamples = R"(Examples:
   glidar sensors
+  glidar sensors livox
   glidar sensors VLP-16
   glidar sensors Livox-Mid-40 -o pattern.png
-  glidar sensors OS1-128 --json
+  glidar sensors OS1-128 --mode 2048x10 --json
   glidar sensors --surfaces
   glidar sensors --imus
   glidar sensors BMI088
@@ -49,6 +50,7 @@ Exit codes: 0 done, 2 no such sensor.)";
 
 struct SensorsFlags {
   std::string name;
+  std::string mode;
   std::string picture;
   bool surfaces = false;
   bool imus = false;
@@ -163,8 +165,22 @@ void print_heading() {
              "rows", "cols", "view, degrees", "rate", "points/s", "range", "beam, mrad", "backed");
 }
 
+/// A line with names, of which the chosen one is marked; nothing without names.
+void print_names(const char* heading, const std::vector<std::string>& names,
+                 const std::string& chosen) {
+  if (names.empty()) return;
+  fmt::print("{}: ", heading);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    fmt::print("{}{}{}", i > 0 ? ", " : "", names[i], names[i] == chosen ? " (this one)" : "");
+  }
+  fmt::print("\n");
+}
+
 void print_sheet(const Datasheet& sheet, const Summary& s) {
-  fmt::print("{}\n\n", sheet.sensor.name);
+  fmt::print("{}\n", sheet.sensor.name);
+  print_names("aliases", sheet.aliases, "");
+  print_names("modes", sheet.modes, sheet.sensor.mode);
+  fmt::print("\n");
   print_heading();
   print_row(sheet, s);
   fmt::print("\n");
@@ -190,6 +206,9 @@ Json json_of(const Datasheet& sheet, const Summary& s) {
   const Limits& limits = sheet.sensor.limits;
   return {{"name", sheet.name},
           {"sensor", sheet.sensor.name},
+          {"aliases", sheet.aliases},
+          {"modes", sheet.modes},
+          {"mode", sheet.sensor.mode},
           {"kind", s.kind},
           {"rows", s.rows},
           {"cols", s.cols},
@@ -217,56 +236,13 @@ void print_json(const Json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-constexpr std::array kSurfaceWavelengths_nm = {850, 905, 1064, 1550};
-
-std::array<double, kSurfaceWavelengths_nm.size()> reflectances(const SurfacePreset& surface) {
-  std::array<double, kSurfaceWavelengths_nm.size()> values{};
-  std::transform(kSurfaceWavelengths_nm.begin(), kSurfaceWavelengths_nm.end(), values.begin(),
-                 [&](int nm) { return interpolate(surface.spectrum, nm * 1e-9); });
-  return values;
-}
-
-Json json_of(const SurfacePreset& surface) {
-  Json reflectance = Json::object();
-  const auto values = reflectances(surface);
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    reflectance[std::to_string(kSurfaceWavelengths_nm[k])] = values[k];
-  }
-  return {{"name", surface.name},
-          {"about", surface.about},
-          {"reflectance_at_nm", reflectance},
-          {"diffuse", std::holds_alternative<Lambert>(surface.backscatter)},
-          {"source", surface.source},
-          {"verified", surface.verified}};
-}
-
-void print_surfaces(const std::vector<SurfacePreset>& surfaces) {
-  fmt::print("{:<16}", "name");
-  for (const int nm : kSurfaceWavelengths_nm) fmt::print("{:>6} nm", nm);
-  fmt::print("  {:<7}  {:<8}  {}\n", "form", "verified", "what it is");
-  for (const SurfacePreset& surface : surfaces) {
-    fmt::print("{:<16}", surface.name);
-    for (const double reflectance : reflectances(surface)) fmt::print("{:>9.3f}", reflectance);
-    const bool is_diffuse = std::holds_alternative<Lambert>(surface.backscatter);
-    fmt::print("  {:<7}  {:<8}  {}\n", is_diffuse ? "diffuse" : "glossy",
-               surface.verified ? "yes" : "no", surface.about);
-  }
-}
-
-int list_surfaces(const SensorsFlags& flags) {
+int print_surfaces(const SensorsFlags& flags) {
   if (!flags.name.empty() || !flags.picture.empty()) {
     throw Error({.where = "--surfaces",
                  .found = "a sensor or an output is given too",
                  .allowed = "--surfaces alone, or with --json"});
   }
-  const std::vector<SurfacePreset> surfaces = load_surfaces();
-  if (!flags.json) {
-    print_surfaces(surfaces);
-    return kDone;
-  }
-  Json json = Json::array();
-  for (const SurfacePreset& surface : surfaces) json.push_back(json_of(surface));
-  print_json(json);
+  list_surfaces(flags.json);
   return kDone;
 }
 
@@ -277,16 +253,21 @@ std::string png_name(const std::string& path) {
   return path;
 }
 
-int list_all(const SensorsFlags& flags) {
+int list_presets(const SensorsFlags& flags, const std::vector<SensorPreset>& presets) {
   if (!flags.picture.empty()) {
     throw Error({.where = "-o",
                  .found = "no sensor is given",
                  .remedy = "for example: glidar sensors VLP-16 -o pattern.png"});
   }
+  if (!flags.mode.empty()) {
+    throw Error({.where = "--mode",
+                 .found = "no sensor is given",
+                 .remedy = "for example: glidar sensors OS1-128 --mode 2048x10"});
+  }
   Json json = Json::array();
   if (!flags.json) print_heading();
-  for (const auto& file : preset_files()) {
-    const Datasheet sheet = load_datasheet(file);
+  for (const SensorPreset& preset : presets) {
+    const Datasheet sheet = load_datasheet(preset.reference);
     const Summary summary = summarise_sensor(sheet, make_beams(sheet.sensor));
     if (flags.json) {
       json.push_back(json_of(sheet, summary));
@@ -316,12 +297,31 @@ bool print_imus(const SensorsFlags& flags) {
   return true;
 }
 
+/// Whether the name is that of a file or preset; else it is a part of names.
+bool names_one_sensor(const std::string& name) {
+  const std::filesystem::path path = split_variant(name).file;
+  std::error_code error;
+  return path.has_parent_path() || lower_case(path.extension().string()) == ".yaml" ||
+         lower_case(path.extension().string()) == ".yml" || preset_named(name).has_value() ||
+         std::filesystem::is_regular_file(path, error);
+}
+
+/// The sensor with its sources; errors name --mode.
+Datasheet load_sheet(const SensorsFlags& flags) {
+  Datasheet sheet;
+  with_mode_option([&] { sheet = load_datasheet(find_sensor_file(flags.name, flags.mode)); });
+  return sheet;
+}
+
 int run_sensors(const SensorsFlags& flags) {
   if (print_imus(flags)) return kDone;
-  if (flags.surfaces) return list_surfaces(flags);
-  if (flags.name.empty()) return list_all(flags);
-  const std::filesystem::path file = find_sensor_file(flags.name);
-  const Datasheet sheet = load_datasheet(file);
+  if (flags.surfaces) return print_surfaces(flags);
+  if (flags.name.empty()) return list_presets(flags, sensor_presets());
+  if (!names_one_sensor(flags.name)) {
+    const std::vector<SensorPreset> matching = matching_presets(flags.name);
+    if (!matching.empty()) return list_presets(flags, matching);
+  }
+  const Datasheet sheet = load_sheet(flags);
   const Beams beams = make_beams(sheet.sensor);
   const Summary summary = summarise_sensor(sheet, beams);
   if (flags.json) {
@@ -332,9 +332,7 @@ int run_sensors(const SensorsFlags& flags) {
     print_sheet(sheet, summary);
   }
   if (flags.picture.empty()) return kDone;
-  std::vector<std::string> inputs = sheet.sensor.files;
-  inputs.push_back(file.string());
-  refuse_overwrite_of_inputs(inputs, flags.picture);
+  refuse_overwrite_of_inputs(sheet.sensor.files, flags.picture);
   write_pattern_picture(beams, flags.picture);
   if (!flags.json) fmt::print("\nwrote {}\n", flags.picture);
   return kDone;
@@ -347,10 +345,15 @@ Command add_sensors(CLI::App& program) {
       *program.add_subcommand("sensors", "List the sensor presets, or print one with its sources");
   const auto flags = std::make_shared<SensorsFlags>();
   command.footer(kSensorsExamples);
-  command.add_option("name", flags->name, "Sensor preset or sensor file, or IMU preset")
+  command
+      .add_option("name", flags->name,
+                  "Sensor preset, part of its name, or sensor file; or IMU preset")
       ->type_name("NAME");
-  OptionGroup(command, "Options")
-      .add("-o,--output", "OUT.png", "Image of its beam pattern (PNG)", flags->picture, png_name);
+  const OptionGroup options(command, "Options");
+  options.add("--mode", "NAME", "Mode of the sensor, for example 2048x10 [its default mode]",
+              flags->mode);
+  options.add("-o,--output", "OUT.png", "Image of its beam pattern (PNG)", flags->picture,
+              png_name);
   command.add_flag("--surfaces", flags->surfaces,
                    "List the surface presets and their reflectances");
   command.add_flag("--imus", flags->imus, "List the IMU presets");

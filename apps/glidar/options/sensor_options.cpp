@@ -74,11 +74,14 @@ void add_sensor_options(CLI::App& command, SensorFlags& flags) {
   const OptionGroup group(command, "Sensor");
   group.add("--sensor", "NAME|FILE", "Sensor preset (see glidar sensors) or sensor file (YAML)",
             flags.file);
+  group.add("--mode", "NAME", "Mode of the sensor, for example 2048x10 [its default mode]",
+            flags.mode);
   add_camera_options(group, flags);
   add_scan_options(group, flags);
   add_light_options(group, flags);
   const OptionNames camera = {"--width", "--height", "--fov", "--fx", "--fy", "--cx", "--cy"};
   forbid_together(command, {"--sensor"}, camera);
+  require_option(command, {"--mode"}, "--sensor");
   forbid_together(command, {"--fov"}, {"--fx", "--fy"});
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <apps/glidar/options/cli_fwd.hpp>
+#include <glidar/core/error.hpp>
 #include <glidar/io/config/sensor_options.hpp>
 
 #include <array>
@@ -15,6 +16,7 @@ namespace glidar::app {
 /// The sensor as given on the command line; empty: not given.
 struct SensorFlags : SensorOptions {
   std::string file;
+  std::string mode;
   std::optional<std::uint32_t> width;
   std::optional<std::uint32_t> height;
   std::optional<double> fov_deg;
@@ -29,6 +31,18 @@ struct SensorFlags : SensorOptions {
   bool cull_back_faces = false;
   bool ground_truth = false;
 };
+
+/// Runs `work`; its errors about a sensor's mode name the option.
+template <class Work>
+void with_mode_option(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    ErrorParts parts = error.parts();
+    if (parts.where == "mode") parts.where = "--mode";
+    throw Error(parts);
+  }
+}
 
 void add_sensor_options(CLI::App& command, SensorFlags& flags);
 

@@ -112,6 +112,12 @@ void refuse_returns_of_ground_truth(const SensorFlags& flags) {
 
 }  // namespace
 
+Sensor load_sensor(const std::string& name_or_path, const std::string& mode) {
+  Sensor sensor;
+  with_mode_option([&] { sensor = load_sensor_file(find_sensor_file(name_or_path, mode)); });
+  return sensor;
+}
+
 bool names_sensor(const SensorFlags& flags) {
   return !flags.file.empty() || camera_given(flags);
 }
@@ -119,7 +125,7 @@ bool names_sensor(const SensorFlags& flags) {
 Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file) {
   Sensor sensor;
   if (!flags.file.empty()) {
-    sensor = load_sensor_file(find_sensor_file(flags.file));
+    sensor = load_sensor(flags.file, flags.mode);
   } else if (camera_given(flags) || from_scene_file == nullptr) {
     sensor.optics = make_pinhole(flags);
   } else {

@@ -5,6 +5,8 @@
 #include <apps/glidar/options/sensor_options.hpp>
 #include <glidar/sensor/sensor.hpp>
 
+#include <string>
+
 namespace glidar::app {
 
 /// The sensor file or preset if given, else the camera that the flags describe, else the scene
@@ -12,6 +14,9 @@ namespace glidar::app {
 /// limits, light, weather and returns. --ground-truth removes pulsed light and noise. Throws Error,
 /// also when a frame would not fit into this machine's memory.
 Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file);
+
+/// The sensor of --sensor in the mode of --mode; empty: its default mode. Throws Error.
+Sensor load_sensor(const std::string& name_or_path, const std::string& mode);
 
 /// Whether the flags select a sensor or describe a camera.
 bool names_sensor(const SensorFlags& flags);

@@ -31,7 +31,7 @@ struct ImuDatasheet {
 
 ImuDatasheet load_imu_datasheet(const std::filesystem::path& path);
 
-/// The bundled IMU files, by name: those in the folder imu of preset_files().
+/// The bundled IMU files, by name: those in the folder imu of that of the sensor presets.
 std::vector<std::filesystem::path> imu_preset_files();
 
 /// The file of an IMU given by name or path, as find_sensor_file().

@@ -173,6 +173,13 @@ class SchemaBuilder final : public FieldVisitor {
   void provenance(const FieldInfo& field, bool is_map) override {
     add(field, {{"type", is_map ? "object" : "array"}, {"x-default", "none"}});
   }
+  void family(const FieldInfo& field, FamilyKey key) override {
+    Schema schema = {{"type", "object"}, {"additionalProperties", {{"type", "object"}}}};
+    if (key == FamilyKey::name) schema = {{"type", "string"}};
+    if (key == FamilyKey::names) schema = {{"type", "array"}, {"items", {{"type", "string"}}}};
+    schema["x-default"] = "none";
+    add(field, std::move(schema));
+  }
   void at_most_one(const KeyChoice& choice) override {
     for (std::size_t i = 0; i < choice.keys.size(); ++i) {
       for (std::size_t k = i + 1; k < choice.keys.size(); ++k) {

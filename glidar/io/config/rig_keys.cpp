@@ -27,8 +27,14 @@ struct SensorPlan {
   std::string file;  ///< empty: it is part of the scene file, or a preset
 };
 
-/// The file of a preset.
-fs::path find_preset(const FieldVisitor& visitor, const char* key, const std::string& name) {
+/// The keys of a sensor and of its mode.
+struct SensorFields {
+  FieldInfo sensor;
+  FieldInfo mode;
+};
+
+/// A preset.
+SensorReference find_preset(const FieldVisitor& visitor, const char* key, const std::string& name) {
   try {
     return find_sensor_file(name);
   } catch (const Error& error) {
@@ -38,11 +44,16 @@ fs::path find_preset(const FieldVisitor& visitor, const char* key, const std::st
 }
 
 /// Loads a sensor file; errors state both places.
-Sensor load_named_sensor(const std::string& where, const fs::path& file) {
+Sensor load_named_sensor(const FieldVisitor& visitor, const SensorFields& fields,
+                         const SensorReference& reference) {
   try {
-    return load_sensor_file(file);
+    return load_sensor_file(reference);
   } catch (const Error& error) {
-    reject_at(where, error);
+    const ErrorParts& parts = error.parts();
+    if (parts.where == "mode") {
+      visitor.reject(fields.mode.key, parts.found, parts.allowed, parts.remedy);
+    }
+    reject_at(visitor.where(fields.sensor.key), error);
   }
 }
 
@@ -55,29 +66,43 @@ Sensor load_named_sensor(const std::string& where, const fs::path& file) {
                          : "paths are relative to the folder of this file");
 }
 
-/// A sensor by the path of its file or the name of a preset.
-SensorPlan find_sensor(FieldVisitor& visitor, const FieldInfo& field, const fs::path& name) {
+/// A sensor by the path of its file, FILE#VARIANT, or the name of a preset.
+SensorPlan find_sensor(FieldVisitor& visitor, const SensorFields& fields, const fs::path& name,
+                       const std::string& mode) {
+  const FieldInfo& field = fields.sensor;
   std::string file;
   visitor.path(field, file);
   const bool is_path = name.has_parent_path() || name.has_extension() || fs::exists(file);
-  const std::string where = visitor.where(field.key);
-  if (!is_path) {
-    return {load_named_sensor(where, find_preset(visitor, field.key, name.string())), ""};
+  SensorReference reference =
+      is_path ? split_variant(file) : find_preset(visitor, field.key, name.string());
+  reference.mode = mode;
+  if (!is_path) return {load_named_sensor(visitor, fields, reference), ""};
+  if (!fs::exists(reference.file)) {
+    reject_missing_file(visitor, field.key, reference.file.string());
   }
-  if (!fs::exists(file)) reject_missing_file(visitor, field.key, file);
-  return {load_named_sensor(where, file), file};
+  return {load_named_sensor(visitor, fields, reference), reference.file.string()};
 }
 
-/// A sensor: a map, the path of a sensor file, or the name of a preset.
-bool visit_sensor(FieldVisitor& visitor, const FieldInfo& field, bool is_present,
+/// A sensor: a map, the path of a sensor file, or the name of a preset. The last two may have a
+/// mode, which writers do not need, since they write a map.
+bool visit_sensor(FieldVisitor& visitor, const SensorFields& fields, bool is_present,
                   SensorPlan& plan) {
+  const FieldInfo& field = fields.sensor;
   if (visitor.is_writing() && !is_present) return false;
   SensorKeys keys = visitor.is_writing() ? sensor_keys(plan.sensor) : SensorKeys{};
   std::string name;
+  std::string mode;
   const auto body = [&](FieldVisitor& nested) { describe(keys, nested); };
   visitor.text_or_object(field, kSensorForms, name, FieldVisitor::Describe(body));
+  if (!visitor.is_writing()) visitor.text(fields.mode, mode);
+  visitor.needs({fields.mode.key, field.key, "together with a sensor", "add the sensor"});
   if (!visitor.is_reading() || !visitor.has(field.key)) return is_present;
-  plan = name.empty() ? SensorPlan{std::move(keys.sensor), ""} : find_sensor(visitor, field, name);
+  if (name.empty() && !mode.empty()) {
+    visitor.reject(fields.mode.key, "a mode, but the sensor is a map",
+                   "a mode of a preset or sensor file", "leave the mode out");
+  }
+  plan = name.empty() ? SensorPlan{std::move(keys.sensor), ""}
+                      : find_sensor(visitor, fields, name, mode);
   return true;
 }
 
@@ -95,8 +120,11 @@ struct RigSensorPlan {
 
 void describe(RigSensorPlan& plan, FieldVisitor& visitor) {
   plan.where_name = visit_rig_name(visitor, plan.name);
-  visit_sensor(visitor, {"sensor", "as the key `sensor` of a scene", kNoUnit, kRequired}, true,
-               plan.sensor);
+  visit_sensor(visitor,
+               {{"sensor", "as the key `sensor` of a scene", kNoUnit, kRequired},
+                {"mode", "[mode](sensors.md#variants-and-modes) of the sensor", kNoUnit, false,
+                 "its default mode"}},
+               true, plan.sensor);
   visit_pose(visitor,
              {"pose", "rig_from_sensor, a [pose](motion.md#poses)", kNoUnit, false, "identity"},
              true, plan.rig_from_sensor);
@@ -154,10 +182,12 @@ void visit_single_sensor(FieldVisitor& visitor, bool is_present, ScenePlan& plan
   if (has_sensor) sensor.sensor = plan.sensors.front().sensor;
   const bool is_given = visit_sensor(
       visitor,
-      {"sensor",
-       "path of a [sensor file](sensors.md), its content as a map, or the name of a preset such as "
-       "`VLP-16`",
-       kNoUnit, false, "none"},
+      {{"sensor",
+        "path of a [sensor file](sensors.md), its content as a map, or the name of a preset such "
+        "as `VLP-16`",
+        kNoUnit, false, "none"},
+       {"sensor_mode", "[mode](sensors.md#variants-and-modes) of the sensor, such as `2048x10`",
+        kNoUnit, false, "its default mode"}},
       has_sensor, sensor);
   if (visitor.is_reading() && is_given) add(std::move(sensor), "", Pose::Identity(), plan);
   const BodyKeys fields = {
@@ -203,7 +233,7 @@ std::string visit_rig_name(FieldVisitor& visitor, std::string& name) {
 }
 
 void visit_rig(FieldVisitor& visitor, ScenePlan& plan) {
-  for (const char* key : {"sensor", "sensor_pose", "sensor_motion"}) {
+  for (const char* key : {"sensor", "sensor_mode", "sensor_pose", "sensor_motion"}) {
     visitor.at_most_one({.keys = {"sensors", key},
                          .allowed = "sensors, rig_pose, rig_motion",
                          .conflict_remedy = "a rig of sensors has poses of its own: rig_pose and "

@@ -9,12 +9,22 @@
 
 namespace glidar {
 
-/// Reads a sensor from YAML (docs/files.md). Every error names file:line:column, the field, what is
-/// allowed and the nearest known key.
+/// A sensor of a file: one of its variants if it is a family of sensors, in one of its modes.
+struct SensorReference {
+  std::filesystem::path file;
+  std::string variant = {};  ///< empty: the file has no variants
+  std::string mode = {};     ///< empty: the default mode
+};
+
+/// Reads a sensor from YAML (docs/sensors.md). Every error names file:line:column, the field, what
+/// is allowed and the nearest known key, and the variant and mode if there are any. A family
+/// without the name of a variant is an error that lists them, an unknown mode one that lists the
+/// modes.
+Sensor load_sensor_file(const SensorReference& reference);
 Sensor load_sensor_file(const std::filesystem::path& path);
 
 /// The same from a text, YAML or JSON; files that it names count from the working folder. Errors
-/// name the field.
+/// name the field. Of its modes, the default one is read.
 Sensor parse_sensor(const std::string& text);
 
 /// The same of a text without `optics`: the sensor's beams are those of the table.

@@ -97,6 +97,23 @@ void visit_projector(Sensor& sensor, FieldVisitor& visitor) {
   if (visitor.is_reading() && is_present) sensor.projector_origin_m = origin_m;
 }
 
+/// Readers of files merge these keys before; only a map inside another file still has them.
+void visit_family(FieldVisitor& visitor) {
+  const auto visit = [&](const FieldInfo& field, FamilyKey key) {
+    if (visitor.is_reading() && visitor.has(field.key)) {
+      visitor.reject(field.key, "a family of sensors inside another file",
+                     "a sensor file of its own", "write it to a file, and name the file here");
+    }
+    visitor.family(field, key);
+  };
+  visit({"variants", "[sensors of a family](#variants-and-modes): overrides of the other keys"},
+        FamilyKey::overrides);
+  visit({"modes", "[settings of the sensor](#variants-and-modes): overrides of the other keys"},
+        FamilyKey::overrides);
+  visit({"default_mode", "the mode that is used if none is chosen"}, FamilyKey::name);
+  visit({"aliases", "further names of a preset"}, FamilyKey::names);
+}
+
 }  // namespace
 
 SensorKeys sensor_keys(const Sensor& sensor) {
@@ -135,6 +152,7 @@ void describe(SensorKeys& keys, FieldVisitor& visitor) {
   visitor.provenance({"source", "where the numbers come from: text for keys of this file"}, true);
   visitor.provenance(
       {"unverified", "keys that were not checked against the manufacturer's documents"}, false);
+  visit_family(visitor);
 }
 
 }  // namespace glidar

@@ -5,8 +5,10 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/config/imu_file.hpp>
+#include <glidar/io/config/preset_names.hpp>
+#include <glidar/io/config/sensor_family.hpp>
 #include <glidar/io/files/data_folder.hpp>
+#include <glidar/io/files/text_file.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,54 +19,91 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_yaml(const fs::path& path) {
-  const std::string ending = lower_case(path.extension().string());
-  return ending == ".yaml" || ending == ".yml";
+std::vector<fs::path> sensor_files() {
+  return yaml_files(sensor_folder());
 }
 
-std::string all_names(const std::vector<fs::path>& files) {
-  std::string names;
-  for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.stem().string();
-  return names;
+SensorPreset preset_of(const YamlField& root, const std::string& variant) {
+  const FamilyMember member = select_sensor(root, variant, "");
+  const auto title = find(member.document, "name");
+  const fs::path file = root.file;
+  return {.name = variant.empty() ? file.stem().string() : variant,
+          .title = title ? text(*title) : "",
+          .reference = {.file = file, .variant = variant},
+          .aliases = member.aliases,
+          .modes = member.modes,
+          .default_mode = member.default_mode};
 }
 
-std::vector<fs::path> yaml_files(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (is_yaml(entry.path())) files.push_back(entry.path());
+void add_presets(const fs::path& file, std::vector<SensorPreset>& presets) {
+  const YamlField root = read_yaml(file);
+  const std::vector<std::string> variants = variants_of(root);
+  if (variants.empty()) presets.push_back(preset_of(root, ""));
+  for (const std::string& variant : variants) presets.push_back(preset_of(root, variant));
+}
+
+/// Whether a file may define a sensor of this normalised name. To parse all files takes a hundred
+/// times as long.
+bool may_define(const fs::path& file, const std::string& normalised) {
+  if (normalised_name(file.stem().string()) == normalised) return true;
+  const std::string content = read_text_file(file, {"a sensor file", 8, ""});
+  return normalised_name(content).find(normalised) != std::string::npos;
+}
+
+/// The presets of the files that may define a sensor of this name.
+std::vector<SensorPreset> presets_that_may_be(const std::string& name) {
+  std::vector<SensorPreset> presets;
+  const std::string normalised = normalised_name(name);
+  for (const fs::path& file : sensor_files()) {
+    if (!normalised.empty() && may_define(file, normalised)) add_presets(file, presets);
   }
-  std::sort(files.begin(), files.end());  // the order of a folder is not the same everywhere
-  return files;
+  return presets;
 }
 
-/// What a preset is, for errors.
-struct PresetKind {
-  const char* where;
-  const char* noun;
-};
+const SensorPreset* find_by(const std::vector<SensorPreset>& presets,
+                            bool (*is_equal)(const SensorPreset&, const std::string&),
+                            const std::string& name) {
+  const auto at = std::find_if(presets.begin(), presets.end(),
+                               [&](const SensorPreset& one) { return is_equal(one, name); });
+  return at == presets.end() ? nullptr : &*at;
+}
 
-fs::path find_preset_file(const std::string& name_or_path, const std::vector<fs::path>& files,
-                          const PresetKind& kind) {
-  const fs::path path = name_or_path;
+bool has_name(const SensorPreset& preset, const std::string& name) {
+  return preset.name == name;
+}
+
+bool has_normalised_name(const SensorPreset& preset, const std::string& name) {
+  return normalised_name(preset.name) == normalised_name(name);
+}
+
+bool has_alias(const SensorPreset& preset, const std::string& name) {
+  return !match_name(name, preset.aliases).empty();
+}
+
+/// What to write for the sensor of a family whose file has this name; empty: there is none.
+std::string family_text(const std::string& name) {
+  for (const fs::path& file : sensor_files()) {
+    if (normalised_name(file.stem().string()) != normalised_name(name)) continue;
+    const std::vector<std::string> variants = variants_of(read_yaml(file));
+    return "it is a family of sensors: " + comma_separated(variants);
+  }
+  return "";
+}
+
+[[noreturn]] void reject_name(const std::string& name) {
+  const std::string family = family_text(name);
+  if (!family.empty()) {
+    throw Error({"sensor", "'" + excerpt(name) + "' is no sensor", "", family});
+  }
   std::vector<std::string> names;
-  for (const fs::path& file : files) {
-    names.push_back(lower_case(file.stem().string()));
-    if (names.back() == lower_case(name_or_path)) return file;
+  for (const SensorPreset& preset : sensor_presets()) {
+    names.push_back(preset.name);
+    names.insert(names.end(), preset.aliases.begin(), preset.aliases.end());
   }
-  std::error_code error;
-  if (fs::is_regular_file(path, error)) return path;
-  const std::string nearest = closest_match(lower_case(name_or_path), names);
-  const auto at = std::find(names.begin(), names.end(), nearest);
-  throw Error(
-      {.where = kind.where,
-       .found = "'" + excerpt(name_or_path) + "' is neither a file nor the name of " + kind.noun,
-       .allowed = std::string(kind.noun) + " file (.yaml), or one of " + all_names(files),
-       .remedy = nearest.empty()
-                     ? "see 'glidar sensors'"
-                     : "did you mean " +
-                           files[static_cast<std::size_t>(at - names.begin())].stem().string() +
-                           "?"});
+  throw Error({.where = "sensor",
+               .found = "'" + excerpt(name) + "' is neither a file nor the name of a sensor",
+               .allowed = "a sensor file (.yaml), or a name that 'glidar sensors' lists",
+               .remedy = nearest_names(name, names, "see 'glidar sensors'")});
 }
 
 }  // namespace
@@ -88,24 +127,63 @@ ValueCount count_values(std::span<const DatasheetEntry> entries) {
   return count;
 }
 
-std::vector<fs::path> preset_files() {
-  return yaml_files(data_folder("sensors", "GLIDAR_SENSORS"));
+fs::path sensor_folder() {
+  return data_folder("sensors", "GLIDAR_SENSORS");
 }
 
-std::vector<fs::path> imu_preset_files() {
-  return yaml_files(data_folder("sensors", "GLIDAR_SENSORS") / "imu");
+std::vector<SensorPreset> sensor_presets() {
+  std::vector<SensorPreset> presets;
+  for (const fs::path& file : sensor_files()) add_presets(file, presets);
+  std::sort(presets.begin(), presets.end(),
+            [](const auto& one, const auto& other) { return one.name < other.name; });
+  return presets;
 }
 
-fs::path find_sensor_file(const std::string& name_or_path) {
-  const fs::path path = name_or_path;
-  if (path.has_parent_path() || is_yaml(path)) return path;
-  return find_preset_file(name_or_path, preset_files(), {"sensor", "a sensor"});
+std::vector<SensorPreset> matching_presets(const std::string& text) {
+  const std::string wanted = normalised_name(text);
+  const auto contains = [&](const std::string& name) {
+    return normalised_name(name).find(wanted) != std::string::npos;
+  };
+  std::vector<SensorPreset> presets = sensor_presets();
+  std::erase_if(presets, [&](const SensorPreset& one) {
+    return !contains(one.name) && !contains(one.title) &&
+           std::none_of(one.aliases.begin(), one.aliases.end(), contains);
+  });
+  return presets;
 }
 
-fs::path find_imu_file(const std::string& name_or_path) {
-  const fs::path path = name_or_path;
-  if (path.has_parent_path() || is_yaml(path)) return path;
-  return find_preset_file(name_or_path, imu_preset_files(), {"imu", "an IMU"});
+std::optional<SensorPreset> preset_named(const std::string& name) {
+  const std::vector<SensorPreset> presets = presets_that_may_be(name);
+  for (const auto is_equal : {has_name, has_normalised_name, has_alias}) {
+    if (const SensorPreset* preset = find_by(presets, is_equal, name)) return *preset;
+  }
+  return std::nullopt;
+}
+
+SensorReference split_variant(const std::string& path) {
+  const std::size_t at = path.rfind('#');
+  std::error_code error;
+  if (at == std::string::npos || fs::is_regular_file(path, error)) return {.file = path};
+  SensorReference reference{.file = path.substr(0, at), .variant = path.substr(at + 1)};
+  const fs::path& file = reference.file;
+  if (!is_yaml(file) && !fs::is_regular_file(file, error)) return {.file = path};
+  if (!reference.variant.empty()) return reference;
+  throw Error({"sensor", "'" + excerpt(path) + "' has no variant after '#'", "FILE#VARIANT",
+               "add the name of a variant"});
+}
+
+SensorReference find_sensor_file(const std::string& name_or_path, const std::string& mode) {
+  SensorReference reference = split_variant(name_or_path);
+  reference.mode = mode;
+  const fs::path& path = reference.file;
+  const bool is_path = path.has_parent_path() || is_yaml(path) || !reference.variant.empty();
+  if (is_path) return reference;
+  if (const auto preset = preset_named(name_or_path)) {
+    return {preset->reference.file, preset->reference.variant, mode};
+  }
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return reference;
+  reject_name(name_or_path);
 }
 
 }  // namespace glidar

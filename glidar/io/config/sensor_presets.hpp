@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/config/sensor_file.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <cstddef>
-#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,9 +23,12 @@ struct DatasheetEntry {
 
 /// A sensor with the provenance of its numbers.
 struct Datasheet {
-  std::string name;  ///< of the file, without folder and ending: what a preset is found by
+  std::string name;  ///< of the file, without folder and ending, or of the variant
   Sensor sensor;
-  std::vector<DatasheetEntry> entries;  ///< in the order of the file
+  std::vector<DatasheetEntry> entries;    ///< in the order of the file
+  std::vector<std::string> aliases = {};  ///< further names
+  std::vector<std::string> modes = {};    ///< in the order of the file
+  std::string default_mode = {};          ///< empty: none
 };
 
 /// How many values of a sensor the manufacturer's documents back: data sheets, manuals, drivers and
@@ -37,16 +41,40 @@ ValueCount count_values(const Datasheet& sheet);
 ValueCount count_values(std::span<const DatasheetEntry> entries);
 
 /// Like load_sensor_file, with the sources that the file gives.
-Datasheet load_datasheet(const std::filesystem::path& path);
+Datasheet load_datasheet(const SensorReference& reference);
 
-/// The bundled sensor files, by name: in sensors/ of the source, in share/glidar/sensors of an
-/// installation, or in the folder given by the variable GLIDAR_SENSORS.
-/// Throws Error when there is no such folder.
-std::vector<std::filesystem::path> preset_files();
+/// A bundled sensor.
+struct SensorPreset {
+  std::string name;   ///< of the file, without folder and ending, or of the variant
+  std::string title;  ///< the key `name` of its document
+  SensorReference reference;
+  std::vector<std::string> aliases;
+  std::vector<std::string> modes;
+  std::string default_mode;  ///< empty: none
+};
 
-/// The file of a sensor given by name or path: a path if it has a folder or an ending .yaml or
-/// .yml, else the name of a preset, in capitals or not.
+/// The folder of the bundled sensor files: sensors/ of the source, share/glidar/sensors of an
+/// installation, or that of the variable GLIDAR_SENSORS. Throws Error when there is none.
+std::filesystem::path sensor_folder();
+
+/// The bundled sensors, sorted by name. Each variant of a family is one. Throws Error when there is
+/// no folder or a file is malformed.
+std::vector<SensorPreset> sensor_presets();
+
+/// Those whose name, alias or title contains the text; case, '-', '_' and ' ' do not count.
+std::vector<SensorPreset> matching_presets(const std::string& text);
+
+/// The preset of this name or alias; an exact name has precedence. Case, '-', '_' and ' ' do not
+/// count.
+std::optional<SensorPreset> preset_named(const std::string& name);
+
+/// A path, or FILE#VARIANT for a variant of a family. A file whose own name contains '#' has
+/// precedence. Throws Error when nothing follows the '#'.
+SensorReference split_variant(const std::string& path);
+
+/// The sensor given by name or path: a path if it has a folder or an ending .yaml or .yml, else the
+/// name of a preset. FILE#VARIANT is a variant of a family. `mode` becomes part of the result.
 /// Throws Error naming the nearest presets.
-std::filesystem::path find_sensor_file(const std::string& name_or_path);
+SensorReference find_sensor_file(const std::string& name_or_path, const std::string& mode = "");
 
 }  // namespace glidar

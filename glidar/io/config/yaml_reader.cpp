@@ -76,8 +76,10 @@ std::vector<YAML::Node> parse_documents(const std::string& file, const std::stri
 YamlField child(const YamlField& parent, std::string path, const YAML::Mark& before,
                 const YAML::Node& node) {
   if (parent.mark.is_null()) return {parent.file, std::move(path), parent.mark, node};
-  // yaml-cpp marks an absent value at the next token, which may be far below its key.
-  return {parent.file, std::move(path), node.IsNull() ? before : node.Mark(), node};
+  // yaml-cpp marks an absent value at the next token, which may be far below its key. Merged maps
+  // have no place of their own.
+  const bool has_place = !node.IsNull() && !node.Mark().is_null();
+  return {parent.file, std::move(path), has_place ? node.Mark() : before, node};
 }
 
 std::string child_path(const YamlField& parent, const std::string& key) {

@@ -65,6 +65,9 @@ Json sensor_json(const Sensor& sensor, const Beams& beams) {
 
 Json sensor_json(const CloudFile& job) {
   Json json = sensor_json(job.context.sensor, job.context.beams);
+  const Sensor& sensor = job.context.sensor;
+  if (!sensor.variant.empty()) json["variant"] = sensor.variant;
+  if (!sensor.mode.empty()) json["mode"] = sensor.mode;
   json["world_from_sensor"] = pose_json(job.frame.world_from_sensor);
   return json;
 }

@@ -48,8 +48,9 @@ std::size_t digits_before(const std::string& text, std::size_t end) {
 }
 
 TEST(SensorText, NoPresetHasNegativeZerosOrRoundedTails) {
-  for (const std::filesystem::path& name : preset_files()) {
-    const Sensor sensor = load_sensor_file(name);
+  for (const SensorPreset& preset : sensor_presets()) {
+    const std::string& name = preset.name;
+    const Sensor sensor = load_sensor_file(preset.reference);
     const std::string text = sensor_to_json(sensor, make_beams(sensor));
     EXPECT_EQ(text.find("-0.0,"), std::string::npos) << name;
     EXPECT_EQ(text.find("-0.0\n"), std::string::npos) << name;

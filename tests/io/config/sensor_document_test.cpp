@@ -63,9 +63,9 @@ Sensor expect_round_trip(const Sensor& sensor) {
 }
 
 TEST(SensorDocument, EveryPresetReadsBackTheSameToTheLastBit) {
-  for (const std::filesystem::path& file : preset_files()) {
-    SCOPED_TRACE(file.stem().string());
-    const Sensor sensor = load_sensor_file(file);
+  for (const SensorPreset& preset : sensor_presets()) {
+    SCOPED_TRACE(preset.name);
+    const Sensor sensor = load_sensor_file(preset.reference);
     expect_round_trip(sensor);
     expect_round_trip(ground_truth_sensor(sensor));
   }

@@ -108,9 +108,9 @@ Eigen::Vector2d field_of_view_deg(const Sensor& sensor, const FrameInterval& win
 TEST(Presets, AreAllTested) {
   std::set<std::string> tested;
   for (const PublishedValues& published : kPublished) tested.insert(published.name);
-  for (const auto& file : preset_files())
-    EXPECT_TRUE(tested.contains(file.stem().string())) << file;
-  EXPECT_EQ(preset_files().size(), tested.size());
+  for (const SensorPreset& one : sensor_presets())
+    EXPECT_TRUE(tested.contains(one.name)) << one.name;
+  EXPECT_EQ(sensor_presets().size(), tested.size());
 }
 
 class Preset : public ::testing::TestWithParam<PublishedValues> {};
@@ -190,10 +190,10 @@ TEST(Presets, HaveTheBeamsOfTheirSheets) {
                                                {"TiM781", {14.4, 8.6}, {7.0, 7.0}}})) {
     sheets[beam.name] = beam;
   }
-  for (const auto& file : preset_files()) {
-    const std::string name = file.stem().string();
+  for (const SensorPreset& one : sensor_presets()) {
+    const std::string& name = one.name;
     SCOPED_TRACE(name);
-    const Sensor sensor = load_sensor_file(file);
+    const Sensor sensor = load_sensor_file(one.reference);
     ASSERT_EQ(sensor.footprint.has_value(), sheets.contains(name));
     if (!sensor.footprint) continue;
     const Beam& beam = sheets[name];
@@ -251,12 +251,12 @@ TEST(Presets, CountTheValuesThatTheManufacturerBacks) {
 }
 
 TEST(Presets, DoNotCallAThirdPartysNumberTheManufacturers) {
-  for (const auto& file : preset_files()) {
-    for (const DatasheetEntry& entry : load_datasheet(file).entries) {
+  for (const SensorPreset& one : sensor_presets()) {
+    for (const DatasheetEntry& entry : load_datasheet(one.reference).entries) {
       if (!entry.verified || entry.key.ends_with("type") || entry.key.ends_with("kind")) continue;
       for (const char* third_party :
            {"HELIOS", "LISA", "elevation_mapping", "IsaacSim", "recording (", "recording of"}) {
-        EXPECT_FALSE(entry.source.starts_with(third_party)) << file << " " << entry.key;
+        EXPECT_FALSE(entry.source.starts_with(third_party)) << one.name << " " << entry.key;
       }
     }
   }
@@ -264,12 +264,12 @@ TEST(Presets, DoNotCallAThirdPartysNumberTheManufacturers) {
 
 TEST(Presets, OfRealDepthCamerasHaveSquarePixels) {
   constexpr double kCalibrationSpread = 3e-4;  // fx and fy of one unit, both estimated
-  for (const auto& file : preset_files()) {
-    const Sensor sensor = load_sensor_file(file);
+  for (const SensorPreset& one : sensor_presets()) {
+    const Sensor sensor = load_sensor_file(one.reference);
     const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
     if (pinhole == nullptr) continue;
     const PinholeIntrinsics& k = pinhole->intrinsics;
-    EXPECT_NEAR(k.fx / k.fy, 1.0, kCalibrationSpread) << file;
+    EXPECT_NEAR(k.fx / k.fy, 1.0, kCalibrationSpread) << one.name;
   }
 }
 

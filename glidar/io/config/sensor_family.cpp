@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/sensor_family.hpp>
+
+#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
+#include <glidar/io/config/preset_names.hpp>
+#include <glidar/io/config/yaml_merge.hpp>
+
+#include <algorithm>
+#include <optional>
+
+namespace glidar {
+namespace {
+
+std::vector<std::string> key_names(const std::optional<YamlField>& map) {
+  std::vector<std::string> names;
+  if (!map) return names;
+  for (const auto& [name, value] : entries(*map)) {
+    if (normalised_name(name).empty()) {
+      reject(value, "'" + excerpt(name) + "'", "a name with letters or digits");
+    }
+    const std::string same = match_name(name, names);
+    if (!same.empty()) {
+      reject(value, "the name equals '" + excerpt(same) + "'",
+             "names that differ by more than case, '-', '_' and spaces", "choose another name");
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+/// "the sensor 'x.yaml'" by the key `name` of its document, else by its file.
+std::string sensor_text(const YamlField& document) {
+  const auto name = find(document, "name");
+  return name && name->node.IsScalar() ? excerpt(name->node.Scalar()) : excerpt(document.file);
+}
+
+/// The document with the overrides of a variant.
+YamlField with_variant(const YamlField& root, const std::string& variant,
+                       const std::vector<std::string>& names) {
+  const YamlField base = without_keys(root, {"variants"});
+  if (names.empty()) {
+    if (variant.empty()) return base;
+    throw Error({root.file, "it has no variants, but '" + excerpt(variant) + "' is requested",
+                 "the file without '#" + excerpt(variant) + "'"});
+  }
+  const auto aliases = find(root, "aliases");
+  if (aliases) reject(*aliases, "aliases of a family", "'aliases' in each of its variants");
+  const std::string remedy = "choose one: '" + excerpt(root.file) + "#" + names.front() + "'";
+  if (variant.empty()) {
+    throw Error({root.file, "it is a family of sensors",
+                 "one of its variants: " + comma_separated(names), remedy});
+  }
+  const std::string chosen = match_name(variant, names);
+  if (chosen.empty()) {
+    const std::string nearest = suggestion(variant, names);
+    throw Error({root.file, "'" + excerpt(variant) + "' is none of its variants",
+                 comma_separated(names), nearest.empty() ? remedy : nearest});
+  }
+  return merged(base, need(need(root, "variants"), chosen));
+}
+
+std::vector<std::string> aliases_of(const YamlField& document) {
+  std::vector<std::string> aliases;
+  const auto list = find(document, "aliases");
+  if (!list) return aliases;
+  for (const YamlField& item : items(*list)) aliases.push_back(text(item));
+  return aliases;
+}
+
+/// The default mode as the modes have it.
+std::string default_mode_of(const YamlField& document, const std::vector<std::string>& modes) {
+  const auto given = find(document, "default_mode");
+  if (!given) return "";
+  if (modes.empty()) reject(*given, "given without 'modes'", "together with modes");
+  return modes.at(one_of(*given, modes));
+}
+
+std::string choose_mode(const YamlField& document, const std::string& mode,
+                        const FamilyMember& member) {
+  if (mode.empty()) return member.default_mode;
+  const std::string chosen = match_name(mode, member.modes);
+  if (!chosen.empty()) return chosen;
+  if (member.modes.empty()) {
+    throw Error({"mode", "'" + excerpt(mode) + "', but " + sensor_text(document) + " has no modes",
+                 "a sensor with modes", "leave the mode out"});
+  }
+  throw Error({"mode", "'" + excerpt(mode) + "' is no mode of " + sensor_text(document),
+               comma_separated(member.modes), suggestion(mode, member.modes)});
+}
+
+}  // namespace
+
+std::vector<std::string> variants_of(const YamlField& root) {
+  const auto variants = find(root, "variants");
+  std::vector<std::string> names = key_names(variants);
+  if (variants && names.empty()) reject(*variants, content_text(*variants), "at least one variant");
+  return names;
+}
+
+FamilyMember select_sensor(const YamlField& root, const std::string& variant,
+                           const std::string& mode) {
+  const std::vector<std::string> variants = variants_of(root);
+  FamilyMember member;
+  member.variant = match_name(variant, variants);
+  const YamlField document = with_variant(root, variant, variants);
+  const auto modes = find(document, "modes");
+  with_member_name(member, [&] {
+    member.aliases = aliases_of(document);
+    member.modes = key_names(modes);
+    member.default_mode = default_mode_of(document, member.modes);
+  });
+  member.mode = choose_mode(document, mode, member);
+  return with_member_name(member, [&] {
+    member.document = without_keys(document, {"modes", "default_mode", "aliases"});
+    if (!member.mode.empty()) {
+      member.document = merged(member.document, need(*modes, member.mode));
+    }
+    return member;
+  });
+}
+
+}  // namespace glidar
