@@ -52,8 +52,7 @@ clouds() {
   shift
   rm -rf "$out"
   mkdir -p "$out"
-  for preset in sensors/*.yaml; do
-    preset=$(basename "$preset" .yaml)
+  for preset in $("$@" sensors | tail -n +2 | cut -d ' ' -f 1); do
     "$@" render examples/two_rocks.yaml --sensor "$preset" --seed 7 --quiet -o "$out/$preset.npz" 2>>"$out/messages.txt"
   done
   for renderer in raster rays; do

@@ -28,7 +28,8 @@ def type_of(alternative):
 
 
 def find(schema, steps):
-    """The part of a schema that the steps lead to."""
+    """The part of a schema that the steps lead to; of a sensor file, that of one sensor."""
+    schema = schema.get("else", schema)
     for step in steps:
         key, _, name = step.partition("=")
         schema = schema.get("properties", {}).get(key, schema)

@@ -184,6 +184,7 @@ void Viewer::use_sensor(const std::string& preset) {
   RenderFlags flags = *request_.flags;
   flags.sensor = {};
   flags.sensor.file = preset;
+  flags.sensor.mode.clear();  // it is one of the sensor before
   flags.pose.world_from_sensor.reset();
   request_.sensor_moved = Pose::Identity();
   pick({});

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """glidar decode: clouds of packet captures and bags. The built program is found in PATH."""
 
+import json
 import os
 import unittest
 
@@ -23,15 +24,15 @@ class Decode(DecodeTest):
         words = [word for output in outputs for word in ("-o", output)]
         self.succeed("render", *ROOM, "--sensor", sensor, "--columns", columns, *options, *words)
 
-    def compare(self, sensor, unit_m, *options, rendering=()):
+    def compare(self, sensor, unit_m, *options, rendering=(), frames=2):
         """Decoded frames against those that were measured, beam by beam; the last packet of a frame may be decoded
         with the next."""
         self.render(sensor, "true.npz", "scan.pcap", options=rendering)
         done = self.succeed("decode", "scan.pcap", *options, "-o", "found.npz")
-        self.assertIn("2 frames", done.stdout)
+        self.assertIn(f"{frames} frames", done.stdout)
         self.assertIn("found_000000.npz", done.stdout)
         beams = 0
-        for k in range(2):
+        for k in range(frames):
             true, found = self.arrays(f"true_00000{k}.npz"), self.arrays(f"found_00000{k}.npz")
             self.assertEqual(found["range"].shape, true["range"].shape)
             valid = np.isfinite(true["range"]) & np.isfinite(found["range"])
@@ -46,6 +47,15 @@ class Decode(DecodeTest):
 
     def test_ouster_packets_need_only_their_metadata(self):
         self.compare("OS1-32", 0.001)
+
+    def test_ouster_packets_have_the_mode_of_the_sensor(self):
+        self.compare("OS1-32", 0.001, rendering=("--mode", "512x20"), frames=4)
+        with open(os.path.join(self.folder, "scan.json"), encoding="utf-8") as file:
+            metadata = json.load(file)
+        self.assertEqual(metadata["config_params"]["lidar_mode"], "512x20")
+        self.assertEqual(metadata["lidar_data_format"]["columns_per_frame"], 512)
+        self.compare("OS1-32", 0.001, "--sensor", "OS1-32", "--mode", "512x20", rendering=("--mode", "512x20"), frames=4)
+        self.assertIn("--mode: there is no --sensor", self.refused("decode", "scan.pcap", "--mode", "512x20", "-o", "a.npz"))
 
     def test_hesai_packets_are_the_measured_clouds_within_their_unit(self):
         self.compare("XT32", 0.004, "--sensor", "XT32")

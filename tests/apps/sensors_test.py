@@ -36,6 +36,52 @@ class Sensors(CliTest):
         typed = [line for line in stars if line.split(" = ")[0].endswith(("type", "kind"))]
         self.assertEqual(len(stars) - len(typed), values - backed)
 
+    def test_a_part_of_a_name_lists_the_presets_with_it(self):
+        def names(*arguments):
+            return [line.split()[0] for line in self.succeed("sensors", *arguments).stdout.splitlines()[1:]]
+
+        self.assertEqual(names("os1-"), ["OS1-128", "OS1-32", "OS1-64"])
+        self.assertEqual(names("velodyne hdl"), ["HDL-32E", "HDL-64E-S3"])
+        listed = json.loads(self.succeed("sensors", "os1-", "--json").stdout)
+        self.assertEqual([one["name"] for one in listed], ["OS1-128", "OS1-32", "OS1-64"])
+        self.assertIn("--mode: no sensor is given", self.refused("sensors", "os1-", "--mode", "512x10"))
+        self.assertIn("did you mean OS1-64", self.refused("sensors", "os1-46"))
+
+    def test_a_sensor_prints_its_aliases_and_the_values_of_the_chosen_mode(self):
+        lines = self.succeed("sensors", "os1").stdout.splitlines()
+        self.assertEqual(lines[:3], ["Ouster OS1-128", "aliases: OS1",
+                                     "modes: 512x10, 1024x10 (this one), 2048x10, 512x20, 1024x20"])
+        fast = self.succeed("sensors", "OS1-32", "--mode", "512x20").stdout
+        self.assertIn("1024x10, 2048x10, 512x20 (this one)", fast)
+        self.assertIn("optics.columns_per_turn = 512\n", fast)
+        self.assertIn("rate_hz = 20\n", fast)
+        one = json.loads(self.succeed("sensors", "OS1-32", "--mode", "512x20", "--json").stdout)
+        self.assertEqual((one["mode"], one["cols"], one["aliases"]), ("512x20", 512, []))
+        self.assertIn("--mode: '512x21' is no mode of Ouster OS1-32; allowed: 512x10, 1024x10",
+                      self.refused("sensors", "OS1-32", "--mode", "512x21"))
+
+    def test_a_cloud_in_a_mode_records_it_and_is_replayed_and_explained(self):
+        self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "os1-32", "--mode", "512x20", "-o", "a.pcd")
+        with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
+            sidecar = json.load(file)
+        self.assertEqual((sidecar["sensor"]["variant"], sidecar["sensor"]["mode"]), ("OS1-32", "512x20"))
+        self.assertEqual((sidecar["sensor"]["rate_hz"], sidecar["sensor"]["cols"]), (20, 512))
+        self.assertEqual(sidecar["sensor"]["optics"]["columns_per_turn"], 512)
+        before = self.bytes_of("a.pcd")
+        self.assertIn("a.pcd", self.succeed("explain", "a.pcd", "--index", "5").stdout)
+        self.succeed("render", *sidecar["command"]["arguments"][1:])
+        self.assertEqual(self.bytes_of("a.pcd"), before)
+        self.assertIn("--mode: there is no --sensor", self.refused("render", "builtin:box", "--mode", "512x20", "-o", "a.pcd"))
+
+    def test_a_file_with_variants_lists_them_unless_one_is_chosen(self):
+        self.write("my.yaml", "optics: {width: 4, height: 3, fov_deg: 20}\nmodes: {slow: {rate_hz: 1}}\n"
+                              "variants: {A: {}, B: {optics: {width: 9}, rate_hz: x}, C: {optics: {width: 7}}}\n")
+        box = ("render", "builtin:box", "-o", "a.pcd", "--sensor")
+        self.assertIn("my.yaml: it is a family of sensors; allowed: one of its variants: A, B, C; "
+                      "choose one: 'my.yaml#A'", self.refused(*box, "my.yaml"))
+        self.assertIn("my.yaml:3:52: rate_hz (variant B): 'x'", self.refused(*box, "my.yaml#B"))
+        self.assertIn("3 x 7 beams", self.succeed(*box, "my.yaml#C", "--mode", "slow").stdout)
+
     def test_surfaces_are_listed_and_applied_to_a_model(self):
         lines = self.succeed("sensors", "--surfaces").stdout.splitlines()
         asphalt = next(line for line in lines if line.startswith("asphalt "))

@@ -245,6 +245,26 @@ TEST(SceneFileErrors, SensorsThatAreNotThereAreReportedWithTheirPlaceInTheScene)
             "file; did you mean 'camera.yaml'?");
 }
 
+TEST(SceneFileErrors, ModesThatDoNotFitTheSensorAreReportedWithTheirPlace) {
+  EXPECT_EQ(sensor_error("OS1-32\nsensor_mode: 512x21"),
+            "s.yaml:3:14: sensor_mode: '512x21' is no mode of Ouster OS1-32; allowed: 512x10, "
+            "1024x10, 2048x10, 512x20, 1024x20; did you mean '512x20'?");
+  EXPECT_EQ(sensor_error("camera.yaml\nsensor_mode: a"),
+            "s.yaml:3:14: sensor_mode: 'a', but camera.yaml has no modes; allowed: a sensor with "
+            "modes; leave the mode out");
+  EXPECT_EQ(sensor_error("{optics: {width: 4, height: 3, fov_deg: 9}}\nsensor_mode: a"),
+            "s.yaml:3:14: sensor_mode: a mode, but the sensor is a map; allowed: a mode of a "
+            "preset or sensor file; leave the mode out");
+  EXPECT_EQ(sensor_error("{optics: {width: 4, height: 3, fov_deg: 9}, modes: {a: {}}}"),
+            "s.yaml:2:60: sensor.modes: a family of sensors inside another file; allowed: a "
+            "sensor file of its own; write it to a file, and name the file here");
+  const TestFolder folder;
+  const auto file = folder.write("s.yaml", with_model("sensor_mode: a"));
+  EXPECT_EQ(error_of(folder, [&] { read_scene_plan(file, {}); }),
+            "s.yaml:2:14: sensor_mode: given without 'sensor'; allowed: together with a sensor; "
+            "add the sensor");
+}
+
 TEST(SceneFileErrors, WrongSizesOfBuiltInModelsAreReportedWithTheirPlace) {
   const TestFolder folder;
   const auto error = [&](const std::string& content) {

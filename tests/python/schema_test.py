@@ -50,7 +50,16 @@ def test_presets_are_valid(sensor_schema, preset):
     sensor_schema.validate(load(preset))
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda path: path.stem)
+def test_a_family_is_valid_without_the_keys_that_its_variants_complete(sensor_schema):
+    document = {"optics": {"type": "spinning", "columns_per_turn": 100}}
+    assert not sensor_schema.is_valid(document)
+    family = {**document, "variants": {"A": {"optics": {"elevation_deg": [1, 2]}}}}
+    sensor_schema.validate({**family, "modes": {"fast": {"rate_hz": 20}}, "default_mode": "fast"})
+    for wrong in ({"variants": 3}, {"variants": {"A": 3}}, {"optics": {"columns_per_turm": 3}}, {"aliases": "a"}):
+        assert not sensor_schema.is_valid({**family, **wrong}), wrong
+
+
+@pytest.mark.parametrize("preset", glidar.sensor_names())
 def test_to_dict_of_presets_is_valid_and_reads_back(sensor_schema, preset):
     sensor = glidar.load_sensor(preset)
     described = sensor.to_dict()
@@ -166,9 +175,10 @@ def test_there_are_scenes_to_check():
     assert len(DOCUMENTED) >= 4
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("preset", glidar.sensor_names())
 def test_presets_are_valid_as_a_part_of_a_scene(scene_schema, preset):
-    scene_schema.validate({"models": [{"model": "builtin:box"}], "sensor": load(preset)})
+    sensor = json.loads(json.dumps(glidar.load_sensor(preset).to_dict()))
+    scene_schema.validate({"models": [{"model": "builtin:box"}], "sensor": sensor})
 
 
 SCENE = {

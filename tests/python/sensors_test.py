@@ -3,6 +3,7 @@
 """Sensors from presets, files and code."""
 
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,52 @@ def test_every_preset_loads_and_describes_itself():
         assert (described["rows"], described["cols"]) == (sensor.rows, sensor.cols)
         assert described["name"] == sensor.name
         assert sensor.ray_directions.shape == (sensor.rows, sensor.cols, 3)
+
+
+def test_every_alias_and_mode_of_a_preset_loads():
+    presets = {preset.name: preset for preset in glidar.sensor_presets()}
+    assert list(presets) == glidar.sensor_names()
+    assert presets["OS1-128"] == glidar.SensorPreset(
+        "OS1-128", "Ouster OS1-128", ("OS1",), ("512x10", "1024x10", "2048x10", "512x20", "1024x20"), "1024x10"
+    )
+    assert (presets["VLP-16"].modes, presets["VLP-16"].default_mode) == ((), None)
+    for preset in presets.values():
+        assert glidar.load_sensor(preset.name).mode == preset.default_mode
+        for alias in preset.aliases:
+            assert glidar.load_sensor(alias) == glidar.load_sensor(preset.name)
+        for mode in preset.modes:
+            assert glidar.load_sensor(preset.name, mode=mode).mode == mode
+
+
+def test_presets_are_found_by_a_part_of_their_name():
+    assert [preset.name for preset in glidar.sensor_presets("os1_")] == ["OS1-128", "OS1-32", "OS1-64"]
+    assert [preset.name for preset in glidar.sensor_presets("velodyne vlp16")] == ["VLP-16"]
+    assert glidar.sensor_presets("no such sensor") == []
+
+
+@pytest.mark.parametrize(
+    ("name", "full"),
+    [("vlp16", "Velodyne VLP-16"), ("VLP_16", "Velodyne VLP-16"), ("os1-64", "Ouster OS1-64"), ("OS1 64", "Ouster OS1-64")],
+)
+def test_names_are_compared_without_case_and_punctuation(name, full):
+    assert glidar.load_sensor(name).name == full
+
+
+def test_a_mode_changes_the_sensor_and_survives_pickling():
+    sensor = glidar.load_sensor("OS1-32", mode="512x20")
+    assert (sensor.cols, sensor.rate_hz, sensor.mode) == (512, 20.0, "512x20")
+    again = pickle.loads(pickle.dumps(sensor))
+    assert (again, again.mode) == (sensor, "512x20")
+    entries = {entry.key: entry.value for entry in glidar.datasheet("OS1-32", mode="512x20")}
+    assert (entries["rate_hz"], entries["optics.columns_per_turn"]) == ("20", "512")
+
+
+def test_a_file_with_variants_needs_the_name_of_one(tmp_path):
+    path = tmp_path / "cams.yaml"
+    path.write_text("optics: {width: 4, height: 3, fov_deg: 20}\nvariants: {A: {}, B: {optics: {width: 9}}}\n")
+    assert glidar.load_sensor(f"{path}#b").cols == 9
+    with pytest.raises(glidar.Error, match="a family of sensors; allowed: one of its variants: A, B"):
+        glidar.load_sensor(path)
 
 
 def test_values_of_a_preset_have_sources():
@@ -94,7 +141,11 @@ def test_ray_directions_follow_the_pinhole_model():
         (lambda: glidar.camera(nosie=[]), "sensor: nosie", "did you mean 'noise'"),
         (lambda: glidar.camera(noise=[{"type": "range_gausian"}]), "sensor: noise[0].type", "range_gaussian"),
         (lambda: glidar.camera(name=object()), "sensor.name", "a object; allowed: numbers, strings"),
-        (lambda: glidar.load_sensor("VLP16"), "sensor", "did you mean VLP-16"),
+        (lambda: glidar.load_sensor("VLP17"), "sensor", "did you mean VLP-16"),
+        (lambda: glidar.load_sensor("VLP-16", mode="1024x10"), "mode", "Velodyne VLP-16 has no modes"),
+        (lambda: glidar.load_sensor("OS1-64", mode="1024x11"), "mode", "did you mean '1024x10'"),
+        (lambda: glidar.load_sensor("OS1-64", mode=""), "mode", "None means the default mode"),
+        (lambda: glidar.load_sensor("OS1-64", mode=3), "mode", "a int"),
         (lambda: glidar.Sensor.from_dict({}), "sensor", "optics"),
     ],
 )
@@ -133,10 +184,24 @@ def _compare(given, described, counted):
         counted.append(given)
 
 
+def _merge(base, overrides):
+    """Merges the overrides of a variant or mode into a document."""
+    for key, value in overrides.items():
+        if isinstance(value, dict) and isinstance(base.get(key), dict):
+            _merge(base[key], value)
+        elif value is None:
+            del base[key]
+        else:
+            base[key] = value
+
+
 def test_descriptions_contain_the_exact_numbers_of_preset_files():
     counted = []
     for name in glidar.sensor_names():
         given = yaml.safe_load(Path(glidar.sensor_file(name)).read_text(encoding="utf-8"))
+        _merge(given, given.pop("variants", {}).get(name, {}))
+        _merge(given, given.pop("modes", {}).get(given.pop("default_mode", ""), {}))
+        given.pop("aliases", None)
         if given.get("footprint", {}).get("width_definition") == "fwhm":
             del given["footprint"]  # sidecars give the widths of 1/e2
         before = len(counted)

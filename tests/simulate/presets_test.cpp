@@ -75,17 +75,31 @@ struct Ball {
   }
 };
 
+void expect_room_measured(const SensorReference& reference) {
+  Sensor sensor = load_sensor_file(reference);
+  sensor.limits = {.along = Limits::Along::range};
+  const Ball room(sensor, 2.0, 0.5);
+  EXPECT_GT(room.share_of_hits(), 0.999);
+  EXPECT_LT(room.range_error_m(), 0.11);  // flash arrays: 0.1 m
+  for (std::size_t i = 0; i < room.beams.size(); ++i) {
+    ASSERT_TRUE(room.frame.status[i] != Status::hit || room.frame.range_m[i] > 0.0);
+    ASSERT_TRUE(room.frame.intensity[i] >= 0.0F && std::isfinite(room.frame.intensity[i]));
+  }
+}
+
 TEST(Presets, MeasureARoomWithIntensityAndNoise) {
   for (const SensorPreset& one : sensor_presets()) {
     SCOPED_TRACE(one.name);
-    Sensor sensor = load_sensor_file(one.reference);
-    sensor.limits = {.along = Limits::Along::range};
-    const Ball room(sensor, 2.0, 0.5);
-    EXPECT_GT(room.share_of_hits(), 0.999);
-    EXPECT_LT(room.range_error_m(), 0.11);  // flash arrays: 0.1 m
-    for (std::size_t i = 0; i < room.beams.size(); ++i) {
-      ASSERT_TRUE(room.frame.status[i] != Status::hit || room.frame.range_m[i] > 0.0);
-      ASSERT_TRUE(room.frame.intensity[i] >= 0.0F && std::isfinite(room.frame.intensity[i]));
+    expect_room_measured(one.reference);
+  }
+}
+
+TEST(Presets, MeasureARoomInEachOfTheirModes) {
+  for (const SensorPreset& one : sensor_presets()) {
+    for (const std::string& mode : one.modes) {
+      if (mode == one.default_mode) continue;  // measured above
+      SCOPED_TRACE(one.name + ", mode " + mode);
+      expect_room_measured({one.reference.file, one.reference.variant, mode});
     }
   }
 }

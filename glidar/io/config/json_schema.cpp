@@ -223,6 +223,30 @@ Schema by_name(const Schema& schema) {
   return {{"type", "object"}, {"additionalProperties", schema}};
 }
 
+/// The same without the keys that a map must have: the rest is in overrides.
+Schema without_requirements(const Schema& schema) {
+  if (schema.is_array()) {
+    Schema list = Schema::array();
+    for (const Schema& item : schema) list.push_back(without_requirements(item));
+    return list;
+  }
+  if (!schema.is_object()) return schema;
+  Schema map = Schema::object();
+  for (const auto& [key, value] : schema.items()) {
+    if (key == "required" || key == "dependencies" || key == "allOf") continue;
+    map[key == "oneOf" ? "anyOf" : key] = without_requirements(value);
+  }
+  return map;
+}
+
+/// A sensor, or a family of sensors, whose variants complete the document.
+Schema sensor_schema() {
+  const Schema sensor = schema_of<SensorKeys>();
+  return {{"if", {{"required", Schema::array({"variants"})}}},
+          {"then", without_requirements(sensor)},
+          {"else", sensor}};
+}
+
 Schema surfaces_schema() {
   return by_name(schema_of<SurfacePreset>());
 }
@@ -256,7 +280,7 @@ struct NamedSchema {
 };
 
 constexpr std::array<NamedSchema, 7> kSchemas = {
-    {{"sensor", "GLIDAR sensor file", schema_of<SensorKeys>},
+    {{"sensor", "GLIDAR sensor file", sensor_schema},
      {"imu", "GLIDAR IMU file", schema_of<Imu>},
      {"scene", "GLIDAR scene file", scene_schema},
      {"pose", "a pose in a GLIDAR scene file", schema_of<PoseKeys>},

@@ -122,7 +122,7 @@ void describe(RigSensorPlan& plan, FieldVisitor& visitor) {
   plan.where_name = visit_rig_name(visitor, plan.name);
   visit_sensor(visitor,
                {{"sensor", "as the key `sensor` of a scene", kNoUnit, kRequired},
-                {"mode", "[mode](sensors.md#variants-and-modes) of the sensor", kNoUnit, false,
+                {"mode", "[mode](sensor-families.md) of the sensor", kNoUnit, false,
                  "its default mode"}},
                true, plan.sensor);
   visit_pose(visitor,
@@ -186,7 +186,7 @@ void visit_single_sensor(FieldVisitor& visitor, bool is_present, ScenePlan& plan
         "path of a [sensor file](sensors.md), its content as a map, or the name of a preset such "
         "as `VLP-16`",
         kNoUnit, false, "none"},
-       {"sensor_mode", "[mode](sensors.md#variants-and-modes) of the sensor, such as `2048x10`",
+       {"sensor_mode", "[mode](sensor-families.md) of the sensor, such as `2048x10`",
         kNoUnit, false, "its default mode"}},
       has_sensor, sensor);
   if (visitor.is_reading() && is_given) add(std::move(sensor), "", Pose::Identity(), plan);

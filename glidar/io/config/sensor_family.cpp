@@ -8,6 +8,7 @@
 #include <glidar/io/config/yaml_merge.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 
 namespace glidar {
@@ -30,10 +31,11 @@ std::vector<std::string> key_names(const std::optional<YamlField>& map) {
   return names;
 }
 
-/// "the sensor 'x.yaml'" by the key `name` of its document, else by its file.
+/// The key `name` of the document, else the name of its file.
 std::string sensor_text(const YamlField& document) {
   const auto name = find(document, "name");
-  return name && name->node.IsScalar() ? excerpt(name->node.Scalar()) : excerpt(document.file);
+  return name && name->node.IsScalar() ? excerpt(name->node.Scalar())
+                                       : std::filesystem::path(document.file).filename().string();
 }
 
 /// The document with the overrides of a variant.
@@ -47,7 +49,7 @@ YamlField with_variant(const YamlField& root, const std::string& variant,
   }
   const auto aliases = find(root, "aliases");
   if (aliases) reject(*aliases, "aliases of a family", "'aliases' in each of its variants");
-  const std::string remedy = "choose one: '" + excerpt(root.file) + "#" + names.front() + "'";
+  const std::string remedy = "choose one: '" + root.file + "#" + names.front() + "'";
   if (variant.empty()) {
     throw Error({root.file, "it is a family of sensors",
                  "one of its variants: " + comma_separated(names), remedy});

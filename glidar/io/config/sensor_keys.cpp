@@ -106,9 +106,9 @@ void visit_family(FieldVisitor& visitor) {
     }
     visitor.family(field, key);
   };
-  visit({"variants", "[sensors of a family](#variants-and-modes): overrides of the other keys"},
+  visit({"variants", "[sensors of a family](sensor-families.md): overrides of the other keys"},
         FamilyKey::overrides);
-  visit({"modes", "[settings of the sensor](#variants-and-modes): overrides of the other keys"},
+  visit({"modes", "[settings of the sensor](sensor-families.md): overrides of the other keys"},
         FamilyKey::overrides);
   visit({"default_mode", "the mode that is used if none is chosen"}, FamilyKey::name);
   visit({"aliases", "further names of a preset"}, FamilyKey::names);

@@ -8,7 +8,7 @@ import os
 import numpy as np
 
 from glidar import Error
-from glidar.campaign import files, loading, yaml_file as yf
+from glidar.campaign import files, loading, sensor_files, yaml_file as yf
 
 FOLDER = "bop"
 # The keys of a scene file's model that identify an object of BOP, with their defaults.
@@ -81,7 +81,7 @@ def _camera(plan):
     cameras, errors = [], []
     for source in (s for s in plan.sensors if not s.error):
         try:
-            sensor = loading.load_sensor(source.text, source.path)
+            sensor = sensor_files.load(source)
         except Error as error:
             errors.append(error)  # its trials fail and report the error
             continue

@@ -38,13 +38,20 @@ class Input:
     error: str = ""  # why its trials fail; empty: no error is known
     files: tuple = ()  # of InputFile
     all_known: bool = False  # whether `files` lists everything that it reads
+    variant: str = ""  # of a sensor file with several; empty: none is chosen
+    mode: str = ""  # of a sensor; empty: its default mode
+
+    @property
+    def choice(self):
+        """Arguments of loading.load_sensor; empty for scenes and sensors without."""
+        return {key: value for key, value in (("variant", self.variant), ("mode", self.mode)) if value}
 
     def record(self):
         """What identifies it, as JSON."""
         def hashes(are_parts):
             return {f.name: f.hash for f in self.files if f.hash and f.is_part == are_parts}
 
-        return {"name": self.name, "sha256": files.hash_bytes(self.text.encode()),
+        return {"name": self.name, **self.choice, "sha256": files.hash_bytes(self.text.encode()),
                 "unreadable": bool(self.error), "files": hashes(False), "parts": hashes(True)}
 
 
@@ -78,7 +85,7 @@ def _read_with(spelled, path, known):
             for other in known[path] if other != str(path)}
 
 
-def read(name, path, known):
+def read(name, path, known, variant="", mode=""):
     """Reads a scene or sensor file. An error is stored, so that only its trials fail. `known` as for _read_with."""
     try:
         text = yf.read_text(path)
@@ -91,9 +98,9 @@ def read(name, path, known):
             all_known &= more is not None and key != "sensor"  # because a sensor file may name further files
         found = tuple(InputFile(one, where, _hash(where), paths is parts)
                       for paths in (named, parts) for one, where in paths.items())
-        return Input(name, path, text, "", found, all_known)
+        return Input(name, path, text, "", found, all_known, variant, mode)
     except Error as error:
-        return Input(name, path, error=str(error))
+        return Input(name, path, error=str(error), variant=variant, mode=mode)
 
 
 def _require_unchanged(source, loaded):
@@ -112,7 +119,7 @@ def load(source, how, changes):
     if source.error:
         raise Error("", source.error, "", "")
     try:
-        found = how(source.text, source.path, changes)
+        found = how(source.text, source.path, changes, **source.choice)
     except Error:
         _require_unchanged(source, [])
         raise

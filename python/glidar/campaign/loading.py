@@ -9,16 +9,16 @@ import numpy as np
 
 import glidar
 from glidar import Error
-from glidar.campaign import variants, yaml_file as yf
+from glidar.campaign import families, variants, yaml_file as yf
 
 COPY = "glidar-campaign-"  # prefix of folders with changed files
 MAX_FIT_ERROR = 1e-9  # of a pinhole's directions, as tangents
 
 
-def _loaded(text, path, changes, load):
+def _loaded(text, path, changes, load, layers=()):
     """Loads a text as if it were the file at `path`: relative paths and locations in errors are those of that
-    file."""
-    whole = variants.replaced(text, yf.parse(text, path), changes)
+    file. `layers` as for variants.find."""
+    whole = variants.replaced(text, yf.parse(text, path), changes, layers)
     with tempfile.TemporaryDirectory(prefix=COPY) as folder:
         copy = Path(folder) / Path(path).with_suffix(".yaml").name
         copy.write_text(whole, encoding="utf-8")
@@ -39,8 +39,12 @@ def load_scene(text, path, changes=()):
     return _loaded(text, path, changes, glidar.load_scene)
 
 
-def load_sensor(text, path, changes=()):
-    return _loaded(text, path, changes, glidar.load_sensor)
+def load_sensor(text, path, changes=(), variant="", mode=""):
+    """A sensor; `variant` and `mode` of a file that has several, or empty."""
+    def load(copy):
+        return glidar.load_sensor(f"{copy}#{variant}" if variant else copy, mode=mode or None)
+
+    return _loaded(text, path, changes, load, families.layers_of(yf.parse(text, path), variant, mode))
 
 
 def intrinsics_of(sensor, name):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import glidar
 from glidar import Error
-from glidar.campaign import files, inputs, records, sensor_files, variants, yaml_file as yf
+from glidar.campaign import families, files, inputs, records, sensor_files, variants, yaml_file as yf
 from glidar.campaign.spec import Spec
 
 FORMAT = 3  # of the campaign folder
@@ -86,8 +86,8 @@ def _check_variations(spec, sources, of):
         field = yf.parse(source.text, source.path)
         places = {}
         for variation in [v for v in spec.vary if v.target.of == of]:
-            check = _check_pose if variation.is_pose else _check_value
-            _require_apart(spec, variation.path, check(field, variation), places)
+            place = _check_pose(field, variation) if variation.is_pose else _check_value(field, variation, source)
+            _require_apart(spec, variation.path, place, places)
 
 
 def _require_apart(spec, path, place, places):
@@ -100,9 +100,10 @@ def _require_apart(spec, path, place, places):
     places[path] = place
 
 
-def _check_value(field, variation):
+def _check_value(field, variation, source):
     """The location of a varied value."""
-    return variants.find(field, variation.target).path
+    layers = families.layers_of(field, source.variant, source.mode) if variation.target.of == "sensor" else ()
+    return variants.find(field, variation.target, layers=layers).path
 
 
 def _check_pose(field, variation):
@@ -126,12 +127,17 @@ def _auto_shard_trials(beams):
     return min(MAX_SHARD_TRIALS, max(MIN_SHARD_TRIALS, trials))
 
 
+def _read_sensor(name, folder, loaded, mode):
+    path, variant = sensor_files.find(name, folder)
+    return inputs.read(name, path, loaded, variant, mode or "")
+
+
 def make_plan(spec):
     """Reads the files that the campaign file names, and divides the trials into shards."""
     folder = spec.file.resolve().parent
     loaded = {}
     scenes = tuple(inputs.read(name, folder / name, loaded) for name in spec.scenes.names)
-    sensors = tuple(inputs.read(name, sensor_files.find(name, folder), loaded) for name in spec.sensors.names)
+    sensors = tuple(_read_sensor(name, folder, loaded, spec.mode) for name in spec.sensors.names)
     _require_some(scenes, f"{spec.file}: scene")
     _require_some(sensors, f"{spec.file}: sensor")
     _check_variations(spec, scenes, "scene")

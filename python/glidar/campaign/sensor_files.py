@@ -5,8 +5,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import glidar
-from glidar import Error
+from glidar import Error, _core
 from glidar.campaign import loading
 
 
@@ -17,11 +16,19 @@ class SensorProperties:
 
 
 def find(name, folder):
-    """The path of a sensor file: relative to the campaign file, or of a preset."""
-    beside = Path(folder) / name
-    if beside.is_file() or name.endswith((".yaml", ".yml")):
-        return beside
-    return Path(glidar.sensor_file(name))
+    """The path of a sensor file and the name of its variant or "": relative to the campaign file, or of a preset."""
+    beside, mark, variant = name.rpartition("#")
+    if mark and not (Path(folder) / name).is_file() and beside.endswith((".yaml", ".yml")):
+        return Path(folder) / beside, variant
+    if (Path(folder) / name).is_file() or name.endswith((".yaml", ".yml")):
+        return Path(folder) / name, ""
+    path, variant = _core.sensor_file(name)
+    return Path(path), variant
+
+
+def load(source):
+    """The sensor of an input that was read."""
+    return loading.load_sensor(source.text, source.path, (), source.variant, source.mode)
 
 
 def properties_of(source):
@@ -29,7 +36,7 @@ def properties_of(source):
     if source.error:
         return SensorProperties()
     try:
-        sensor = loading.load_sensor(source.text, source.path)
+        sensor = load(source)
     except Error:
         return SensorProperties()
     return SensorProperties(sensor.boresight, sensor.rows * sensor.cols)

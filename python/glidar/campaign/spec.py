@@ -12,7 +12,7 @@ from glidar.campaign import output_spec, sampling, variants, yaml_file as yf
 from glidar.campaign.distributions import Choice, Constant, Grid, read_choice, read_distribution
 from glidar.campaign.poses import PoseDistribution, read_pose
 
-KEYS = ["name", "seed", "trials", "sampling", "shard_trials", "scene", "sensor", "pose", "vary",
+KEYS = ["name", "seed", "trials", "sampling", "shard_trials", "scene", "sensor", "mode", "pose", "vary",
         "outputs"]
 MAX_TRIALS = 1 << 32
 MAX_SHARD_TRIALS = 1 << 16
@@ -48,6 +48,7 @@ class Spec:
     shard_trials: int | None  # None: shards of about 32 MB
     scenes: Source
     sensors: Source
+    mode: str | None  # of all sensors; None: their default modes
     pose: PoseDistribution
     vary: tuple
     outputs: output_spec.Outputs
@@ -110,6 +111,7 @@ def read_spec(path):
                                  lambda f: yf.whole(f, 1, MAX_SHARD_TRIALS), None),
         scenes=_read_source(yf.need(field, found, "scene")),
         sensors=_read_source(yf.need(field, found, "sensor")),
+        mode=yf.optional(found, "mode", yf.text, None),
         pose=read_pose(yf.need(field, found, "pose")),
         vary=yf.optional(found, "vary", _read_vary, ()),
         outputs=yf.optional(found, "outputs", output_spec.read_outputs, output_spec.DEFAULT),

@@ -66,9 +66,10 @@ def _require_unanchored(field):
         yf.reject(field, "an anchor, an alias or a tag", "a plain value", "write it out")
 
 
-def find(field, target, is_replaced=True):
+def find(field, target, is_replaced=True, layers=()):
     """The value that a target refers to; raises Error when the file does not contain it, or its text cannot be
-    replaced."""
+    replaced. `layers` are maps of overrides, of which the first one with the value has precedence over the file."""
+    field = next((layer for layer in layers if _has(layer, target)), field)
     for step in target.steps:
         if step.startswith("["):
             field = _element(field, step[1:-1])
@@ -77,6 +78,18 @@ def find(field, target, is_replaced=True):
         if is_replaced:
             _require_unanchored(field)
     return field
+
+
+def _has(field, target):
+    """Whether a map of overrides has the value, or replaces a list or value that contains it."""
+    for step in target.steps:
+        if step.startswith("[") or not isinstance(field.node, yaml.MappingNode):
+            return True
+        found = yf.entries(field)
+        if step not in found:
+            return False
+        field = found[step]
+    return True
 
 
 def _entry(field, key):
@@ -123,11 +136,11 @@ def _place(text, field):
     return ANCHOR.match(text, first).end(), last
 
 
-def replaced(text, field, values):
-    """The text with values replaced, given as pairs (Target, text). Paths of files become absolute, so that the text
+def replaced(text, field, values, layers=()):
+    """The text with values replaced, given as pairs (Target, text); `layers` as for find(). Paths of files become absolute, so that the text
     can be read from any folder."""
     edits = [(value, _quoted(path)) for value, _, path in files_of(field) if os.path.isfile(path)]
-    edits += [(find(field, target), value) for target, value in values]
+    edits += [(find(field, target, layers=layers), value) for target, value in values]
     edits.sort(key=lambda edit: edit[0].node.start_mark.index, reverse=True)
     for old, new in edits:
         first, last = _place(text, old)

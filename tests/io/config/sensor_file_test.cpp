@@ -171,7 +171,7 @@ const BadFile kBadFiles[] = {
      "wavelength_nm, limits, light, lidar_equation, footprint, receiver, weather, "
      "projector_origin_m, noise, cull_back_faces, "
      "source, "
-     "unverified"},
+     "unverified, variants, modes, default_mode, aliases"},
     {"DuplicateKey", optics("width: 4, height: 2, width: 5, fov_deg: 20"),
      "s.yaml:1:31: optics.width: the key is given twice; allowed: each key once; remove one of "
      "them"},
@@ -302,7 +302,7 @@ const BadFile kBadFiles[] = {
      "wavelength_nm, limits, light, lidar_equation, footprint, receiver, weather, "
      "projector_origin_m, noise, cull_back_faces, "
      "source, "
-     "unverified"},
+     "unverified, variants, modes, default_mode, aliases"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SensorFileError, ::testing::ValuesIn(kBadFiles), bad_file_name);
