@@ -24,18 +24,8 @@ from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
 from ._scene import Scene, load_scene, surface_names
 from ._scene_data import RigSensor
-from ._sensor import (
-    DatasheetEntry,
-    Sensor,
-    SensorPreset,
-    camera,
-    datasheet,
-    load_sensor,
-    sensor,
-    sensor_file,
-    sensor_names,
-    sensor_presets,
-)
+from ._presets import DatasheetEntry, SensorPreset, datasheet, sensor_file, sensor_names, sensor_presets
+from ._sensor import Sensor, camera, load_sensor, sensor
 from ._simulate import simulate, simulate_batch, simulate_iter, simulate_rig
 from ._simulator import Simulator
 from ._status import ReturnSource, Status

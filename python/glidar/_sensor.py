@@ -7,7 +7,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from . import _core
 from ._beam_table import optics_of_table, stored_table, table_of_optics
 from ._errors import Error, excerpt, shown
 from ._inputs import MAX_UINT32, FloatArray, numbers, path_of, text_of, whole
+from ._presets import mode_of
 from ._state import Immutable, key_of, part, restoring, make_state
 
 _MAX_DEPTH = 32
@@ -319,7 +319,7 @@ def load_sensor(
         Error: there is no such sensor (with the nearest names) or mode (with those that exist), the file is malformed
             (with line, column and field), a setting is out of range, or the sensor does not have it.
     """
-    loaded = Sensor(_core.load_sensor(path_of(name_or_path, "sensor"), _mode(mode)))
+    loaded = Sensor(_core.load_sensor(path_of(name_or_path, "sensor"), mode_of(mode)))
     return loaded.replace(
         returns=returns,
         rate_hz=rate_hz,
@@ -332,71 +332,6 @@ def load_sensor(
 
 #: Alias of ``load_sensor``: ``glidar.sensor("VLP-16", returns=["strongest", "last"])``.
 sensor = load_sensor
-
-
-def _mode(mode: str | None) -> str:
-    if mode is None:
-        return ""
-    given = text_of(mode, "mode")
-    if not given:
-        raise Error("mode", "an empty text", "the name of a mode", "None means the default mode")
-    return given
-
-
-def sensor_file(name: str) -> str:
-    """The path of the sensor file that a preset is read from, which is that of its family for a variant.
-
-    Raises:
-        Error: there is no preset of this name; with the nearest names.
-    """
-    return os.fspath(_core.sensor_file(path_of(name, "sensor"))[0])
-
-
-def sensor_names() -> list[str]:
-    """Names of the presets."""
-    return [preset.name for preset in sensor_presets()]
-
-
-@dataclass(frozen=True)
-class SensorPreset:
-    """A bundled sensor."""
-
-    name: str
-    title: str
-    """Name of the sensor with that of its manufacturer."""
-    aliases: tuple[str, ...]
-    """Further names."""
-    modes: tuple[str, ...]
-    """Names of its modes, for ``load_sensor(name, mode=...)``."""
-    default_mode: str | None
-    """The mode that is used if none is chosen; None: it has none."""
-
-
-def sensor_presets(text: str = "") -> list[SensorPreset]:
-    """The presets, sorted by name: all, or those whose name, alias or title contains the text. Case, "-", "_" and
-    spaces do not count."""
-    return [
-        SensorPreset(name, title, tuple(aliases), tuple(modes), default or None)
-        for name, title, aliases, modes, default in _core.sensor_presets(text_of(text, "text"))
-    ]
-
-
-@dataclass(frozen=True)
-class DatasheetEntry:
-    """One value of a sensor file and its source."""
-
-    key: str
-    value: str
-    source: str
-    """Where the value comes from; empty when the file does not state it."""
-    verified: bool
-    """Whether the value was checked against the manufacturer's documents."""
-
-
-def datasheet(name_or_path: str | os.PathLike[str], *, mode: str | None = None) -> list[DatasheetEntry]:
-    """Every value of a preset or sensor file with its source, in the order of the file; ``mode`` as for
-    ``load_sensor``."""
-    return [DatasheetEntry(*entry) for entry in _core.datasheet(path_of(name_or_path, "sensor"), _mode(mode))]
 
 
 def camera(

@@ -19,17 +19,11 @@ class Sensors(CliTest):
         self.assertEqual(reported["VLP-16"]["rows"], 16)
         self.assertEqual(reported["VLP-16"]["view_deg"][0], 360)
 
-    def test_the_list_and_the_docs_count_the_values_with_sources(self):
-        root = os.path.join(os.path.dirname(__file__), "..", "..")
-        with open(os.path.join(root, "docs", "sensor-presets.md"), encoding="utf-8") as file:
-            rows = [[cell.strip() for cell in line.strip("|\n ").split("|")] for line in file if line.startswith("| ")]
-        documented = {row[0]: row[-1] for row in rows if len(row) == 10}
+    def test_the_list_counts_the_values_with_sources(self):
         lines = {line.split()[0]: line for line in self.succeed("sensors").stdout.splitlines()[1:]}
         for entry in json.loads(self.succeed("sensors", "--json").stdout):
-            count = f"{entry['backed']} of {entry['values']}"
             self.assertLess(0, entry["values"])
-            self.assertTrue(lines[entry["name"]].endswith(count), entry["name"])
-            self.assertEqual(documented[entry["name"]], count, entry["name"])
+            self.assertTrue(lines[entry["name"]].endswith(f"{entry['backed']} of {entry['values']}"), entry["name"])
         text = self.succeed("sensors", "VLP-16").stdout
         stars = [line for line in text.splitlines() if line.startswith("* ") and " = " in line]
         backed, values = map(int, lines["VLP-16"].split("  ")[-1].split(" of "))
@@ -40,17 +34,18 @@ class Sensors(CliTest):
         def names(*arguments):
             return [line.split()[0] for line in self.succeed("sensors", *arguments).stdout.splitlines()[1:]]
 
-        self.assertEqual(names("os1-"), ["OS1-128", "OS1-32", "OS1-64"])
+        self.assertLessEqual({"OS1-128", "OS1-32", "OS1-64"}, set(names("ouster os1")))
         self.assertEqual(names("velodyne hdl"), ["HDL-32E", "HDL-64E-S3"])
-        listed = json.loads(self.succeed("sensors", "os1-", "--json").stdout)
-        self.assertEqual([one["name"] for one in listed], ["OS1-128", "OS1-32", "OS1-64"])
-        self.assertIn("--mode: no sensor is given", self.refused("sensors", "os1-", "--mode", "512x10"))
+        listed = json.loads(self.succeed("sensors", "velodyne_HDL", "--json").stdout)
+        self.assertEqual([one["name"] for one in listed], ["HDL-32E", "HDL-64E-S3"])
+        self.assertIn("--mode: no sensor is given", self.refused("sensors", "ouster", "--mode", "512x10"))
         self.assertIn("did you mean OS1-64", self.refused("sensors", "os1-46"))
 
     def test_a_sensor_prints_its_aliases_and_the_values_of_the_chosen_mode(self):
         lines = self.succeed("sensors", "os1").stdout.splitlines()
-        self.assertEqual(lines[:3], ["Ouster OS1-128", "aliases: OS1",
-                                     "modes: 512x10, 1024x10 (this one), 2048x10, 512x20, 1024x20"])
+        self.assertEqual(lines[0], "Ouster OS1-128")
+        self.assertRegex(lines[1], "^aliases: .*OS1")
+        self.assertEqual(lines[2], "modes: 512x10, 1024x10 (this one), 2048x10, 512x20, 1024x20")
         fast = self.succeed("sensors", "OS1-32", "--mode", "512x20").stdout
         self.assertIn("1024x10, 2048x10, 512x20 (this one)", fast)
         self.assertIn("optics.columns_per_turn = 512\n", fast)
@@ -68,7 +63,7 @@ class Sensors(CliTest):
         self.assertEqual((sidecar["sensor"]["rate_hz"], sidecar["sensor"]["cols"]), (20, 512))
         self.assertEqual(sidecar["sensor"]["optics"]["columns_per_turn"], 512)
         before = self.bytes_of("a.pcd")
-        self.assertIn("a.pcd", self.succeed("explain", "a.pcd", "--index", "5").stdout)
+        self.assertIn("5 of 16384", self.succeed("explain", "a.pcd", "--index", "5").stdout)
         self.succeed("render", *sidecar["command"]["arguments"][1:])
         self.assertEqual(self.bytes_of("a.pcd"), before)
         self.assertIn("--mode: there is no --sensor", self.refused("render", "builtin:box", "--mode", "512x20", "-o", "a.pcd"))

@@ -201,6 +201,18 @@ Json divergence_json(const Sensor& sensor) {
   return {1e3 * sensor.footprint->divergence_x_rad, 1e3 * sensor.footprint->divergence_y_rad};
 }
 
+/// The range at which a reflectance is detected with probability 1/2; empty without one.
+Json detection_json(const Datasheet& sheet) {
+  if (!sheet.sensor.lidar_equation) return {};
+  const auto is_documented = [](const DatasheetEntry& entry) {
+    return entry.key == "lidar_equation.reference_range_m" && entry.verified &&
+           !entry.source.empty();
+  };
+  return {{"range_m", sheet.sensor.lidar_equation->reference_range_m},
+          {"reflectance", sheet.sensor.lidar_equation->reference_reflectance},
+          {"documented", std::any_of(sheet.entries.begin(), sheet.entries.end(), is_documented)}};
+}
+
 /// Infinite limits become null.
 Json json_of(const Datasheet& sheet, const Summary& s) {
   const Limits& limits = sheet.sensor.limits;
@@ -217,6 +229,7 @@ Json json_of(const Datasheet& sheet, const Summary& s) {
           {"points_per_s", s.points_per_s},
           {"near_m", limits.near_m},
           {"far_m", limits.far_m},
+          {"detection", detection_json(sheet)},
           {"divergence_mrad", divergence_json(sheet.sensor)},
           {"returns", returns_of(sheet.sensor)},
           {"values", s.values.total},

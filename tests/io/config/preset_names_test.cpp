@@ -74,7 +74,7 @@ TEST(SensorPresets, AreFoundByAPartOfTheirNameAliasOrTitle) {
     for (const SensorPreset& preset : matching_presets(text)) found.push_back(preset.name);
     return found;
   };
-  EXPECT_EQ(names("os2_"), (std::vector<std::string>{"OS2-128", "OS2-32", "OS2-64"}));
+  EXPECT_EQ(names("hdl_"), (std::vector<std::string>{"HDL-32E", "HDL-64E-S3"}));
   EXPECT_EQ(names("Velodyne VLP16"), (std::vector<std::string>{"VLP-16"}));
   EXPECT_EQ(names("").size(), sensor_presets().size());
   EXPECT_TRUE(names("no such sensor").empty());

@@ -205,25 +205,6 @@ TEST(SceneFile, SensorStandsInAFileOrInTheScene) {
             "near");
 }
 
-TEST(SceneFile, ASensorHasTheModeAndVariantThatTheSceneNames) {
-  const TestFolder folder;
-  (void)folder.write("c.yaml",
-                     "optics: {width: 4, height: 2, fov_deg: 20}\nmodes: {fast: {rate_hz: 60}}\n"
-                     "variants: {A: {}, B-1: {optics: {width: 9}}}\n");
-  const std::string models = "models: [{model: a}]\n";
-  const RigSensor own =
-      plan(folder, models + "sensor: c.yaml#b1\nsensor_mode: fast\n").sensors.at(0);
-  EXPECT_EQ(own.sensor.rate_hz, 60.0);
-  EXPECT_EQ(own.sensor.mode, "fast");
-  EXPECT_EQ(std::get<Pinhole>(own.sensor.optics).intrinsics.width, 9U);
-  const ScenePlan rig = plan(folder, models +
-                                         "sensors:\n- {name: a, sensor: OS1-32, mode: 512x20}\n"
-                                         "- {name: b, sensor: os1-32}\n");
-  EXPECT_EQ(std::get<Spinning>(rig.sensors.at(0).sensor.optics).columns_per_turn, 512U);
-  EXPECT_EQ(rig.sensors.at(0).sensor.rate_hz, 20.0);
-  EXPECT_EQ(rig.sensors.at(1).sensor.mode, "1024x10");
-}
-
 TEST(SceneFile, EachFileIsLoadedOnceForAllItsInstances) {
   Loader loader;
   const Scene scene = build(

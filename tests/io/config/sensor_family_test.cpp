@@ -24,7 +24,7 @@ optics: {type: spinning, columns_per_turn: 100, elevation_deg: [2, 1]}
 noise:
   - {type: range_gaussian, sigma_m: 0.1}
   - {type: range_quantization, step_m: 0.01}
-source: {rate_hz: manual, limits: sheet, optics: manual}
+source: {rate_hz: manual, limits: table, optics: manual}
 unverified: [limits]
 default_mode: slow
 modes:
@@ -113,7 +113,7 @@ TEST_F(Family, TheSensorRecordsItsVariantAndModeAsTheFileSpellsThem) {
 
 TEST_F(Family, SourcesAreMergedByKeyAndListsOfUnverifiedKeysAreReplaced) {
   auto two = entries("Two-B", "wide-1");
-  EXPECT_EQ(two.at("limits.near_m").source, "sheet");
+  EXPECT_EQ(two.at("limits.near_m").source, "table");
   EXPECT_EQ(two.at("limits.far_m").source, "letter");
   EXPECT_TRUE(two.at("limits.near_m").verified);
   EXPECT_FALSE(two.at("optics.elevation_deg").verified);
