@@ -146,7 +146,7 @@ def test_ray_directions_follow_the_pinhole_model():
         (lambda: glidar.load_sensor("VLP-16", mode="1024x10"), "mode", "Velodyne VLP-16 has no modes"),
         (lambda: glidar.load_sensor("OS1-64", mode="1024x11"), "mode", "did you mean '1024x10'"),
         (lambda: glidar.load_sensor("OS1-64", mode=""), "mode", "None means the default mode"),
-        (lambda: glidar.load_sensor("OS1-64", mode=3), "mode", "a int"),
+        (lambda: glidar.load_sensor("OS1-64", mode=3), "mode", "3; allowed: a string"),
         (lambda: glidar.Sensor.from_dict({}), "sensor", "optics"),
     ],
 )

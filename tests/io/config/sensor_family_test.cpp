@@ -146,9 +146,9 @@ TEST_F(Family, OneAnchorInSeveralVariantsGivesEachItsOwnValues) {
 }
 
 TEST_F(Family, PathsInOverridesAreSeenFromTheFolderOfTheFile) {
-  (void)folder_.write("rays.csv", "1,0,0\n0,1,0\n");
+  (void)folder_.write("rays.csv", "Time/s,Azimuth/deg,Zenith/deg\n0.1,0,90\n0.2,90,60\n");
   write(
-      "optics: {type: table, file: missing.csv, point_us: 10}\nvariants: {A: {optics: {file: "
+      "optics: {type: table, file: missing.csv}\nvariants: {A: {optics: {file: "
       "rays.csv}}}\n");
   EXPECT_EQ(std::get<RayTable>(load("A").optics).directions.size(), 2U);
 }
