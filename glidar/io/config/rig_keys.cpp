@@ -120,11 +120,11 @@ struct RigSensorPlan {
 
 void describe(RigSensorPlan& plan, FieldVisitor& visitor) {
   plan.where_name = visit_rig_name(visitor, plan.name);
-  visit_sensor(visitor,
-               {{"sensor", "as the key `sensor` of a scene", kNoUnit, kRequired},
-                {"mode", "[mode](sensor-families.md) of the sensor", kNoUnit, false,
-                 "its default mode"}},
-               true, plan.sensor);
+  visit_sensor(
+      visitor,
+      {{"sensor", "as the key `sensor` of a scene", kNoUnit, kRequired},
+       {"mode", "[mode](sensor-families.md) of the sensor", kNoUnit, false, "its default mode"}},
+      true, plan.sensor);
   visit_pose(visitor,
              {"pose", "rig_from_sensor, a [pose](motion.md#poses)", kNoUnit, false, "identity"},
              true, plan.rig_from_sensor);
@@ -186,8 +186,8 @@ void visit_single_sensor(FieldVisitor& visitor, bool is_present, ScenePlan& plan
         "path of a [sensor file](sensors.md), its content as a map, or the name of a preset such "
         "as `VLP-16`",
         kNoUnit, false, "none"},
-       {"sensor_mode", "[mode](sensor-families.md) of the sensor, such as `2048x10`",
-        kNoUnit, false, "its default mode"}},
+       {"sensor_mode", "[mode](sensor-families.md) of the sensor, such as `2048x10`", kNoUnit,
+        false, "its default mode"}},
       has_sensor, sensor);
   if (visitor.is_reading() && is_given) add(std::move(sensor), "", Pose::Identity(), plan);
   const BodyKeys fields = {
