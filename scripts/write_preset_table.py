@@ -15,7 +15,8 @@ import sys
 from pathlib import Path
 
 GROUPS = ("ouster-velodyne", "spinning", "solid-state", "lines", "cameras", "space")
-SPACE = {"flash-128", "flash-256", "woods2016-256"}  # their optics do not show what they are for
+# The optics of these do not show that they are for space.
+SPACE = {"flash-128", "flash-256", "woods2016-256", "Hayabusa-LIDAR", "Hayabusa2-LIDAR", "MOLA"}
 OUSTER_VELODYNE = ("Ouster", "Velodyne")
 MARKED = re.compile(r"(<!-- presets: (\S+) -->\n).*?(<!-- end of presets -->)", re.DOTALL)
 COLUMNS = ("name", "sensor", "rows x cols", "view, degrees", "rate, Hz", "range, m", "detection range", "modes", "documented")

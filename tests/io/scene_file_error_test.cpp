@@ -27,8 +27,8 @@ const std::string kPoseKeys = "position, orientation, rotation_vector, euler_deg
 const BadFile kBadScenes[] = {
     {"NoModels", "sensor: c.yaml\n", "s.yaml:1:1: the key 'models' is missing; add 'models: ...'"},
     {"UnknownTopKey", with_model("sensr: c.yaml"),
-     "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_pose, "
-     "sensor_motion, sensors, rig_pose, rig_motion, imus, gravity_m_s2; did you mean "
+     "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_mode, "
+     "sensor_pose, sensor_motion, sensors, rig_pose, rig_motion, imus, gravity_m_s2; did you mean "
      "'sensor'?"},
     {"SensorBesideSensors", with_model("sensors: [{name: a, sensor: VLP-16}]\nsensor: VLP-16"),
      "s.yaml:3:9: sensor: given beside 'sensors'; allowed: sensors, rig_pose, rig_motion; a rig of "
@@ -50,8 +50,8 @@ const BadFile kBadScenes[] = {
      "s.yaml:2:45: sensors[1].name: the name 'a' is given twice; allowed: each name once; choose "
      "another name"},
     {"RigSensorUnknownKey", with_model("sensors: [{name: a, sensor: VLP-16, poes: {}}]"),
-     "s.yaml:2:37: sensors[0].poes: unknown key 'poes'; allowed: name, sensor, pose; did you mean "
-     "'pose'?"},
+     "s.yaml:2:37: sensors[0].poes: unknown key 'poes'; allowed: name, sensor, mode, pose; did "
+     "you mean 'pose'?"},
     {"RigMotionWithoutStart",
      with_model(
          "sensors: [{name: a, sensor: VLP-16}]\nrig_motion: {spin: {rate_deg_s: [0, 0, 1]}}"),
