@@ -7,13 +7,10 @@
 #include <cmath>
 
 namespace glidar {
-namespace {
 
 bool is_within_reach(const Eigen::Vector3d& position_m) {
   return position_m.cwiseAbs().maxCoeff() <= kMaxCoordinate_m && position_m.allFinite();
 }
-
-}  // namespace
 
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {
   if (!is_within_reach(eye) || !is_within_reach(target) || !up.allFinite()) {

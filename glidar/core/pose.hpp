@@ -13,6 +13,9 @@ using Pose = Eigen::Isometry3d;
 /// The maximum coordinate and scale of poses; squares of larger numbers overflow single precision.
 inline constexpr double kMaxCoordinate_m = 1e15;
 
+/// Whether all coordinates (m) are finite and within kMaxCoordinate_m.
+bool is_within_reach(const Eigen::Vector3d& position_m);
+
 /// world_from_camera of a camera at `eye` (m) whose boresight (+z) points at `target` (m) and whose
 /// image shows `up` upwards (optical frame, REP-103: x right, y down, z forward).
 /// Throws Error if a number is not finite or too large, eye and target coincide or `up` is

@@ -39,8 +39,8 @@ void validate(const Instance& instance, const Scene& scene) {
           "scale " + number_text(instance.scale), "1e-15 to 1e15", "choose another unit or scale");
   require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
           "finite numbers and a rotation");
-  require(instance.world_from_object.translation().cwiseAbs().maxCoeff() <= kMaxCoordinate_m,
-          instance, "a position too far away", "up to 1e15 m from the world's origin",
+  require(is_within_reach(instance.world_from_object.translation()), instance,
+          "a position too far away", "up to 1e15 m from the world's origin",
           "move the world's origin nearer to it");
   require(instance.class_id < scene.class_names.size(), instance,
           "class " + std::to_string(instance.class_id), "an index of the scene's class names");

@@ -43,7 +43,7 @@ std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPos
     return TimedPoseError{Part::time, "a time before that of the previous pose",
                           "increasing times"};
   }
-  if (!next.position_m.allFinite() || next.position_m.cwiseAbs().maxCoeff() > kMaxCoordinate_m) {
+  if (!is_within_reach(next.position_m)) {
     return TimedPoseError{Part::position, "a position that is not finite or too large",
                           "coordinates up to 1e15 m"};
   }

@@ -40,15 +40,11 @@ bool any_instance_enabled(const CastRequest& request, const Scene& scene) {
 
 namespace {
 
-bool is_in_reach(const Pose& world_from_source) {
-  const Eigen::Vector3d position = world_from_source.translation();
-  return position.cwiseAbs().maxCoeff() <= kMaxCoordinate_m && position.allFinite();
-}
-
 /// Enabled instances must be within range.
 void check_poses(const CastRequest& request, const Scene& scene) {
   for (std::size_t i = 0; i < request.world_from_instance.size(); ++i) {
-    if (!is_enabled(request, i) || is_in_reach(request.world_from_instance[i])) continue;
+    if (!is_enabled(request, i)) continue;
+    if (is_within_reach(request.world_from_instance[i].translation())) continue;
     throw Error({.where = "cast",
                  .found = "instance '" + scene.instances[i].name + "' is out of reach",
                  .allowed = "up to 1e15 m from the world's origin",
@@ -75,7 +71,7 @@ void check(const CastRequest& request, const Scene& scene) {
   require(
       request.instance_enabled.empty() || request.instance_enabled.size() == scene.instances.size(),
       "enabled flags for another number of instances", "one entry per instance, or none");
-  require(is_in_reach(request.world_from_sensor), "the sensor is out of reach",
+  require(is_within_reach(request.world_from_sensor.translation()), "the sensor is out of reach",
           "up to 1e15 m from the world's origin", "move the world's origin nearer to it");
   check_poses(request, scene);
 }

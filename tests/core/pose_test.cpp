@@ -92,6 +92,15 @@ TEST(MakePose, RejectsZeroAndNaN) {
   EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(nan, 0.0, 0.0, 1.0)), Error);
 }
 
+TEST(IsWithinReach, AcceptsFiniteCoordinatesUpToTheMaximumOnly) {
+  EXPECT_TRUE(is_within_reach({kMaxCoordinate_m, -kMaxCoordinate_m, 0.0}));
+  EXPECT_FALSE(is_within_reach({0.0, -1.0000001 * kMaxCoordinate_m, 0.0}));
+  for (const double value : {kNaN, kInfinity, -kInfinity}) {
+    EXPECT_FALSE(is_within_reach({value, 0.0, 0.0}));
+    EXPECT_FALSE(is_within_reach({0.0, 0.0, value}));
+  }
+}
+
 TEST(IsRigid, RejectsMirrorsScalesAndNaN) {
   Pose pose = Pose::Identity();
   EXPECT_TRUE(is_rigid(pose));

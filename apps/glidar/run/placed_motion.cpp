@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/placed_motion.hpp>
 
-#include <glidar/motion/timed_poses.hpp>
+#include <glidar/core/pose.hpp>
 
 #include <algorithm>
 #include <variant>
@@ -28,8 +28,7 @@ lockstep::Body body_of(const Trajectory& still) {
 
 bool is_trajectory_within_reach(const Trajectory& trajectory) {
   const auto* still = std::get_if<ConstantPose>(&trajectory);
-  return still == nullptr || !find_error(nullptr, {.position_m = still->pose.translation(),
-                                                   .orientation = Eigen::Quaterniond::Identity()});
+  return still == nullptr || glidar::is_within_reach(still->pose.translation());
 }
 
 }  // namespace

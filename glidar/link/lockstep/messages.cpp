@@ -153,7 +153,7 @@ Body read_body(Reader& from, const std::string& where) {
   const auto w = from.read<double>();
   const Eigen::Vector3d xyz = from.read_vector();
   Body body{.rate_rad_s = from.read_vector(), .velocity_m_s = from.read_vector()};
-  if (!position_m.allFinite() || position_m.cwiseAbs().maxCoeff() > kMaxCoordinate_m) {
+  if (!is_within_reach(position_m)) {
     refuse(where + ", position", "a number that is not finite or too large", "metres up to 1e15");
   }
   const Eigen::Quaterniond attitude(w, xyz.x(), xyz.y(), xyz.z());
