@@ -7,28 +7,42 @@
 namespace glidar::link {
 namespace {
 
-TEST(VectorPool, PassesBytesWithoutACopyAndReusesTheirMemory) {
-  VectorPool pool;
-  std::vector<std::byte> bytes(1000, std::byte{7});
+TEST(PayloadPool, PassesVectorsWithoutACopyAndReusesTheirMemory) {
+  PayloadPool pool;
+  std::vector<std::byte> bytes(100'000, std::byte{7});
   const std::byte* memory = bytes.data();
   {
     const Payload payload = pool.take(bytes);
     EXPECT_EQ(payload.memory.get(), memory);
-    EXPECT_EQ(payload.size, 1000U);
-    EXPECT_EQ(payload.bytes()[999], std::byte{7});
+    EXPECT_EQ(payload.size, 100'000U);
+    EXPECT_EQ(payload.bytes()[99'999], std::byte{7});
     EXPECT_TRUE(bytes.empty());  // nothing was sent yet
   }
-  std::vector<std::byte> next(900, std::byte{8});
+  std::vector<std::byte> next(90'000, std::byte{8});
   const Payload payload = pool.take(next);
-  EXPECT_EQ(payload.size, 900U);
+  EXPECT_EQ(payload.size, 90'000U);
   EXPECT_EQ(next.data(), memory);
 }
 
-TEST(VectorPool, PayloadsOutliveThePool) {
+TEST(PayloadPool, ReusesTheMemoryOfSentMessages) {
+  PayloadPool pool;
+  const std::byte* memory = nullptr;
+  {
+    const Payload payload = pool.take(100'000);
+    EXPECT_EQ(payload.bytes().size(), 100'000U);
+    memory = payload.memory.get();
+  }
+  const Payload again = pool.take(80'000);
+  EXPECT_EQ(again.memory.get(), memory);
+  EXPECT_EQ(again.bytes().size(), 80'000U);
+  EXPECT_NE(pool.take(80'000).memory.get(), memory);  // it is in use
+}
+
+TEST(PayloadPool, PayloadsOutliveThePool) {
   Payload payload;
   {
-    VectorPool pool;
-    std::vector<std::byte> bytes(10, std::byte{3});
+    PayloadPool pool;
+    std::vector<std::byte> bytes(100'000, std::byte{3});
     payload = pool.take(bytes);
   }
   EXPECT_EQ(payload.bytes()[9], std::byte{3});

@@ -6,32 +6,6 @@
 #include <utility>
 
 namespace glidar::ros {
-namespace {
-
-/// Memory of smaller messages is not worth keeping.
-constexpr std::size_t kLarge_bytes = 65'536;
-
-}  // namespace
-
-std::vector<std::byte> HeldMessages::take_memory(std::size_t size) {
-  if (size < kLarge_bytes) return {};
-  auto best = spare_.end();
-  for (auto memory = spare_.begin(); memory != spare_.end(); ++memory) {
-    const bool fits = memory->capacity() >= size;
-    if (fits && (best == spare_.end() || memory->capacity() < best->capacity())) best = memory;
-  }
-  if (best == spare_.end()) return {};
-  std::vector<std::byte> memory = std::move(*best);
-  spare_.erase(best);
-  return memory;
-}
-
-void HeldMessages::give_back(std::vector<std::byte> memory) {
-  constexpr std::size_t kMaxSpare = 8;
-  if (memory.capacity() < kLarge_bytes) return;
-  if (spare_.size() == kMaxSpare) spare_.erase(spare_.begin());
-  spare_.push_back(std::move(memory));
-}
 
 void HeldMessages::hold(Held message) {
   const auto is_earlier = [](std::int64_t time_ns, const Held& held) {

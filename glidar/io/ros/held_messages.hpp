@@ -4,6 +4,7 @@
 
 // Private to glidar/io/ros.
 
+#include <glidar/core/memory_pool.hpp>
 #include <glidar/io/ros/codec.hpp>
 
 #include <cstddef>
@@ -24,9 +25,8 @@ class HeldMessages {
     std::vector<std::byte> bytes;
   };
 
-  /// Memory for a message of this size, if possible that of a large one that was given back.
-  std::vector<std::byte> take_memory(std::size_t size);
-  void give_back(std::vector<std::byte> memory);
+  /// The memory of a message that was written, for later ones.
+  void give_back(std::vector<std::byte> memory) { written_.give_back(std::move(memory)); }
 
   void hold(Held message);
   /// Serializes a message.
@@ -34,7 +34,7 @@ class HeldMessages {
   void hold(std::size_t topic, std::int64_t time_ns, const Message& message, Wire wire) {
     std::size_t size = 0;
     if constexpr (requires { message.data.size(); }) size = message.data.size();
-    std::vector<std::byte> bytes = take_memory(size);
+    std::vector<std::byte> bytes = written_.take(size);
     serialize_to(message, wire, bytes);
     hold({.time_ns = time_ns, .topic = topic, .bytes = std::move(bytes)});
   }
@@ -43,7 +43,7 @@ class HeldMessages {
 
  private:
   std::deque<Held> held_;
-  std::vector<std::vector<std::byte>> spare_;
+  MemoryPool written_;
 };
 
 }  // namespace glidar::ros

@@ -50,9 +50,8 @@ void MessageSink::write(std::size_t topic, std::int64_t /*time_ns*/,
 }
 
 void MessageSink::take(std::size_t topic, std::int64_t time_ns, std::vector<std::byte>& message) {
-  constexpr std::size_t kLarge_bytes = 65'536;
-  if (message.size() < kLarge_bytes) return write(topic, time_ns, message);
-  if (is_wanted(topic)) writers_[topic]->write(taken_.take(message));
+  if (message.size() < kMinReused_bytes) return write(topic, time_ns, message);
+  if (is_wanted(topic)) writers_[topic]->write(memory_.take(message));
 }
 
 void MessageSink::finish() {

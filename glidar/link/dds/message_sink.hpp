@@ -45,7 +45,6 @@ class MessageSink final : public ros::MessageSink {
   std::vector<std::unique_ptr<TopicWriter>> writers_;  ///< per topic; nullptr: omitted
   std::vector<bool> is_kept_;                          ///< per topic: transient local
   link::PayloadPool memory_;
-  link::VectorPool taken_;  ///< of large messages
 };
 
 }  // namespace glidar::dds

@@ -27,15 +27,16 @@ TEST(HeldMessages, StayUntilTheirTime) {
   EXPECT_FALSE(messages.release(6));
 }
 
-TEST(HeldMessages, ReuseTheSmallestLargeMemoryThatFits) {
+TEST(HeldMessages, ReuseTheMemoryOfWrittenOnes) {
   HeldMessages messages;
-  EXPECT_EQ(messages.take_memory(100'000).capacity(), 0U);
-  messages.give_back(std::vector<std::byte>(300'000));
-  messages.give_back(std::vector<std::byte>(200'000));
-  EXPECT_EQ(messages.take_memory(10).capacity(), 0U);  // small messages do not hold large memory
-  EXPECT_EQ(messages.take_memory(100'000).capacity(), 200'000U);
-  EXPECT_EQ(messages.take_memory(100'000).capacity(), 300'000U);
-  EXPECT_EQ(messages.take_memory(100'000).capacity(), 0U);
+  Image image;
+  image.data = Payload(std::vector<std::byte>(100'000));
+  messages.hold(0, 1, image, Wire::cdr);
+  std::vector<std::byte> written = std::move(messages.release(1)->bytes);
+  const std::byte* memory = written.data();
+  messages.give_back(std::move(written));
+  messages.hold(0, 2, image, Wire::cdr);
+  EXPECT_EQ(messages.release(2)->bytes.data(), memory);
 }
 
 }  // namespace
