@@ -5,7 +5,7 @@
 #include <apps/glidar/run/imu_outputs.hpp>
 #include <apps/glidar/run/packet_setup.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/packets/velodyne_codec.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
 
 #include <utility>
 
@@ -17,8 +17,7 @@ void add_packets(const RenderFlags& flags, const PreparedScene& prepared, PoseOr
                  ros::PublishedRig& rig) {
   bool has_packets = false;
   for (std::size_t i = 0; i < rig.sensors.size(); ++i) {
-    const Sensor& sensor = rig.sensors[i].sensor;
-    if (!is_ouster(sensor) && !is_velodyne(sensor)) continue;
+    if (!has_packet_messages(rig.sensors[i].sensor)) continue;
     rig.sensors[i].packets = packet_setup(flags, prepared, origin, prepared.sensors[i]);
     has_packets = true;
   }

@@ -59,6 +59,14 @@ bool has_packets(const Sensor& sensor) {
   return is_velodyne(sensor) || is_ouster(sensor) || is_hesai(sensor) || is_livox(sensor);
 }
 
+bool has_imu_packets(const Sensor& sensor) {
+  return is_ouster(sensor) || is_livox(sensor);
+}
+
+bool has_packet_messages(const Sensor& sensor) {
+  return is_velodyne(sensor) || is_ouster(sensor);
+}
+
 std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,
                                                    const PacketOptions& options) {
   if (is_velodyne(sensor)) return make_velodyne_encoder(sensor, options.position);

@@ -30,6 +30,13 @@ const std::vector<std::string>& packet_columns();
 /// Whether the sensor is named after a model whose packets are known.
 bool has_packets(const Sensor& sensor);
 
+/// Whether the ROS driver of the sensor's manufacturer publishes its packets in messages that are
+/// known: those of Ouster and Velodyne.
+bool has_packet_messages(const Sensor& sensor);
+
+/// Whether the sensor also sends the samples of its IMU: those of Ouster and Livox.
+bool has_imu_packets(const Sensor& sensor);
+
 /// The encoder of the sensor's manufacturer, by the sensor's name. Throws Error, naming the sensor,
 /// when it has none or its beams do not fit.
 std::unique_ptr<PacketEncoder> make_packet_encoder(const Sensor& sensor,

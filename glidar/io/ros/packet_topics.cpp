@@ -3,7 +3,6 @@
 #include <glidar/io/ros/packet_topics.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/packets/velodyne_codec.hpp>
 #include <glidar/io/packets/velodyne_packet.hpp>
 
 #include <algorithm>
@@ -15,8 +14,7 @@ namespace glidar::ros {
 namespace {
 
 const PublishedPackets& packets_of(const PublishedSensor& sensor) {
-  if (sensor.packets && (is_ouster(sensor.sensor) || is_velodyne(sensor.sensor)))
-    return *sensor.packets;
+  if (sensor.packets && has_packet_messages(sensor.sensor)) return *sensor.packets;
   throw Error({"packets of " + sensor.sensor.name, "no ROS driver's messages are known for them",
                "presets of Ouster and Velodyne sensors", "publish clouds only"});
 }

@@ -33,6 +33,20 @@ std::vector<UdpPacket> two_frames(const Sensor& sensor) {
   return packets;
 }
 
+TEST(HasImuPackets, IsTrueForPresetsOfOusterAndLivoxOnly) {
+  for (const char* preset : {"OS1-32", "Livox-Avia"})
+    EXPECT_TRUE(has_imu_packets(packet_sensor(preset, false))) << preset;
+  for (const char* preset : {"XT32", "VLP-16", "D435"})
+    EXPECT_FALSE(has_imu_packets(packet_sensor(preset, false))) << preset;
+}
+
+TEST(HasPacketMessages, IsTrueForPresetsOfOusterAndVelodyneOnly) {
+  for (const char* preset : {"OS1-32", "VLP-16"})
+    EXPECT_TRUE(has_packet_messages(packet_sensor(preset, false))) << preset;
+  for (const char* preset : {"XT32", "Livox-Avia", "D435"})
+    EXPECT_FALSE(has_packet_messages(packet_sensor(preset, false))) << preset;
+}
+
 TEST(SensorPackets, OfOusterHaveTheSamplesOfTheImuAmongThoseOfTheBeams) {
   std::vector<OusterImu> samples;
   std::int64_t last_ns = 0;
