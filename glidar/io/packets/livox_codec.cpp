@@ -6,6 +6,7 @@
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/packets/point_assembler.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/elementary.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@ namespace glidar {
 namespace {
 
 constexpr double kCentimetre_m = 0.01;
-constexpr double kCentidegree_rad = 0.01 * kDegree;
+constexpr double kCentidegreesPerTurn = 36'000.0;
 constexpr std::int64_t kInterval_ns = 100;  // unit of LivoxPacket::interval
 constexpr std::byte kCommandStart{0xAA};    // of packets on the ports of commands
 
@@ -65,13 +66,12 @@ std::vector<std::uint8_t> reflectivities(const Sensor& sensor, const Frame& fram
 LivoxPoint point_at(const Eigen::Vector3d& xyz_m, LivoxDataType type) {
   LivoxPoint point;
   if (type == LivoxDataType::spherical) {
-    const double range_m = xyz_m.norm();
-    const double azimuth_rad = std::atan2(xyz_m.y(), xyz_m.x());
-    const double turned_rad = azimuth_rad < 0.0 ? azimuth_rad + kTwoPi : azimuth_rad;
-    point.numbers = {
-        std::llround(range_m / kMillimetre_m),
-        std::llround(std::acos(std::clamp(xyz_m.z() / range_m, -1.0, 1.0)) / kCentidegree_rad),
-        std::llround(turned_rad / kCentidegree_rad) % 36'000};
+    const auto centidegrees = [](double y, double x) {
+      return std::llround(atan2_turns(y, x) * kCentidegreesPerTurn);
+    };
+    point.numbers = {std::llround(xyz_m.norm() / kMillimetre_m),
+                     centidegrees(xyz_m.head<2>().norm(), xyz_m.z()),
+                     centidegrees(xyz_m.y(), xyz_m.x()) % 36'000};
     return point;
   }
   const double unit_m = type == LivoxDataType::cartesian_mm ? kMillimetre_m : kCentimetre_m;
@@ -83,11 +83,11 @@ LivoxPoint point_at(const Eigen::Vector3d& xyz_m, LivoxDataType type) {
 Eigen::Vector3d position_of(const LivoxPoint& point, LivoxDataType type) {
   const auto number = [&](std::size_t i) { return static_cast<double>(point.numbers[i]); };
   if (type == LivoxDataType::spherical) {
-    const double zenith_rad = number(1) * kCentidegree_rad;
-    const double azimuth_rad = number(2) * kCentidegree_rad;
-    const double flat_m = number(0) * kMillimetre_m * std::sin(zenith_rad);
-    return {flat_m * std::cos(azimuth_rad), flat_m * std::sin(azimuth_rad),
-            number(0) * kMillimetre_m * std::cos(zenith_rad)};
+    const SineCosine zenith = sincos_turns(number(1) / kCentidegreesPerTurn);
+    const SineCosine azimuth = sincos_turns(number(2) / kCentidegreesPerTurn);
+    const double range_m = number(0) * kMillimetre_m;
+    const double level_m = range_m * zenith.sine;
+    return {level_m * azimuth.cosine, level_m * azimuth.sine, range_m * zenith.cosine};
   }
   const double unit_m = type == LivoxDataType::cartesian_mm ? kMillimetre_m : kCentimetre_m;
   return unit_m * Eigen::Vector3d(number(0), number(1), number(2));

@@ -165,6 +165,26 @@ TEST(LivoxEncoder, RejectsSensorsThatDoNotFit) {
   EXPECT_THROW(make_livox_encoder(packet_sensor("Livox-Avia", false), LivoxDataType::imu), Error);
 }
 
+TEST(LivoxDecoder, QuarterTurnsOfSphericalPointsAreExactlyOnTheAxes) {
+  const Sensor sensor = packet_sensor("Livox-Mid-40", false);
+  LivoxPacket packet;
+  packet.type = LivoxDataType::spherical;
+  packet.interval = 9600;
+  packet.points.assign(kLivoxPoints, {{5000, 9000, 9000}, 10, 0});  // 5 m to the left
+  packet.points[1].numbers = {5000, 9000, 18'000};
+  packet.points[2].numbers = {5000, 9000, 27'000};
+  packet.points[3].numbers = {5000, 18'000, 0};
+  const std::vector<DecodedFrame> frames =
+      livox_frames(sensor, {{0, 56300, 56301, encode(packet)}});
+  ASSERT_EQ(frames.size(), 1U);
+  const std::vector<Eigen::Vector3d>& directions = frames[0].beams.directions;
+  EXPECT_EQ(directions.at(0), Eigen::Vector3d(0.0, 1.0, 0.0));
+  EXPECT_EQ(directions.at(1), Eigen::Vector3d(-1.0, 0.0, 0.0));
+  EXPECT_EQ(directions.at(2), Eigen::Vector3d(0.0, -1.0, 0.0));
+  EXPECT_EQ(directions.at(3), Eigen::Vector3d(0.0, 0.0, -1.0));
+  EXPECT_EQ(frames[0].frame.range_m.at(0), 5.0);
+}
+
 TEST(LivoxDecoder, IgnoresCommandsAndSamplesOfTheImu) {
   const Sensor sensor = packet_sensor("Livox-Avia", false);
   const auto decoder = make_livox_decoder(sensor);
