@@ -3,7 +3,7 @@
 #include <glidar/link/recording.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/io/config/json_error.hpp>
 #include <glidar/io/files/recorded_path.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 
@@ -26,7 +26,7 @@ constexpr std::size_t kBodyNumbers = kPoseNumbers + 6;
 
 [[noreturn]] void refuse(std::string where, std::string found) {
   throw Error({std::move(where), std::move(found), "a recording by glidar stream --record",
-               "record it again"});
+               "copy the file again, or record again"});
 }
 
 std::string line_of(const Json& json) {
@@ -175,7 +175,7 @@ RecordingReader::RecordingReader(const std::filesystem::path& path)
   try {
     head_ = head_of(parse_json<Json>(where(), line), path);
   } catch (const Json::exception& error) {
-    refuse(where(), excerpt(error.what()));
+    refuse(where(), json_error_text(error.id, error.what()));
   }
 }
 
@@ -205,7 +205,7 @@ std::optional<RecordedFrame> RecordingReader::next() {
     refuse(where(), std::to_string(frames_) + " frames, but its last line states " +
                         shown_json(json["frames"]));
   } catch (const Json::exception& error) {
-    refuse(where(), excerpt(error.what()));
+    refuse(where(), json_error_text(error.id, error.what()));
   }
 }
 

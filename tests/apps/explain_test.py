@@ -45,6 +45,18 @@ class Explain(CliTest):
         self.assertAlmostEqual(float(reported[1]), float(point["range"]), delta=1e-6)
         self.assertAlmostEqual(float(reported[2]), float(point["intensity"]), delta=1e-5 * float(reported[2]))
 
+    def test_a_damaged_sidecar_is_explained_in_plain_words(self):
+        self.succeed("render", "builtin:box", "--width", "8", "--height", "6", "-o", "a.pcd")
+        good = self.bytes_of("a.pcd.json").decode()
+        for text, words in ((good[:100], "a damaged file: its text ends too early, at line "),
+                            (good.replace('"frame_hash"', '"hash"'), "the key 'frame_hash' is missing")):
+            self.write("a.pcd.json", text)
+            error = self.refused("explain", "a.pcd", "--index", "0")
+            self.assertIn("a.pcd.json: ", error)
+            self.assertIn(words, error)
+            self.assertIn("write the cloud again", error)
+            self.assertNotIn("exception", error)
+
     def test_the_trace_of_every_point_ends_at_its_reported_values(self):
         self.write("s.yaml", SENSOR)
         columns = ("--columns", "xyz,range,intensity,status,row,col,return")

@@ -247,6 +247,20 @@ class Refusals(ReplayTest):
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertIn(words, done.stderr)
 
+    def test_a_damaged_line_is_explained_in_plain_words(self):
+        self.record_scene()
+        head, first, *rest = self.bytes_of("r.jsonl").decode().splitlines()
+        for line, words in ((first[:40], "bad.jsonl:3: its text ends too early, at column 41"),
+                            ("x" + first, "bad.jsonl:3: its text is not valid JSON from column 1 on"),
+                            (first.replace('"seed"', '"sead"'), "bad.jsonl:3: the key 'seed' is missing")):
+            with self.subTest(words):
+                self.write("bad.jsonl", "\n".join([head, first, line, *rest]) + "\n")
+                done = self.run_program("replay", "bad.jsonl")
+                self.assertEqual(done.returncode, 2, done.stdout)
+                self.assertIn(words, done.stderr)
+                self.assertIn("copy the file again, or record again", done.stderr)
+                self.assertNotIn("exception", done.stderr)
+
     def test_blank_lines_are_skipped(self):
         self.record_scene()
         self.write("r.jsonl", self.bytes_of("r.jsonl").decode().replace("\n", "\n\n"))

@@ -3,6 +3,7 @@
 #include <glidar/io/formats/sidecar.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/config/json_error.hpp>
 #include <glidar/io/config/json_text.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/files/recorded_path.hpp>
@@ -92,10 +93,13 @@ Sidecar read_sidecar(const std::filesystem::path& cloud) {
   try {
     return read(parse_json<nlohmann::json>(path.string(), read_text_file(path, kSidecar)), path);
   } catch (const nlohmann::json::exception& error) {
+    const bool is_damaged = is_json_syntax_error(error.id);
     throw Error({.where = path.string(),
-                 .found = std::string("not a sidecar of this version: ") + excerpt(error.what()),
+                 .found = (is_damaged ? "a damaged file: " : "not a sidecar of this version: ") +
+                          json_error_text(error.id, error.what()),
                  .allowed = "the file that glidar wrote for the cloud",
-                 .remedy = "write the cloud again"});
+                 .remedy = is_damaged ? "copy the file again, or write the cloud again"
+                                      : "write the cloud again"});
   }
 }
 

@@ -72,7 +72,13 @@ TEST(ReadSidecar, RejectsOtherFiles) {
   const std::string error = error_text([&] { read_sidecar(folder.path() / "x.pcd"); });
   EXPECT_TRUE(error.ends_with("; write the cloud again, with -o and without --no-sidecar"))
       << error;
-  for (const char* text : {"", "{", "[]", "{}", "{\"glidar\": 3}", "null"}) {
+  for (const char* text : {"", "{", "{\"glidar\": nul}"}) {
+    const std::string damaged = sidecar_error(folder, text);
+    EXPECT_NE(damaged.find("x.pcd.json: a damaged file: its text "), std::string::npos) << damaged;
+    EXPECT_NE(damaged.find("; copy the file again, or write the cloud again"), std::string::npos);
+    EXPECT_EQ(damaged.find("exception"), std::string::npos) << damaged;
+  }
+  for (const char* text : {"[]", "{}", "{\"glidar\": 3}", "null"}) {
     EXPECT_NE(sidecar_error(folder, text).find("not a sidecar of this version"), std::string::npos)
         << text;
   }
