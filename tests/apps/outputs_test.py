@@ -103,6 +103,20 @@ class Failures(CliTest):
         self.assertEqual(self.files(), [])
 
 
+    def test_a_full_disk_names_the_bag_and_not_its_hidden_folder(self):
+        limit = 400_000  # bytes of one file
+        for name in ("a.rosbag2", "a.mcap"):
+            done = subprocess.run(
+                ["glidar", "render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--duration", "1", "-o", name],
+                cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=MAX_WAIT_S, check=False,
+                preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))  # fmt: skip
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(f"{name}: cannot ", done.stderr)
+            self.assertNotIn(".glidar-", done.stderr)
+            self.assertEqual(self.files(), [])
+
+
 class Images(CliTest):
     def test_a_model_given_directly_has_an_id_that_fits_an_image_of_instances(self):
         self.succeed("render", "builtin:box", "-o", "x.instance.png", "-o", "x.pcd")

@@ -83,6 +83,42 @@ class Rosbag2Writer : public BagWriter {
       : folder_(path, is_rosbag2_folder),
         topics_(path.string()),
         file_name_(path.stem().string() + (options.mcap_storage ? "_0.mcap" : "_0.db3")) {
+    with_name([&] { open_storage(options); });
+  }
+
+  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
+
+  std::size_t add_topic(const ros::Topic& topic) override {
+    topics_.add(topic);
+    std::size_t number = 0;
+    with_name([&] { number = storage_->add_topic(topic); });
+    return number;
+  }
+
+  void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override {
+    topics_.count(topic, time_ns);
+    with_name([&] { storage_->write(topic, time_ns, message); });
+  }
+
+  void finish() override {
+    with_name([&] { finish_files(); });
+    folder_.commit();
+  }
+
+ private:
+  /// Errors about files of the hidden folder name the bag.
+  template <class Step>
+  void with_name(const Step& step) const {
+    try {
+      step();
+    } catch (const Error& error) {
+      ErrorParts parts = error.parts();
+      parts.where = folder_.path().string();
+      throw Error(parts);
+    }
+  }
+
+  void open_storage(const BagOptions& options) {
     const fs::path file = folder_.add_file(file_name_);
     if (options.mcap_storage) {
       storage_ = std::make_unique<McapWriter>(file, options);
@@ -93,19 +129,7 @@ class Rosbag2Writer : public BagWriter {
     storage_ = std::move(sqlite);
   }
 
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
-
-  std::size_t add_topic(const ros::Topic& topic) override {
-    topics_.add(topic);
-    return storage_->add_topic(topic);
-  }
-
-  void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override {
-    topics_.count(topic, time_ns);
-    storage_->write(topic, time_ns, message);
-  }
-
-  void finish() override {
+  void finish_files() {
     const std::string yaml =
         metadata_yaml(topics_, sqlite_ != nullptr ? "sqlite3" : "mcap", file_name_);
     if (sqlite_ != nullptr) sqlite_->put_metadata(yaml);
@@ -113,10 +137,8 @@ class Rosbag2Writer : public BagWriter {
     AtomicFile metadata(folder_.add_file("metadata.yaml"));
     metadata.write(yaml);
     metadata.commit();
-    folder_.commit();
   }
 
- private:
   StagedFolder folder_;
   WrittenTopics topics_;
   std::string file_name_;

@@ -16,7 +16,8 @@ void Statement::Finaliser::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
 
-Database::Database(const std::filesystem::path& path, Mode mode) : path_(path.string()) {
+Database::Database(const std::filesystem::path& path, Mode mode)
+    : path_(path.string()), mode_(mode) {
   const int flags =
       mode == Mode::create ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   sqlite3* opened = nullptr;
@@ -49,8 +50,12 @@ void Database::close() {
 
 void Database::fail() const {
   const char* reason = database_ ? sqlite3_errmsg(database_.get()) : "out of memory";
-  throw Error({path_, std::string("SQLite: ") + reason, "",
-               "see that the disk has room and the file is a complete bag"});
+  if (mode_ == Mode::read) {
+    throw Error({path_, std::string("cannot be read by SQLite: ") + reason, "a complete bag",
+                 "copy the bag again: it may be damaged"});
+  }
+  throw Error({path_, std::string("cannot be written by SQLite: ") + reason, "",
+               "free space on the disk, or write to another folder"});
 }
 
 Statement::Statement(const Database& database, std::string_view sql) : database_(&database) {

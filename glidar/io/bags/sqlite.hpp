@@ -35,6 +35,7 @@ class Database {
     void operator()(sqlite3* database) const;
   };
   std::string path_;
+  Mode mode_;
   std::unique_ptr<sqlite3, Closer> database_;
 };
 
