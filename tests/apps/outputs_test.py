@@ -4,6 +4,7 @@
 """The output files of a command, including standard output. The built program is found in
 PATH."""
 
+import fcntl
 import json
 import os
 import pty
@@ -70,6 +71,19 @@ class Folders(CliTest):
         found = sorted(name for name in os.listdir(self.folder) if name.endswith(".fisher.json"))
         self.assertEqual(found, ["out_000000.fisher.json", "out_000001.fisher.json"])
         self.assertEqual(len(os.listdir(os.path.join(self.folder, "out.kitti", "velodyne"))), 2)
+
+
+class KittiFolders(CliTest):
+    def test_a_second_run_into_the_same_folder_is_refused_while_the_first_one_writes(self):
+        run = ("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--duration", "0.1", "-o", "out.kitti")
+        os.mkdir(os.path.join(self.folder, "out.kitti"))
+        first = os.open(os.path.join(self.folder, "out.kitti"), os.O_RDONLY)
+        fcntl.flock(first, fcntl.LOCK_EX)  # as a run that writes to it
+        self.assertIn("out.kitti: another run writes to this folder now; wait until it has ended", self.refused(*run))
+        self.assertEqual(os.listdir(os.path.join(self.folder, "out.kitti")), [])
+        os.close(first)
+        self.succeed(*run)
+        self.assertIn("poses.txt", os.listdir(os.path.join(self.folder, "out.kitti")))
 
 
 class Failures(CliTest):

@@ -18,10 +18,15 @@ class FolderLock {
   /// Throws Error when another program keeps the lock for longer.
   explicit FolderLock(const std::filesystem::path& folder);
 
+  /// The lock of a whole run, without waiting. Throws Error when another run or program has it.
+  static FolderLock of_run(const std::filesystem::path& folder);
+
   /// Whether the file system granted the lock.
   [[nodiscard]] bool is_held() const { return static_cast<bool>(descriptor_); }
 
  private:
+  FolderLock() = default;
+
   UniqueFd descriptor_;
 };
 

@@ -38,7 +38,7 @@ void StagedFiles::add_folder(const std::filesystem::path& path) {
 
 void StagedFiles::commit() {
   std::optional<FolderLock> lock;
-  if (files_.size() + removals_.size() > 1 && !files_.empty())
+  if (!is_locked_ && files_.size() + removals_.size() > 1 && !files_.empty())
     lock.emplace(std::filesystem::absolute(files_.front().path()).parent_path());
   for (const std::filesystem::path& path : removals_) remove_outdated(path);
   removals_.clear();

@@ -23,6 +23,8 @@ class StagedFiles {
 
   /// Files that must not be overwritten; they must outlive this object.
   void protect(std::span<const std::string> read) { protected_ = read; }
+  /// Commits without a lock: the caller holds one that excludes other programs.
+  void set_locked() { is_locked_ = true; }
   /// A new file, to be written to and finished by the caller. Throws Error like AtomicFile, and
   /// when it would overwrite a protected file.
   AtomicFile& add(const std::filesystem::path& path);
@@ -48,6 +50,7 @@ class StagedFiles {
   std::list<AtomicFile> files_;  // an AtomicFile does not move
   std::vector<std::filesystem::path> folders_;
   std::vector<std::filesystem::path> removals_;
+  bool is_locked_ = false;
 };
 
 }  // namespace glidar

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/core/text.hpp>
+#include <glidar/io/files/folder_lock.hpp>
 #include <glidar/io/formats/kitti_classes.hpp>
 #include <glidar/io/formats/kitti_file.hpp>
 #include <glidar/io/formats/kitti_folder.hpp>
@@ -66,9 +67,11 @@ struct KittiWriter::State {
   std::string poses = {};
   PointCloud cloud = {};
   PointCloud hits = {};
-  StagedFiles root = {};  ///< removes the folder again if nothing is written
+  std::optional<FolderLock> lock = {};  ///< excludes other runs from the folder
+  StagedFiles root = {};                ///< removes the folder again if nothing is written
 
   void find_cameras();
+  void prepare(StagedFiles& files) const;
   void write_scan(const Frame& frame, const Beams& beams);
   void add_pose(const Frame& frame);
   void take_image(ImageCamera& camera, const Frame& frame, const Beams& beams);
@@ -89,6 +92,11 @@ void KittiWriter::State::find_cameras() {
   if (cameras.empty()) cameras.push_back(kitti_camera(sensors[scanner].sensor));
 }
 
+void KittiWriter::State::prepare(StagedFiles& files) const {
+  files.protect(options.inputs);
+  files.set_locked();
+}
+
 void KittiWriter::State::write_scan(const Frame& frame, const Beams& beams) {
   static const std::vector<std::string> kColumns = {"xyz", "intensity", "range", "instance",
                                                     "class"};
@@ -106,7 +114,7 @@ void KittiWriter::State::write_scan(const Frame& frame, const Beams& beams) {
                                .renderer = options.renderer,
                                .inputs = options.inputs};
   StagedFiles files;
-  files.protect(options.inputs);
+  prepare(files);
   const CloudFile job{velodyne, frame, sink, context, fields};
   stage_kitti_scan({job, scans, cameras}, folder, files);
   files.commit();
@@ -143,7 +151,7 @@ void KittiWriter::State::take_image(ImageCamera& camera, const Frame& frame, con
 void KittiWriter::State::write_images(ImageCamera& camera) {
   if (camera.waiting.empty() || camera.png.empty()) return;
   StagedFiles files;
-  files.protect(options.inputs);
+  prepare(files);
   files.add_folder(folder / camera.folder);
   for (const std::uint32_t scan : camera.waiting) {
     AtomicFile& file = files.add(folder / camera.folder / (kitti_number(scan) + ".png"));
@@ -163,6 +171,7 @@ KittiWriter::KittiWriter(std::filesystem::path folder, const Scene& scene,
   state_->scanner = scanner_of(state_->sensors);
   state_->find_cameras();
   state_->root.add_folder(state_->folder);
+  state_->lock = FolderLock::of_run(state_->folder);
 }
 
 KittiWriter::~KittiWriter() = default;
@@ -188,7 +197,7 @@ void KittiWriter::finish() {
   State& state = *state_;
   for (State::ImageCamera& camera : state.images) state.write_images(camera);
   StagedFiles files;
-  files.protect(state.options.inputs);
+  state.prepare(files);
   stage_text(state.folder / "times.txt", state.times, files);
   stage_text(state.folder / "poses.txt", state.poses, files);
   stage_text(state.folder / "calib.txt",

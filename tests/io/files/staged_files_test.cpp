@@ -90,6 +90,23 @@ TEST(FolderLock, ExcludesOthersDuringItsLifetimeAndLeavesNoFile) {
   EXPECT_THAT(folder.names(), ElementsAre());
 }
 
+TEST(FolderLock, OfARunRefusesASecondRunAtOnce) {
+  const testing::TestFolder folder;
+  {
+    const FolderLock first = FolderLock::of_run(folder.path());
+    EXPECT_TRUE(first.is_held());
+    EXPECT_THAT(error_text([&] { (void)FolderLock::of_run(folder.path()); }),
+                HasSubstr("another run writes to this folder now; wait until it has ended"));
+    StagedFiles files;
+    files.set_locked();
+    files.add(folder / "a").finish();
+    files.add(folder / "b").finish();
+    files.commit();  // does not wait for the lock of its own run
+  }
+  EXPECT_TRUE(FolderLock::of_run(folder.path()).is_held());
+  EXPECT_FALSE(FolderLock::of_run("/nonexistent/folder").is_held());
+}
+
 TEST(FolderLock, AFolderThatCannotBeOpenedIsNotLocked) {
   EXPECT_FALSE(FolderLock("/nonexistent/folder").is_held());
 }
