@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """LAS files, read by laspy."""
 
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,27 @@ def test_coordinates_times_and_classes_are_those_of_the_cloud(frame, tmp_path):
     assert las.header.global_encoding.wkt
 
 
+@pytest.mark.parametrize("size_m", [1e-2, 2e-4, 1e-7])
+def test_small_objects_keep_their_shape(size_m, tmp_path):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(f"models: [{{model: 'builtin:sphere', scale: {size_m}}}]\n")
+    frame = glidar.simulate(glidar.Scene(scene), glidar.camera(32, 32, fov_deg=20.0),
+                            pose=glidar.look_at([5 * size_m, 0, 0], [0, 0, 0]))  # fmt: skip
+    _, las = written(frame, tmp_path)
+    xyz = np.asarray(frame.cloud(columns=["xyz"], drop_invalid=True)["xyz"]).reshape(-1, 3)
+    assert len(xyz) > 100
+    assert np.abs(np.asarray(las.xyz) - xyz).max() <= 1e-6 * np.ptp(xyz, axis=0).max()
+
+
+def test_a_cloud_that_32_bits_store_coarsely_is_written_with_a_warning(tmp_path):
+    (tmp_path / "scene.yaml").write_text("models: [{model: 'builtin:plane', scale: 4.0e+6}]\nsensor_pose: {look_at: {eye: [0, 0, 3.0e+6], target: [0, 0, 0]}}\n")
+    done = subprocess.run(["glidar", "render", "scene.yaml", "-o", "a.las"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "glidar: warning: a.las: LAS stores coordinates in 32 bits" in done.stderr
+    las = laspy.read(tmp_path / "a.las")
+    step_m = las.header.scales[0]
+    assert step_m > 1e-4 and f"in steps of {step_m:g} m" in done.stderr
+
+
 def test_bounds_and_counts_of_the_header_are_those_of_the_points(frame, tmp_path):
     _, las = written(frame, tmp_path)
     assert np.allclose(las.header.mins, las.xyz.min(0), rtol=0, atol=ROUNDING_M)
@@ -100,7 +122,8 @@ def test_far_coordinates_have_an_offset_and_keep_their_resolution(place_m, tmp_p
     _, las = written(frame, tmp_path, frame="world")
     cloud = frame.cloud(columns=["xyz"], frame="world", drop_invalid=True)
     assert las.header.offsets[0] == pytest.approx(place_m, abs=2.0)
-    assert np.allclose(las.header.scales, 1e-4)
+    extent_m = np.ptp(np.asarray(cloud["xyz"]).reshape(-1, 3), axis=0).max()
+    assert np.allclose(las.header.scales, 10.0 ** np.floor(np.log10(extent_m * 1e-6)), rtol=1e-12, atol=0)
     double_m = np.spacing(place_m)
     assert np.abs(np.asarray(las.xyz) - np.asarray(cloud["xyz"]).reshape(-1, 3)).max() <= HALF_STEP_M + double_m
 

@@ -179,7 +179,10 @@ class FormatSink : public FileSink {
       const std::vector<PointField> fields = fields_of(cloud);
       store({cloud, frame, options_, context_, fields, {}, format_.pixels});
       warn_rounding(
-          rounding_warning(fields, "write .npz, .csv or .ply, which store distant points exactly"));
+          format_.rounding_warning != nullptr
+              ? format_.rounding_warning(cloud)
+              : rounding_warning(fields,
+                                 "write .npz, .csv or .ply, which store distant points exactly"));
       return;
     }
     const PointCloud laid = apply_layout(cloud, options_.layout, context_.sensor, context_.beams);

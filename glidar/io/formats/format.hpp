@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace glidar {
@@ -36,6 +37,9 @@ struct Format {
   const char* pixels = "";  ///< meaning of an image's pixels, for its sidecar
   /// Whether the file is plain text with these options; nullptr: never.
   bool (*is_text)(const FileSinkOptions&) = nullptr;
+  /// The warning for points that the format moves by rounding, empty if there is none; nullptr:
+  /// that of rounding_warning().
+  std::string (*rounding_warning)(const PointCloud&) = nullptr;
   /// See find_misfit(); nullptr: the format fits all sensors.
   Misfit (*misfit)(const CloudPictureOptions&, const Sensor&, const Beams&) = nullptr;
 };

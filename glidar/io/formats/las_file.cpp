@@ -5,10 +5,10 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/las_grid.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
 #include <fmt/format.h>
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -54,50 +54,6 @@ template <class T>
 const std::vector<T>* values_of(const PointCloud& cloud, const char* name) {
   const Column* column = find_column(cloud, name);
   return column != nullptr ? std::get_if<std::vector<T>>(&column->values) : nullptr;
-}
-
-/// Stored coordinates: whole multiples of `scale_m` from `offset_m`, per axis.
-struct Grid {
-  double scale_m = 0.0;
-  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
-  std::array<std::vector<std::uint32_t>, 3> counts;  ///< int32 in two's complement
-  Eigen::Vector3d min_m = Eigen::Vector3d::Zero();   ///< of the stored coordinates
-  Eigen::Vector3d max_m = Eigen::Vector3d::Zero();
-};
-
-using Coordinates = Eigen::Map<const Eigen::Matrix3Xd>;
-
-/// A tenth of a millimetre, or the least power of ten with which all points fit 32 bits.
-double scale_for(double half_extent_m) {
-  constexpr double kMaxCount = std::numeric_limits<std::int32_t>::max();
-  double scale_m = kFinePosition_m;
-  while (half_extent_m / scale_m + 1.0 > kMaxCount) scale_m *= 10.0;
-  return scale_m;
-}
-
-Grid make_grid(const std::vector<double>& xyz) {
-  Grid grid;
-  grid.scale_m = kFinePosition_m;
-  if (xyz.empty()) return grid;
-  const Coordinates points(xyz.data(), 3, static_cast<Eigen::Index>(xyz.size() / 3));
-  const Eigen::Vector3d low = points.rowwise().minCoeff();
-  const Eigen::Vector3d high = points.rowwise().maxCoeff();
-  constexpr double kNear_m = 1e5;  // of the origin: no offset, so that numbers are easy to read
-  if (points.cwiseAbs().maxCoeff() > kNear_m) grid.offset_m = (0.5 * (low + high)).array().round();
-  const double extent_m =
-      std::max((high - grid.offset_m).maxCoeff(), (grid.offset_m - low).maxCoeff());
-  grid.scale_m = scale_for(extent_m);
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<std::uint32_t>& counts = grid.counts[static_cast<std::size_t>(axis)];
-    const auto count_of = [&](double x_m) {
-      return static_cast<std::int32_t>(std::llround((x_m - grid.offset_m[axis]) / grid.scale_m));
-    };
-    for (const double x_m : points.row(axis))
-      counts.push_back(static_cast<std::uint32_t>(count_of(x_m)));
-    grid.min_m[axis] = count_of(low[axis]) * grid.scale_m + grid.offset_m[axis];
-    grid.max_m[axis] = count_of(high[axis]) * grid.scale_m + grid.offset_m[axis];
-  }
-  return grid;
 }
 
 /// Number of a return within its pulse, counted from 1 by range, and the number of these returns.
@@ -202,7 +158,7 @@ std::vector<std::uint8_t> las_classes(const CloudFile& job, const AtomicFile& fi
 }
 
 /// The point records as a cloud whose columns are their fields.
-PointCloud las_records(const CloudFile& job, Grid& grid, const PulseReturns& returns,
+PointCloud las_records(const CloudFile& job, LasGrid& grid, const PulseReturns& returns,
                        const AtomicFile& file) {
   const std::size_t size = job.cloud.size();
   PointCloud records{job.cloud.rows, job.cloud.cols, job.cloud.frame_id, Pose::Identity(), {}};
@@ -297,7 +253,7 @@ std::uint16_t global_encoding(const CloudFile& job) {
 }
 
 /// The header, without a date, so that the same cloud has the same bytes.
-std::string las_header(const CloudFile& job, const Grid& grid, const PulseReturns& returns,
+std::string las_header(const CloudFile& job, const LasGrid& grid, const PulseReturns& returns,
                        std::size_t record_bytes, std::span<const PointField> extra,
                        std::size_t vlr_bytes) {
   Bytes to;
@@ -332,7 +288,7 @@ std::string las_header(const CloudFile& job, const Grid& grid, const PulseReturn
 
 void write_las(const CloudFile& job, AtomicFile& file) {
   const auto* xyz = values_of<double>(job.cloud, "xyz");
-  Grid grid = make_grid(*xyz);
+  LasGrid grid = make_las_grid(*xyz);
   const PulseReturns returns = returns_of(job);
   const std::vector<PointField> extra = extra_fields(job.cloud);
   const std::string variable = variable_records(job, extra);
@@ -342,6 +298,10 @@ void write_las(const CloudFile& job, AtomicFile& file) {
   file.write(las_header(job, grid, returns, row_bytes(fields), extra, variable.size()));
   file.write(variable);
   write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
+}
+
+std::string las_warning(const PointCloud& cloud) {
+  return las_rounding_warning(*values_of<double>(cloud, "xyz"));
 }
 
 /// As readers return them: coordinates, then the extra fields.
@@ -363,7 +323,8 @@ Format las_format() {
                    .optional_columns = {"range", "row", "col", "stamp", "class"}},
           .content = Content::hits,
           .fields = las_fields,
-          .write = write_las};
+          .write = write_las,
+          .rounding_warning = las_warning};
 }
 
 }  // namespace glidar
