@@ -60,7 +60,7 @@ class LasFiles(CliTest):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "3,0,0", "-o", "a.las", "-o", "a.csv",
                      "--columns", "xyz,ring")  # fmt: skip
         columns = {column["name"] for column in json.loads(self.bytes_of("a.las.json"))["cloud"]["columns"]}
-        self.assertEqual(columns, {"xyz", "ring", "range", "row", "col"})
+        self.assertEqual(columns, {"xyz", "ring", "range", "row", "col", "class"})
         self.assertEqual(self.bytes_of("a.csv").splitlines()[0], b"x,y,z,ring")
 
 

@@ -46,11 +46,28 @@ def test_coordinates_times_and_classes_are_those_of_the_cloud(frame, tmp_path):
     assert len(las.points) == len(xyz) > 1000
     assert np.abs(np.asarray(las.xyz) - xyz).max() <= HALF_STEP_M + ROUNDING_M
     assert np.allclose(las.gps_time, stamp * 1e-9, rtol=0, atol=1e-9)  # of a simulation that starts at 0
-    assert (np.asarray(las.classification) == classes).all() and len(set(classes)) > 1
+    assert (np.asarray(las["class"]) == classes).all() and len(set(classes)) > 1
     assert (np.asarray(las.ring) == ring).all()
     assert (np.asarray(las.normal_z) == normal[:, 2]).all()
     assert not las.header.global_encoding.gps_time_type.value
     assert las.header.global_encoding.wkt
+
+
+def test_classifications_are_the_codes_of_asprs_or_user_definable(frame, tmp_path):
+    """LAS 1.4 R15, table 17; laspy's `class` has GLIDAR's own ids."""
+    names = glidar.Scene(STREET).class_names
+    _, las = written(frame, tmp_path)
+    found = {names[own]: code for own, code in zip(np.asarray(las["class"]), np.asarray(las.classification))}
+    standard = {"road": 11, "pavement": 2, "building": 6, "tree": 5}
+    assert set(standard) <= set(found)
+    for name, code in found.items():
+        assert code == standard.get(name, 63 + names.index(name)), name
+
+
+def test_points_without_a_class_are_unclassified(tmp_path):
+    frame = glidar.simulate(glidar.Scene("builtin:box"), glidar.camera(8, 8, fov_deg=20.0), pose=glidar.look_at([5, 0, 0], [0, 0, 0]))
+    _, las = written(frame, tmp_path)
+    assert set(np.asarray(las.classification)) == {1} and set(np.asarray(las["class"])) == {0}
 
 
 @pytest.mark.parametrize("size_m", [1e-2, 2e-4, 1e-7])

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/las_file.hpp>
 
-#include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/las_classes.hpp>
 #include <glidar/io/formats/las_grid.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
@@ -14,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -35,7 +34,7 @@ constexpr std::uint16_t kStandardTime = 0x01;  // bits of the global encoding
 constexpr std::uint16_t kWellKnownText = 0x10;
 
 /// Columns that have a place of their own in a point record.
-constexpr std::array<const char*, 4> kOwnPlaces = {"xyz", "intensity", "class", "stamp"};
+constexpr std::array<const char*, 3> kOwnPlaces = {"xyz", "intensity", "stamp"};
 
 bool has_own_place(const Column& column) {
   return std::find(kOwnPlaces.begin(), kOwnPlaces.end(), column.name) != kOwnPlaces.end();
@@ -140,26 +139,20 @@ std::vector<std::uint16_t> las_intensities(const CloudFile& job) {
   return stored;
 }
 
-/// Class ids; 0 where nothing is known.
-std::vector<std::uint8_t> las_classes(const CloudFile& job, const AtomicFile& file) {
-  constexpr std::uint32_t kMaxClass = std::numeric_limits<std::uint8_t>::max();
-  std::vector<std::uint8_t> stored(job.cloud.size(), 0);
+/// The codes of classes by the names in the scene; all points are unclassified without classes.
+std::vector<std::uint8_t> las_classifications(const CloudFile& job) {
+  std::vector<std::uint8_t> stored(job.cloud.size(), kLasUnclassified);
   const auto* classes = values_of<std::uint32_t>(job.cloud, "class");
-  for (std::size_t i = 0; classes != nullptr && i < stored.size(); ++i) {
-    const std::uint32_t id = (*classes)[i];
-    if (id == kInvalidId) continue;
-    if (id > kMaxClass) {
-      throw Error({file.path().string(), fmt::format("the class id {} does not fit 8 bits", id),
-                   "ids up to 255", "write .ply or .npz with the column class"});
-    }
-    stored[i] = static_cast<std::uint8_t>(id);
-  }
+  if (classes == nullptr) return stored;
+  const std::vector<std::uint8_t> codes = las_class_codes(job.context.scene.class_names);
+  std::transform(classes->begin(), classes->end(), stored.begin(), [&](std::uint32_t id) {
+    return id < codes.size() ? codes[id] : kLasUnclassified;
+  });
   return stored;
 }
 
 /// The point records as a cloud whose columns are their fields.
-PointCloud las_records(const CloudFile& job, LasGrid& grid, const PulseReturns& returns,
-                       const AtomicFile& file) {
+PointCloud las_records(const CloudFile& job, LasGrid& grid, const PulseReturns& returns) {
   const std::size_t size = job.cloud.size();
   PointCloud records{job.cloud.rows, job.cloud.cols, job.cloud.frame_id, Pose::Identity(), {}};
   const auto add = [&](const char* name, auto values) {
@@ -173,7 +166,7 @@ PointCloud las_records(const CloudFile& job, LasGrid& grid, const PulseReturns& 
     bits[i] = static_cast<std::uint8_t>(returns.number[i] | returns.total[i] << 4U);
   add("returns", std::move(bits));
   add("flags", std::vector<std::uint8_t>(size, 0));
-  add("classification", las_classes(job, file));
+  add("classification", las_classifications(job));
   add("user_data", std::vector<std::uint8_t>(size, 0));
   add("scan_angle", std::vector<std::uint16_t>(size, 0));
   add("point_source", std::vector<std::uint16_t>(size, 0));
@@ -292,7 +285,7 @@ void write_las(const CloudFile& job, AtomicFile& file) {
   const PulseReturns returns = returns_of(job);
   const std::vector<PointField> extra = extra_fields(job.cloud);
   const std::string variable = variable_records(job, extra);
-  const PointCloud records = las_records(job, grid, returns, file);
+  const PointCloud records = las_records(job, grid, returns);
   std::vector<PointField> fields = native_fields(records);
   fields.insert(fields.end(), extra.begin(), extra.end());
   file.write(las_header(job, grid, returns, row_bytes(fields), extra, variable.size()));
