@@ -188,6 +188,35 @@ def test_objects_have_boxes_poses_types_and_velocities(messages):
     np.testing.assert_allclose(heading, [np.cos(turned), np.sin(turned), 0], atol=1e-9)
 
 
+def test_classes_have_the_types_of_osi(program, tmp_path):
+    """By the names of the enumerations in ASAM's package. Parked vehicles are moving objects too."""
+    vehicles = {"car": "CAR", "Van": "VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "trailer": "TRAILER", "bicycle": "BICYCLE",
+                "motorcycle": "MOTORCYCLE", "train": "TRAIN", "tram": "TRAM", "vehicle": "OTHER", "small car": "SMALL_CAR",
+                "scooter": "STANDUP_SCOOTER", "excavator": "WORK_MACHINE", "ship": "WATERCRAFT", "airplane": "AIRCRAFT",
+                "wheelchair": "WHEELCHAIR", "semitrailer": "SEMITRAILER", "semitractor": "SEMITRACTOR",
+                "compact_car": "COMPACT_CAR", "luxury_car": "LUXURY_CAR"}  # fmt: skip
+    others = {"person": "PEDESTRIAN", "pedestrian": "PEDESTRIAN", "child": "PEDESTRIAN", "dog": "ANIMAL", "horse": "ANIMAL"}
+    names = [*vehicles, *others, "tree", "cart"]
+    models = "".join(f"  - {{model: builtin:box, name: o{i}, id: {i + 1}, class: '{name}', pose: {{position: [{3 * i + 5}, 0, 0]}}}}\n"
+                     for i, name in enumerate(names))  # fmt: skip
+    (tmp_path / "scene.yaml").write_text(f"models:\n{models}rig_pose: {{position: [0, 0, 0]}}\nsensors: [{{name: a, sensor: VLP-16}}]\n")
+    program("render", tmp_path / "scene.yaml", "--duration", 0.1, "-o", tmp_path / "a.osi")
+    objects = objects_of(read(tmp_path / "a.osi")[0])
+    moving = type(truth_of(read(tmp_path / "a.osi")[0]).moving_object[0])
+    for i, name in enumerate(names[: len(vehicles) + len(others)]):
+        found = objects[i + 1]
+        assert isinstance(found, moving), name
+        if name in vehicles:
+            assert found.type == moving.TYPE_VEHICLE, name
+            kinds = moving.VehicleClassification.Type
+            assert found.vehicle_classification.type == kinds.Value(f"TYPE_{vehicles[name]}"), name
+        else:
+            assert found.type == moving.Type.Value(f"TYPE_{others[name]}"), name
+            assert not found.HasField("vehicle_classification")
+    assert objects[len(names) - 1].classification.type == 7  # TYPE_TREE
+    assert objects[len(names)].classification.type == 1  # TYPE_OTHER
+
+
 def test_replays_write_the_same_trace(scene_file, program, tmp_path):
     program("stream", scene_file, "--frames", 2, "--rate", "max", "--record", tmp_path / "r.jsonl", "-o", tmp_path / "a.osi")
     program("replay", tmp_path / "r.jsonl", "-o", tmp_path / "b.osi")

@@ -2,48 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/osi/ground_truth.hpp>
 
-#include <glidar/core/text.hpp>
+#include <glidar/io/osi/object_types.hpp>
 #include <glidar/io/osi/osi_values.hpp>
 #include <glidar/motion/kinematics.hpp>
 
-#include <algorithm>
-#include <array>
+#include <cstdint>
 #include <string>
-#include <string_view>
 #include <variant>
 
 namespace glidar::osi {
 namespace {
-
-/// A value of an enumeration and the class of a scene that selects it.
-struct NamedType {
-  std::string_view class_name;
-  std::uint64_t value;
-};
-
-constexpr std::uint64_t kOtherType = 1;    ///< of all enumerations of types
-constexpr std::uint64_t kVehicleType = 2;  ///< of MovingObject::Type
-
-/// MovingObject::Type
-constexpr std::array kMovingTypes = {NamedType{"vehicle", kVehicleType}, NamedType{"pedestrian", 3},
-                                     NamedType{"animal", 4}};
-
-/// StationaryObject::Classification::Type
-constexpr std::array kStationaryTypes = {
-    NamedType{"bridge", 2},  NamedType{"building", 3},    NamedType{"pole", 4},
-    NamedType{"pylon", 5},   NamedType{"delineator", 6},  NamedType{"tree", 7},
-    NamedType{"barrier", 8}, NamedType{"vegetation", 9},  NamedType{"curbstone", 10},
-    NamedType{"wall", 11},   NamedType{"speed_bump", 17},
-};
-
-template <std::size_t Count>
-std::uint64_t type_named(const std::array<NamedType, Count>& types, const std::string& class_name) {
-  const std::string name = lower_case(class_name);
-  for (const NamedType& type : types) {
-    if (type.class_name == name) return type.value;
-  }
-  return kOtherType;
-}
 
 const std::string& class_name_of(const Scene& scene, const Instance& instance) {
   return scene.class_names.at(instance.class_id);
@@ -76,9 +44,8 @@ ProtobufMessage source_reference(const Scene& scene, const Instance& instance) {
       .text(3, class_name_of(scene, instance));
 }
 
-/// VehicleClassification: no type is known.
-ProtobufMessage vehicle_classification() {
-  return ProtobufMessage().integer(1, kOtherType);
+ProtobufMessage vehicle_classification(std::uint64_t type) {
+  return ProtobufMessage().integer(1, type);
 }
 
 }  // namespace
@@ -118,12 +85,12 @@ ProtobufMessage GroundTruthMessages::host_vehicle(std::int64_t t_ns,
       .message(2, base)
       .integer(3, kVehicleType)
       .message(5, attributes)
-      .message(6, vehicle_classification());
+      .message(6, vehicle_classification(kOtherType));
 }
 
 bool GroundTruthMessages::is_moving_object(std::size_t instance) const {
   const Instance& object = rig_.scene.instances[instance];
-  if (type_named(kMovingTypes, class_name_of(rig_.scene, object)) != kOtherType) return true;
+  if (moving_type(class_name_of(rig_.scene, object)).type != kOtherType) return true;
   if (!rig_.motion) return true;  // a client may move it
   return !std::holds_alternative<ConstantPose>(rig_.motion->world_from_instance[instance]);
 }
@@ -144,10 +111,10 @@ ProtobufMessage GroundTruthMessages::moving_object(std::size_t instance, const F
     add_derivatives(rig_.motion->world_from_instance[instance], frame.stamp_ns,
                     boxes_m_[instance].center(), base_moving);
   }
-  const std::uint64_t type = type_named(kMovingTypes, class_name_of(rig_.scene, object));
+  const MovingType type = moving_type(class_name_of(rig_.scene, object));
   ProtobufMessage moving;
-  moving.message(1, identifier(object.id)).message(2, base_moving).integer(3, type);
-  if (type == kVehicleType) moving.message(6, vehicle_classification());
+  moving.message(1, identifier(object.id)).message(2, base_moving).integer(3, type.type);
+  if (type.type == kVehicleType) moving.message(6, vehicle_classification(type.vehicle_type));
   return moving.text(7, rig_.scene.sources[object.mesh].path)
       .message(10, source_reference(rig_.scene, object));
 }
@@ -155,7 +122,7 @@ ProtobufMessage GroundTruthMessages::moving_object(std::size_t instance, const F
 ProtobufMessage GroundTruthMessages::stationary_object(std::size_t instance,
                                                        const Frame& frame) const {
   const Instance& object = rig_.scene.instances[instance];
-  const std::uint64_t type = type_named(kStationaryTypes, class_name_of(rig_.scene, object));
+  const std::uint64_t type = stationary_type(class_name_of(rig_.scene, object));
   return ProtobufMessage()
       .message(1, identifier(object.id))
       .message(2, base(instance, frame.world_from_instance[instance]))
