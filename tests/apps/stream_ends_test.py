@@ -27,7 +27,8 @@ class Ends(StreamTest):
         if subscriber:
             subscriber.clouds_until_shutdown()
         self.finished(program, 128 + number)
-        self.assertEqual(self.stats()["ending"], f"signal {int(number)}")
+        words = {signal.SIGINT: "interrupted by Ctrl-C (SIGINT)", signal.SIGTERM: "terminated (SIGTERM)"}
+        self.assertEqual(self.stats()["ending"], words[number])
 
     def waiting(self, program):
         """Reads the line about waiting, which is printed when signals are handled."""

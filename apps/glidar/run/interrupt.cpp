@@ -71,6 +71,21 @@ void end_cleanly_on_interrupt() {
   signal(SIGXFSZ, SIG_IGN);  // write() then returns an error
 }
 
+std::string signal_text(int signal) {
+  switch (signal) {
+    case 0:
+      return "stopped by the program";
+    case SIGINT:
+      return "interrupted by Ctrl-C (SIGINT)";
+    case SIGTERM:
+      return "terminated (SIGTERM)";
+    case SIGHUP:
+      return "the terminal was closed (SIGHUP)";
+    default:
+      return "stopped by signal " + std::to_string(signal);
+  }
+}
+
 StopRequest::StopRequest() {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {

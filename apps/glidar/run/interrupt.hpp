@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <string>
 
 namespace glidar::app {
 
@@ -11,6 +12,9 @@ namespace glidar::app {
 /// files and end the program at once with exit code 130 (128 + SIGINT, as in shells). A limit on
 /// the size of files becomes an error.
 void end_cleanly_on_interrupt();
+
+/// How a run ended by a signal: "interrupted by Ctrl-C (SIGINT)". 0: requested by the program.
+std::string signal_text(int signal);
 
 /// RAII: the first of these signals is only recorded, so that the program can shut down in order.
 /// The second ends the program at once as above; so does SIGTERM unless disarm() is called within

@@ -69,7 +69,7 @@ int LockstepRun::run() {
   for (const Job& job : std::exchange(jobs_, {})) {
     server_.reply_error(job.to, "request: GLIDAR was stopped by a signal");
   }
-  finish(fmt::format("signal {}", stop.signal()));
+  finish(signal_text(stop.signal()));
   constexpr int kSignalExitBase = 128;  // as in shells
   return kSignalExitBase + stop.signal();
 }

@@ -236,7 +236,7 @@ int StreamRun::run() {
     constexpr int kSignalExitBase = 128;  // as in shells
     if (stop.is_requested()) {
       exit_code_ = kSignalExitBase + stop.signal();
-      ending_ = fmt::format("signal {}", stop.signal());
+      ending_ = signal_text(stop.signal());
     }
     stop.disarm();
     if (ending_.empty()) ending_ = source->ending();

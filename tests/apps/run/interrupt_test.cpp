@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <string>
 
 namespace glidar::app {
 namespace {
@@ -16,6 +17,13 @@ constexpr int kAfterSigterm = 128 + SIGTERM;
 /// Work that ignores requests to stop.
 [[noreturn]] void work_on() {
   for (;;) pause();
+}
+
+TEST(SignalText, NamesTheCauseInPlainWords) {
+  EXPECT_EQ(signal_text(SIGINT), "interrupted by Ctrl-C (SIGINT)");
+  EXPECT_EQ(signal_text(SIGTERM), "terminated (SIGTERM)");
+  EXPECT_EQ(signal_text(SIGHUP), "the terminal was closed (SIGHUP)");
+  EXPECT_EQ(signal_text(SIGUSR1), "stopped by signal " + std::to_string(SIGUSR1));
 }
 
 TEST(StopRequestDeathTest, SigtermEndsWorkThatIgnoresIt) {
