@@ -181,7 +181,9 @@ class Refusals(StreamTest):
         self.assertIn("overlap", self.refused(*physics, tcp(self.port + 1)))
         self.assertIn("--object-rate", self.refused(*physics, tcp(self.physics), "--object-rate", "0,1,0"))
         for endpoint in ("127.0.0.1:5557", "tcp://127.0.0.1:*", "tcp://127.0.0.1:65535", "ipc://poses"):
-            self.assertIn("allowed: tcp://HOST:PORT", self.refused(*physics, endpoint))
+            error = self.refused(*physics, endpoint)
+            self.assertIn("allowed: tcp://HOST:PORT", error)
+            self.assertIn("ros2: and a topic with poses or the clock; for example tcp://127.0.0.1:5557 or ros2:/odom", error)
         self.assertIn("--pose-source", self.refused("stream", self.box, "-p", "5555", "--pose-timeout", "1"))
 
     def test_values_out_of_range(self):

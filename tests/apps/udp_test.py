@@ -170,6 +170,11 @@ class Udp(CliTest):
         self.assertIn("no manufacturer's packets", self.refused("stream", "builtin:box", "--udp", "127.0.0.1"))
         for address in ("", ":2368", "127.0.0.1:0", "127.0.0.1:1:2:3", "127.0.0.1:x", "=127.0.0.1"):
             self.assertIn("--udp", self.refused("stream", *VLP16, f"--udp={address}"))
+        for address in ("::1", "[::1]:2368", "fe80:1:2:3:4:5:6:7", "lidar=::1"):
+            for options in (["--udp", address], ["--udp", "127.0.0.1", "--control", address]):
+                error = self.refused("stream", *VLP16, *options)
+                self.assertIn(f"{options[-2]}: '{address}', an IPv6 address; allowed: ", error)
+                self.assertIn("with an IPv4 address or the name of a host; for example 127.0.0.1:2368", error)
         self.assertIn("cannot find the address", self.refused("stream", *VLP16, "--udp", "no such host"))
 
 

@@ -33,11 +33,18 @@ double parse_frame_rate(const std::string& text) {
   return text == "max" ? 0.0 : parse_number(text);
 }
 
+/// Throws Error that lists both kinds of sources, unlike parse_endpoint().
 link::Endpoint parse_pose_source(const std::string& text) {
-  const link::Endpoint endpoint = link::parse_endpoint(text);
+  link::Endpoint endpoint;
+  try {
+    endpoint = link::parse_endpoint(text);
+  } catch (const Error&) {  // as below
+  }
   if (!endpoint.path.empty() || endpoint.port == 0 || endpoint.port > kMaxPort) {
-    refuse_value(text, "tcp://HOST:PORT with a port from 1 to 65534",
-                 "for example tcp://127.0.0.1:5557");
+    refuse_value(text,
+                 "tcp://HOST:PORT with a port from 1 to 65534, or ros2: and a topic with poses or "
+                 "the clock",
+                 "for example tcp://127.0.0.1:5557 or ros2:/odom");
   }
   return endpoint;
 }
@@ -113,7 +120,21 @@ void add_live_view_option(CLI::App& command, StreamFlags& flags) {
           [&flags](const std::string& text) { flags.foxglove = parse_listen_address(text); });
 }
 
+/// Refuses "::1" and "[::1]:2368".
+void refuse_ipv6(const std::string& text) {
+  constexpr std::ptrdiff_t kMaxColons = 2;  // before two ports
+  const bool has_dots = text.find('.') != std::string::npos;
+  const bool is_ipv6 = text.find('[') != std::string::npos ||
+                       text.find("::") != std::string::npos ||
+                       (!has_dots && std::count(text.begin(), text.end(), ':') > kMaxColons);
+  if (!is_ipv6) return;
+  throw Error({"", "'" + text + "', an IPv6 address",
+               "[SENSOR=]ADDRESS[:PORT[:PORT]] with an IPv4 address or the name of a host",
+               "for example 127.0.0.1:2368"});
+}
+
 PacketTarget parse_packet_target(const std::string& text) {
+  refuse_ipv6(text);
   PacketTarget target;
   const std::size_t equals = text.find('=');
   if (equals != std::string::npos) target.sensor_name = text.substr(0, equals);
