@@ -212,6 +212,17 @@ class Refusals(ReplayTest):
         self.assertIn("box.obj has changed since it was recorded", done.stderr)
         self.assertRegex(done.stderr, "frame [0-5]: the repeated frame differs from the recorded one")
 
+    def test_a_replay_that_is_refused_leaves_no_output(self):
+        self.record_scene()
+        self.write("box.obj", self.bytes_of("box.obj").decode().replace("v 1.0 1.0 1.0", "v 1.1 1.0 1.0"))
+        before = self.files()
+        for name in ("x.mcap", "x.rosbag2", "x.bag", "x.osi", "x.kitti", "x.pcd"):
+            done = self.run_program("replay", "r.jsonl", "-o", name)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn("differs from the recorded one", done.stderr)
+            self.assertNotIn("wrote", done.stdout)
+            self.assertEqual(self.files(), before, name)
+
     def test_other_files_are_refused(self):
         self.record_scene()
         good = self.bytes_of("r.jsonl").decode().splitlines()

@@ -243,6 +243,7 @@ int StreamRun::run() {
     finish(ending_, stop.signal() == SIGTERM);
   } catch (const std::exception& error) {
     try {
+      if (recording_) sinks_.clear();  // a replay that is refused leaves no unfinished files
       if (!is_finished_) finish(error.what());
     } catch (const std::exception& another) {
       console_.warn(another.what());
