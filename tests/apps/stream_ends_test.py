@@ -134,6 +134,15 @@ class Ends(StreamTest):
         self.finished(program, 0)
 
 
+class Summaries(StreamTest):
+    def test_name_the_written_files(self):
+        run = ("stream", self.box, *SMALL, "--camera-z", "10", "--rate", "max")
+        many = self.succeed(*run, "--frames", "3", "-o", "a.pcd", "-o", "b.csv", "-o", "c.mcap").stdout
+        self.assertIn("\nwrote a_000000.pcd to b_000002.csv (6 files)\nwrote c.mcap\n", many)
+        self.assertIn("\nwrote a_000000.pcd\n", self.succeed(*run, "--frames", "1", "-o", "a.pcd").stdout)
+        self.assertNotIn("wrote", self.succeed(*run, "--frames", "1", "--record", "r.jsonl").stdout)
+
+
 class Documentation(StreamTest):
     def test_has_a_working_client_and_simulator(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")

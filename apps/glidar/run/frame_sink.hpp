@@ -38,6 +38,12 @@ class FrameSink {
   virtual void finish() = 0;
   /// The files that finish() makes.
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const { return {}; }
+  /// What the sink wrote, for the user, each name after a space; empty: nothing.
+  [[nodiscard]] virtual std::string written_text() const {
+    std::string text;
+    for (const std::filesystem::path& file : files()) text += " " + file.string();
+    return text;
+  }
 };
 
 }  // namespace glidar::app

@@ -4,6 +4,8 @@
 
 #include <apps/glidar/run/rig_outputs.hpp>
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <utility>
 
@@ -56,6 +58,16 @@ void NumberedFiles::write(const MeasuredFrame& measured) {
       plan(numbered(files, static_cast<std::uint32_t>(measured.index)), active, *measured.beams);
   app::refuse_overwrite_of_inputs(reserved_, outputs);
   write_outputs(outputs, measured.frame, *measured.beams, prepared_.scene);
+  if (written_ == 0) first_written_ = outputs.front().path;
+  last_written_ = outputs.back().path;
+  written_ += outputs.size();
+}
+
+std::string NumberedFiles::written_text() const {
+  if (written_ == 0) return {};
+  if (written_ == 1) return " " + first_written_.string();
+  return fmt::format(" {} to {} ({} files)", first_written_.string(), last_written_.string(),
+                     written_);
 }
 
 }  // namespace glidar::app

@@ -7,6 +7,8 @@
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,8 @@ class NumberedFiles final : public FrameSink {
   [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override;
   void write(const MeasuredFrame& measured) override;
   void finish() override {}
+  /// " s_000000.pcd to s_000019.pcd (20 files)".
+  [[nodiscard]] std::string written_text() const override;
 
  private:
   [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const ActiveSensor& active,
@@ -37,6 +41,9 @@ class NumberedFiles final : public FrameSink {
   std::vector<Output> first_;          ///< of the first frame, to report errors early
   std::vector<std::string> reserved_;  ///< files that no output may replace
   std::vector<OutputFlags> files_;     ///< of each sensor
+  std::filesystem::path first_written_;
+  std::filesystem::path last_written_;
+  std::uint64_t written_ = 0;  ///< files, without sidecars
 };
 
 }  // namespace glidar::app

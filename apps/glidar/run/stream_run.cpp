@@ -47,13 +47,6 @@ woods2016::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
   return {.endpoint = *flags.pose_source, .queue = flags.pose_queue};
 }
 
-/// The names of bags and captures.
-std::string names_of(const std::vector<std::filesystem::path>& files) {
-  std::string text;
-  for (const std::filesystem::path& file : files) text += " " + file.string();
-  return text.empty() ? text : "wrote" + text + "\n";
-}
-
 /// Throws Error when a frame is not the one that was recorded.
 void compare(const MeasuredFrame& measured, const std::string& recording, std::uint64_t number) {
   if (frame_hash(measured.frame) == measured.frame_hash) return;
@@ -353,12 +346,12 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     }
   };
   if (publisher_) attempt([&] { publisher_->shut_down(is_urgent ? kUrgent : kUnhurried); });
-  std::vector<std::filesystem::path> written;
+  std::string written;
   for (const auto& sink : sinks_) {
     attempt([&] {
       sink->finish();
-      const std::vector<std::filesystem::path> files = sink->files();
-      written.insert(written.end(), files.begin(), files.end());
+      const std::string names = sink->written_text();
+      if (!names.empty()) written += "wrote" + names + "\n";
     });
   }
   errors_.flush();
@@ -376,7 +369,7 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     });
   }
   if (recorder_) attempt([&] { recorder_->commit(); });
-  if (!flags_.render.quiet) fmt::print("{}{}", summary_text(summary), names_of(written));
+  if (!flags_.render.quiet) fmt::print("{}{}", summary_text(summary), written);
   if (failure) std::rethrow_exception(failure);
 }
 
