@@ -178,11 +178,23 @@ def _categories(texts: Sequence[str]) -> dict[str, str]:
     return {name: category for name, _, category in pairs}
 
 
+def _check_classes(categories: Mapping[str, str], paths: Sequence[str]) -> None:
+    """Raises Error for a class that no scene has."""
+    if not categories:
+        return
+    known = {name: None for path in paths for name in load_scene(path).class_names}
+    for name in categories:
+        if name not in known:
+            raise Error("--category", shown(name), f"classes of the scenes: {', '.join(known)}", "correct it or leave it out")
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command line; returns the exit code."""
     given = _parser().parse_args(arguments)
     try:
-        with NuscenesWriter(given.output, version=given.version, categories=_categories(given.category)) as data:
+        categories = _categories(given.category)
+        _check_classes(categories, given.scenes)
+        with NuscenesWriter(given.output, version=given.version, categories=categories) as data:
             for path in given.scenes:
                 data.add_scene(load_scene(path), duration_s=given.duration, seed=given.seed)
     except Error as error:

@@ -89,6 +89,22 @@ class Imus(CliTest):
         self.write("scene.yaml", SCENE)
         self.assertIn("has IMUs", self.refused("render", "scene.yaml", "--imu", "BMI088", "-o", "a.pcd"))
 
+    def test_an_imu_whose_samples_no_output_has_is_refused(self):
+        imu = ("--imu", "BMI088")
+        for outputs in (["-o", "a.pcd"], ["-o", "a.osi"], ["-o", "a.kitti"], ["-o", "a.pcap"]):
+            error = self.refused(*BOX, *imu, *outputs)
+            self.assertIn("--imu: no output has samples of an IMU; allowed: the suffixes .imu.csv", error)
+            self.assertIn("or leave --imu out", error)
+        self.assertIn("--imu: no output", self.refused("stream", *BOX[1:], *imu, "--frames", "1", "-o", "a.pcd"))
+        self.assertIn("--imu", self.refused("stream", *BOX[1:], *imu, "--lockstep", "ipc://x.socket"))
+        self.succeed(*BOX, *imu, "-o", "a.mcap")
+        self.succeed("render", "builtin:box", "--sensor", "OS1-32", "--eye", "0,0,0", *imu, "-o", "a.pcap")
+
+    def test_a_replay_of_a_run_with_an_imu_may_have_other_outputs(self):
+        self.succeed("stream", *BOX[1:], "--imu", "BMI088", "--frames", "1", "--rate", "max", "--record", "r.jsonl")
+        self.succeed("replay", "r.jsonl", "-o", "b.pcd")
+        self.succeed("replay", "r.jsonl", "-o", "b.imu.csv")
+
     def test_presets_are_listed_with_their_sources(self):
         names = [line.split()[0] for line in self.succeed("sensors", "--imus").stdout.splitlines()[2:]]
         self.assertEqual(names, ["ADIS16448", "BMI088", "ICM-20948"])

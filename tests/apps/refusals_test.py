@@ -132,6 +132,36 @@ class Refusals(CliTest):
             self.assertIn("no output takes a layout", error)
         self.assertIn("a bag, or an output with the suffix .pcd .ply .npz .csv;", error)
 
+    def test_options_of_packets_and_messages_without_such_an_output(self):
+        scan = ("render", "builtin:box", "--eye", "0,0,0", "--sensor")
+        for option in (["--ouster-profile", "LEGACY"], ["--packet-topics"]):
+            error = self.refused(*scan, "OS1-32", *option, "-o", "x.pcd")
+            self.assertIn(f"{option[0]}: no output has ", error)
+            self.assertIn(f"or leave {option[0]} out", error)
+        self.assertIn("--livox-data-type: no output has packets",
+                      self.refused(*scan, "Livox-Avia", "--livox-data-type", "1", "-o", "x.mcap"))
+        self.assertIn("--image-transport: no output has ROS messages",
+                      self.refused("render", "builtin:box", "--image-transport", "both", "-o", "x.pcd"))
+
+    def test_options_of_packets_and_messages_with_other_sensors(self):
+        scan = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16")
+        self.assertIn("--ouster-profile: it has no effect with Velodyne VLP-16; allowed: a preset of an Ouster sensor; leave",
+                      self.refused(*scan, "--ouster-profile", "LEGACY", "-o", "x.pcap"))
+        self.assertIn("--livox-data-type: it has no effect with",
+                      self.refused(*scan, "--livox-data-type", "2", "-o", "x.pcap"))
+        self.assertIn("--image-transport: it has no effect with",
+                      self.refused(*scan, "--image-transport", "both", "-o", "x.mcap"))
+        self.succeed(*scan, "-o", "scan.pcap")
+        self.assertIn("--ouster-profile: the packets of Velodyne VLP-16; allowed: an Ouster sensor",
+                      self.refused("decode", "scan.pcap", "--sensor", "VLP-16", "--ouster-profile", "LEGACY", "-o", "y.pcd"))
+
+    def test_options_of_ros2_without_a_connection_to_it(self):
+        self.succeed("stream", "builtin:box", "--width", "8", "--height", "6", "--frames", "1", "--record", "r.jsonl")
+        for option in (["--ros2-interface", "auto"], ["--namespace", "robot"]):
+            for command in (["stream", "builtin:box", "-o", "x.pcd"], ["replay", "r.jsonl"]):
+                error = self.refused(*command, *option)
+                self.assertIn(f"{option[0]}: given without a connection to ROS 2; add --ros2", error)
+
     def test_options_are_checked_before_anything_is_loaded(self):
         for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: auto, rays"),
                                 (("--eye", "1,2"), "--eye"),

@@ -128,6 +128,13 @@ def test_the_command_line_writes_a_data_set(scene, tmp_path, capsys):
     assert "empty" in capsys.readouterr().err
 
 
+def test_a_category_of_a_class_that_no_scene_has_is_refused(scene, tmp_path, capsys):
+    assert main([str(scene), "-o", str(tmp_path / "out"), "--duration", "0.1", "--category", "persn=animal"]) == 2
+    error = capsys.readouterr().err
+    assert "--category" in error and "persn" in error and "person" in error
+    assert not (tmp_path / "out").exists()
+
+
 def test_classes_that_the_devkit_does_not_know_have_no_lidarseg(scene, tmp_path):
     with NuscenesWriter(tmp_path / "out", categories={"car": "spaceship"}) as data:
         data.add_scene(glidar.Scene(scene), duration_s=0.1)

@@ -84,6 +84,10 @@ Sender sender_of(const DecodeFlags& flags) {
          "add --sensor VLP-16, for example"});
   }
   Sender sender{load_sensor(flags.sensor, flags.mode), nullptr};
+  if (flags.output.ouster_profile && !is_ouster(sender.sensor)) {
+    throw Error({"--ouster-profile", "the packets of " + sender.sensor.name, "an Ouster sensor",
+                 "leave it out"});
+  }
   PacketOptions options;
   options.ouster.profile = flags.output.ouster_profile;
   with_option_name("--sensor",
@@ -254,6 +258,7 @@ Command add_decode(CLI::App& program) {
   add_output_options(command, flags->output);
   hide_standard_output(command);
   command.remove_option(command.get_option("--no-sidecar"));
+  command.remove_option(command.get_option("--livox-data-type"));
   command.remove_option(command.get_option("--packet-topics"));
   command.remove_option(command.get_option("--image-transport"));
   OptionGroup(command, "Run").add_flag("--quiet", "No summary, only warnings", flags->quiet);

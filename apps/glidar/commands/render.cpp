@@ -11,6 +11,7 @@
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/recording_sinks.hpp>
 #include <apps/glidar/run/rig_outputs.hpp>
+#include <apps/glidar/run/unused_options.hpp>
 #include <glidar/core/error.hpp>
 
 #include <fmt/format.h>
@@ -244,6 +245,8 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
   check_layout(flags.output);
   prepare_scene(
       flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
+  refuse_unused_output_options(flags.output, prepared, {});
+  refuse_unused_imu(flags, prepared, {}, PoseOrigin::motion);
   Job job{flags, command, prepared, outputs_by_sensor(flags, prepared, console),
           make_recording_sinks(flags, prepared, prepared.files, PoseOrigin::motion)};
   try {

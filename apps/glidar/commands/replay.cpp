@@ -101,7 +101,10 @@ Command add_replay(CLI::App& program) {
       ->required()
       ->type_name("");
   add_replay_options(command, *flags);
-  return [flags] { return run_replay(*flags); };
+  return [flags, &command] {
+    check_ros2_options(command, flags->ros2);
+    return run_replay(*flags);
+  };
 }
 
 }  // namespace glidar::app

@@ -25,8 +25,8 @@ struct OutputFlags {
   std::string frame = "sensor";      ///< axes of clouds
   bool deskew = false;
   std::optional<OusterProfile> ouster_profile;  ///< of packets; empty: by the number of returns
-  LivoxDataType livox_type = LivoxDataType::cartesian_mm;  ///< of points in packets
-  ros::ImageTransport images = ros::ImageTransport::raw;   ///< of cameras, in bags and ROS 2
+  std::optional<LivoxDataType> livox_type;      ///< of points in packets; empty: in mm
+  ros::ImageTransport images = ros::ImageTransport::raw;  ///< of cameras, in bags and ROS 2
   bool packet_topics = false;  ///< packets of Ouster and Velodyne sensors in bags and ROS 2
   FileSinkOptions sink;
 };

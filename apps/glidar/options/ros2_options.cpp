@@ -3,6 +3,7 @@
 #include <apps/glidar/options/ros2_options.hpp>
 
 #include <apps/glidar/options/option_group.hpp>
+#include <glidar/core/error.hpp>
 #include <glidar/link/dds/pose_topic.hpp>
 #include <glidar/link/dds/topic_names.hpp>
 
@@ -27,6 +28,15 @@ void add_ros2_options(CLI::App& command, Ros2Flags& flags) {
             });
   group.add("--ros2-interface", "NAME", "Network interface; auto: the choice of Cyclone DDS [lo]",
             flags.interface_name);
+}
+
+void check_ros2_options(const CLI::App& command, const Ros2Flags& flags) {
+  if (uses_ros2(flags)) return;
+  for (const char* name : {"--namespace", "--ros2-interface"}) {
+    if (command.count(name) == 0) continue;
+    throw Error(
+        {name, "given without a connection to ROS 2", "", "add --ros2, which publishes topics"});
+  }
 }
 
 void set_ros2_pose_source(const std::string& text, Ros2Flags& flags) {

@@ -30,6 +30,9 @@ inline constexpr const char* kRos2Prefix = "ros2:";
 /// Adds the options for publishing.
 void add_ros2_options(CLI::App& command, Ros2Flags& flags);
 
+/// Throws Error when an option of a connection is given without one.
+void check_ros2_options(const CLI::App& command, const Ros2Flags& flags);
+
 /// Sets the topic of poses from "ros2:TOPIC". Throws Error.
 void set_ros2_pose_source(const std::string& text, Ros2Flags& flags);
 

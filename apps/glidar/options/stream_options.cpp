@@ -211,11 +211,11 @@ void add_lockstep_options(CLI::App& command, StreamFlags& flags) {
   group.add("--curve-keys", "FILE", "Encrypt with these keys; creates FILE if it does not exist",
             flags.curve_keys);
   require_option(command, {"--curve-keys"}, "--lockstep");
-  forbid_together(
-      command, {"--lockstep"},
-      {"--port", "--foxglove", "--udp", "--ros2", "--pose-source", "--trajectory", "--object-rate",
-       "--sensor-rate", "--frames", "--duration", "--subscribers", "--subscription-timeout",
-       "--publish-every", "--publish-latest", "--publish-queue", "--format", "--legacy-output"});
+  forbid_together(command, {"--lockstep"},
+                  {"--port", "--foxglove", "--udp", "--ros2", "--pose-source", "--trajectory",
+                   "--object-rate", "--sensor-rate", "--frames", "--duration", "--subscribers",
+                   "--subscription-timeout", "--publish-every", "--publish-latest",
+                   "--publish-queue", "--format", "--legacy-output", "--imu"});
   forbid_together(command, {"--lockstep"}, options_under(command, kOutputHeading));
 }
 
@@ -282,6 +282,7 @@ void add_replay_options(CLI::App& command, StreamFlags& flags) {
 }
 
 void check(const CLI::App& command, const StreamFlags& flags) {
+  check_ros2_options(command, flags.ros2);
   if (!flags.lockstep.empty()) {
     if (!flags.is_unpaced) return;
     throw Error(
@@ -303,9 +304,6 @@ void check(const CLI::App& command, const StreamFlags& flags) {
       throw Error({"--output", "not given, but options of output files are", "",
                    "leave these out: clouds on a port have x, y, z and intensity"});
     }
-  }
-  if (!flags.ros2.ros_namespace.empty() && !uses_ros2(flags.ros2)) {
-    throw Error({"--namespace", "given without --ros2, which publishes topics", "", "add --ros2"});
   }
   check_motion(command, flags);
   check_ports(flags);

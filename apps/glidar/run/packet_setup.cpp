@@ -10,7 +10,7 @@ ros::PublishedPackets packet_setup(const RenderFlags& flags, const PreparedScene
                                    PoseOrigin origin, const ActiveSensor& active) {
   ros::PublishedPackets setup;
   setup.options.ouster.profile = flags.output.ouster_profile;
-  setup.options.livox_type = flags.output.livox_type;
+  if (flags.output.livox_type) setup.options.livox_type = *flags.output.livox_type;
   if (origin != PoseOrigin::motion || prepared.imus.empty()) return setup;
   setup.options.ouster.sensor_from_imu =
       active.rig_from_sensor.inverse() * prepared.imus.front().rig_from_imu;

@@ -12,6 +12,7 @@
 #include <apps/glidar/run/recorded_source.hpp>
 #include <apps/glidar/run/stream_report.hpp>
 #include <apps/glidar/run/stream_sinks.hpp>
+#include <apps/glidar/run/unused_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 
@@ -112,6 +113,13 @@ void StreamRun::open_scene() {
         if (files) files->refuse_overwrite_of_inputs();
       },
       console_, prepared_);
+  const LiveOutputs live{.topics = flags_.ros2.publishes,
+                         .packets = !flags_.udp.empty(),
+                         .viewers = flags_.foxglove.has_value(),
+                         .record = !flags_.record.empty()};
+  refuse_unused_output_options(flags_.render.output, prepared_, live);
+  // a replay may have other outputs than the run that was recorded
+  if (!recording_) refuse_unused_imu(flags_.render, prepared_, live, pose_origin(flags_));
   const std::vector<std::string> reserved = reserved_files(flags_, prepared_.files);
   for (const ActiveSensor& active : prepared_.sensors) {
     motions_.push_back(std::make_shared<const Motion>(active.motion));
