@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/stereo/cost_volume.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace glidar::stereo {
+
+namespace {
+
+/// 4 GiB of memory for costs and sums.
+constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 30;
+
+std::size_t padded_lanes(std::size_t disparities) {
+  return (disparities + kLaneBlock - 1) / kLaneBlock * kLaneBlock;
+}
+
+/// Rows of Hamming distances around the rows of a band, of which `total` is the sum over the box.
+class BoxRows {
+ public:
+  BoxRows(const CostSource& source, const CostVolume& volume, CostWorkspace& workspace)
+      : source_(source),
+        volume_(volume),
+        radius_(source.options.box_px / 2),
+        slots_(2 * radius_ + 2),
+        workspace_(workspace) {
+    workspace.distances.resize(slots_ * slot_size());
+    workspace.total.assign(volume.row_size(), 0);
+  }
+
+  /// The sum for the first row of a band.
+  void start(std::size_t y) {
+    const std::size_t first = y > radius_ ? y - radius_ : 0;
+    for (std::size_t row = first; row <= std::min(y + radius_, last()); ++row) compute(row);
+    for (std::size_t i = 0; i <= 2 * radius_; ++i) {
+      const std::size_t row = std::min(std::max(y + i, radius_) - radius_, last());
+      source_.kernel.add(workspace_.total.data(), slot(row), volume_.row_size());
+    }
+  }
+
+  /// From the sum for row y - 1 to that for row y.
+  void advance(std::size_t y) {
+    const std::size_t added = std::min(y + radius_, last());
+    const std::size_t removed = std::max(y, radius_ + 1) - radius_ - 1;
+    if (y + radius_ <= last()) compute(added);
+    if (added == removed) return;
+    source_.kernel.slide(workspace_.total.data(), slot(added), slot(removed), volume_.row_size());
+  }
+
+ private:
+  [[nodiscard]] std::size_t last() const { return volume_.height - 1; }
+  [[nodiscard]] std::size_t slot_size() const { return volume_.row_size() + kLaneBlock; }
+  [[nodiscard]] std::uint8_t* slot(std::size_t y) const {
+    return workspace_.distances.data() + y % slots_ * slot_size();
+  }
+
+  void compute(std::size_t y) {
+    const std::uint32_t bits = census_bits(source_.options.census);
+    source_.kernel.hamming({.left = source_.left.row(y),
+                            .right = source_.right.row(y),
+                            .left_stride = source_.left.plane_stride,
+                            .right_stride = source_.right.plane_stride,
+                            .planes = source_.left.planes,
+                            .width = volume_.width,
+                            .lanes = volume_.lanes,
+                            .min_disparity = source_.options.min_disparity_px,
+                            .outside = static_cast<std::uint8_t>(bits / 2),
+                            .distances = slot(y)});
+  }
+
+  const CostSource& source_;
+  const CostVolume& volume_;
+  std::size_t radius_;
+  std::size_t slots_;
+  CostWorkspace& workspace_;
+};
+
+void sweep_both_ways(const CostSource& source, std::size_t y, CostVolume& volume,
+                     CostWorkspace& workspace) {
+  SweepRow row = {.cost = volume.cost.get() + volume.offset(y),
+                  .sum = volume.sum.get() + volume.offset(y),
+                  .width = volume.width,
+                  .lanes = volume.lanes,
+                  .disparities = volume.disparities,
+                  .p1 = static_cast<std::int16_t>(penalty_p1(source.options)),
+                  .p2 = static_cast<std::int16_t>(penalty_p2(source.options)),
+                  .is_first = true,
+                  .state = workspace.state.data()};
+  source.kernel.sweep(row);
+  row.is_first = false;
+  row.is_backwards = true;
+  source.kernel.sweep(row);
+}
+
+}  // namespace
+
+CostVolume make_volume(const GreyImage& image, std::uint32_t disparities) {
+  CostVolume volume;
+  volume.width = image.width;
+  volume.height = image.height;
+  volume.disparities = disparities;
+  volume.lanes = padded_lanes(disparities);
+  const std::uint64_t cells = std::uint64_t{image.width} * image.height * volume.lanes;
+  if (cells > kMaxCells) {
+    throw Error({"stereo pair",
+                 std::to_string(image.width) + "x" + std::to_string(image.height) + " pixels with " +
+                     std::to_string(disparities) + " disparities are " + std::to_string(cells) +
+                     " costs",
+                 "at most " + std::to_string(kMaxCells),
+                 "search fewer disparities, or crop or shrink the images"});
+  }
+  volume.cost = std::make_unique_for_overwrite<std::int16_t[]>(cells);
+  volume.sum = std::make_unique_for_overwrite<std::int16_t[]>(cells);
+  return volume;
+}
+
+CostSource::CostSource(const GreyImage& left_image, const GreyImage& right_image,
+                       const StereoOptions& matcher_options, const Kernel& inner_loops)
+    : options(matcher_options),
+      kernel(inner_loops),
+      left(make_census(left_image, matcher_options.census, false, 0, inner_loops)),
+      right(make_census(
+          right_image, matcher_options.census, true,
+          padded_lanes(matcher_options.disparities) + matcher_options.min_disparity_px,
+          inner_loops)) {}
+
+void fill_rows(const CostSource& source, std::size_t begin, std::size_t end, CostVolume& volume,
+               CostWorkspace& workspace) {
+  workspace.state.resize(2 * (volume.lanes + kStateGap) + kStateGap);
+  BoxRows rows(source, volume, workspace);
+  for (std::size_t y = begin; y < end; ++y) {
+    if (y == begin) {
+      rows.start(y);
+    } else {
+      rows.advance(y);
+    }
+    source.kernel.box(workspace.total.data(), volume.cost.get() + volume.offset(y), volume.width,
+                      volume.lanes, source.options.box_px / 2);
+    sweep_both_ways(source, y, volume, workspace);
+  }
+}
+
+}  // namespace glidar::stereo

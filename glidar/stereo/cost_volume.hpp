@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/stereo/census.hpp>
+#include <glidar/stereo/kernel.hpp>
+#include <glidar/stereo/stereo_match.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace glidar::stereo {
+
+/// Costs of all pixels and disparities, and sums of path costs minus kSumOffset; each height x width
+/// x lanes.
+struct CostVolume {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t disparities = 0;
+  std::size_t lanes = 0;  ///< disparities, rounded up to kLaneBlock
+  std::unique_ptr<std::int16_t[]> cost;
+  std::unique_ptr<std::int16_t[]> sum;
+
+  [[nodiscard]] std::size_t row_size() const { return width * lanes; }
+  [[nodiscard]] std::size_t offset(std::size_t y) const { return y * row_size(); }
+};
+
+/// Memory for the costs of a pair. Throws Error when the pair is too large.
+CostVolume make_volume(const GreyImage& image, std::uint32_t disparities);
+
+/// What the costs of rows are computed from.
+struct CostSource {
+  CostSource(const GreyImage& left_image, const GreyImage& right_image,
+             const StereoOptions& matcher_options, const Kernel& inner_loops);
+
+  const StereoOptions& options;
+  const Kernel& kernel;
+  Census left;
+  Census right;  ///< mirrored
+};
+
+/// Memory of a thread.
+struct CostWorkspace {
+  std::vector<std::uint8_t> distances;  ///< a ring of rows of Hamming distances
+  std::vector<std::int16_t> total;      ///< sums of these over the rows of the box
+  std::vector<std::int16_t> state;      ///< of a sweep
+};
+
+/// Computes the costs of rows [begin, end), and the path costs along these rows.
+void fill_rows(const CostSource& source, std::size_t begin, std::size_t end, CostVolume& volume,
+               CostWorkspace& workspace);
+
+}  // namespace glidar::stereo
