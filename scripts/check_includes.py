@@ -18,6 +18,7 @@ ALLOWED = {
     "sensor": {"math", "core", "sensor"},
     "motion": {"math", "core", "motion"},
     "render": {"math", "core", "render"},
+    "stereo": {"math", "core", "stereo"},
     "simulate": {"math", "core", "sensor", "motion", "render", "simulate"},
     "verify": {"math", "core", "sensor", "motion", "render", "simulate", "verify"},
     "explain": {"math", "core", "sensor", "motion", "render", "simulate", "io", "explain"},

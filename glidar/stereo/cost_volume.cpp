@@ -80,8 +80,8 @@ class BoxRows {
 
 void sweep_both_ways(const CostSource& source, std::size_t y, CostVolume& volume,
                      CostWorkspace& workspace) {
-  SweepRow row = {.cost = volume.cost.get() + volume.offset(y),
-                  .sum = volume.sum.get() + volume.offset(y),
+  SweepRow row = {.cost = volume.cost.data() + volume.offset(y),
+                  .sum = volume.sum.data() + volume.offset(y),
                   .width = volume.width,
                   .lanes = volume.lanes,
                   .disparities = volume.disparities,
@@ -97,8 +97,7 @@ void sweep_both_ways(const CostSource& source, std::size_t y, CostVolume& volume
 
 }  // namespace
 
-CostVolume make_volume(const GreyImage& image, std::uint32_t disparities) {
-  CostVolume volume;
+void resize_volume(const GreyImage& image, std::uint32_t disparities, CostVolume& volume) {
   volume.width = image.width;
   volume.height = image.height;
   volume.disparities = disparities;
@@ -112,9 +111,8 @@ CostVolume make_volume(const GreyImage& image, std::uint32_t disparities) {
                  "at most " + std::to_string(kMaxCells),
                  "search fewer disparities, or crop or shrink the images"});
   }
-  volume.cost = std::make_unique_for_overwrite<std::int16_t[]>(cells);
-  volume.sum = std::make_unique_for_overwrite<std::int16_t[]>(cells);
-  return volume;
+  volume.cost.reserve(cells);
+  volume.sum.reserve(cells);
 }
 
 CostSource::CostSource(const GreyImage& left_image, const GreyImage& right_image,
@@ -137,7 +135,7 @@ void fill_rows(const CostSource& source, std::size_t begin, std::size_t end, Cos
     } else {
       rows.advance(y);
     }
-    source.kernel.box(workspace.total.data(), volume.cost.get() + volume.offset(y), volume.width,
+    source.kernel.box(workspace.total.data(), volume.cost.data() + volume.offset(y), volume.width,
                       volume.lanes, source.options.box_px / 2);
     sweep_both_ways(source, y, volume, workspace);
   }

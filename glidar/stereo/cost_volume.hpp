@@ -4,11 +4,11 @@
 
 #include <glidar/stereo/census.hpp>
 #include <glidar/stereo/kernel.hpp>
+#include <glidar/stereo/page_memory.hpp>
 #include <glidar/stereo/stereo_match.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace glidar::stereo {
@@ -20,15 +20,16 @@ struct CostVolume {
   std::size_t height = 0;
   std::size_t disparities = 0;
   std::size_t lanes = 0;  ///< disparities, rounded up to kLaneBlock
-  std::unique_ptr<std::int16_t[]> cost;
-  std::unique_ptr<std::int16_t[]> sum;
+  PageMemory cost;
+  PageMemory sum;
 
   [[nodiscard]] std::size_t row_size() const { return width * lanes; }
   [[nodiscard]] std::size_t offset(std::size_t y) const { return y * row_size(); }
 };
 
-/// Memory for the costs of a pair. Throws Error when the pair is too large.
-CostVolume make_volume(const GreyImage& image, std::uint32_t disparities);
+/// Gives a volume the size of a pair, in the memory that it has if that is large enough. Throws Error
+/// when the pair is too large.
+void resize_volume(const GreyImage& image, std::uint32_t disparities, CostVolume& volume);
 
 /// What the costs of rows are computed from.
 struct CostSource {

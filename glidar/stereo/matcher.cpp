@@ -10,6 +10,7 @@
 #include <glidar/stereo/window_sums.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -60,8 +61,14 @@ class WinnerRows {
                         .rivals = work.rivals.data(),
                         .mirror_best = work.mirror_best.data(),
                         .mirror_winner = work.mirror_winner.data()});
-    for (std::size_t x = 0; x < volume_.width; ++x) {
-      set_pixel(x, y, evidence(work, x, y, sums + x * volume_.lanes), sums + x * volume_.lanes);
+    float next_disparity_px = -1.0F;
+    for (std::size_t x = volume_.width; x-- > 0;) {
+      const std::int16_t* const at = sums + x * volume_.lanes;
+      PixelEvidence pixel = evidence(work, x, y, at);
+      pixel.next_disparity_px = next_disparity_px;
+      set_pixel(x, y, pixel, at);
+      const float disparity_px = match_.disparity_px[y * volume_.width + x];
+      if (!std::isnan(disparity_px)) next_disparity_px = disparity_px;
     }
   }
 
@@ -123,7 +130,7 @@ std::uint32_t right_winner(const CostVolume& volume, std::int64_t column, std::s
     const std::int64_t x = column + static_cast<std::int64_t>(d);
     if (x < 0 || x >= static_cast<std::int64_t>(volume.width)) continue;
     const std::int16_t sum =
-        volume.sum[volume.offset(y) + static_cast<std::size_t>(x) * volume.lanes + d];
+        volume.sum.data()[volume.offset(y) + static_cast<std::size_t>(x) * volume.lanes + d];
     if (sum >= lowest) continue;
     lowest = sum;
     winner = static_cast<std::uint32_t>(d);
@@ -149,30 +156,34 @@ void add_window(const GreyImage& image, const StereoOptions& options, std::uint3
 
 }  // namespace
 
-MatchTrace trace_match(const GreyImage& left, const GreyImage& right, const StereoOptions& options,
-                       const StereoRun& run) {
+StereoMatch match_pair(const GreyImage& left, const GreyImage& right, const StereoOptions& options,
+                       const StereoRun& run, CostVolume& volume) {
   require_pair(left, right, options);
   const InstructionSet set = run.instruction_set.empty()
                                  ? select_instruction_set()
                                  : find_instruction_set(run.instruction_set);
-  MatchTrace trace = {empty_match(left, options), make_volume(left, options.disparities)};
+  resize_volume(left, options.disparities, volume);
+  StereoMatch match = empty_match(left, options);
   const CostSource source(left, right, options, kernel_for(set));
   const WindowSums windows = sum_windows(left, window_radius_px(options),
                                          saturation_level(left, options), run.pool);
   const std::size_t threads = run.pool == nullptr ? 1 : run.pool->threads();
-  WinnerRows rows(source, trace.volume, windows, threads, trace.match);
+  WinnerRows rows(source, volume, windows, threads, match);
   const auto on_row = [&](std::size_t worker, std::size_t y, const std::int16_t* sums) {
     rows.finish(worker, y, sums);
   };
-  ProgressCounter progress(run.progress, progress_rows(trace.volume));
-  sum_paths(source, run, trace.volume, RowSumsFunction(on_row), progress);
+  ProgressCounter progress(run.progress, progress_rows(volume));
+  sum_paths(source, run, volume, RowSumsFunction(on_row), progress);
   progress.finish();
-  return trace;
+  return match;
 }
 
-PixelEvidence gather_evidence(const CostVolume& volume, const GreyImage& left,
-                              const StereoOptions& options, std::uint32_t x, std::uint32_t y) {
-  const std::int16_t* const sums = volume.sum.get() + volume.offset(y) + x * volume.lanes;
+PixelEvidence gather_evidence(const CostVolume& volume, const StereoMatch& match,
+                              const GreyImage& left, const StereoOptions& options,
+                              std::size_t pixel) {
+  const auto x = static_cast<std::uint32_t>(pixel % volume.width);
+  const auto y = static_cast<std::uint32_t>(pixel / volume.width);
+  const std::int16_t* const sums = volume.sum.data() + pixel * volume.lanes;
   const auto count = static_cast<std::ptrdiff_t>(volume.disparities);
   const auto winner = static_cast<std::uint32_t>(std::min_element(sums, sums + count) - sums);
   PixelEvidence evidence = {.column = x, .winner = winner};
@@ -186,6 +197,12 @@ PixelEvidence gather_evidence(const CostVolume& volume, const GreyImage& left,
   evidence.rivals = without_neighbours(rivals, winner, options, sums);
   evidence.window_pixels = 0;
   add_window(left, options, x, y, evidence);
+  const auto row_end = match.disparity_px.begin() +
+                       static_cast<std::ptrdiff_t>((std::size_t{y} + 1) * volume.width);
+  const auto next =
+      std::find_if(match.disparity_px.begin() + static_cast<std::ptrdiff_t>(pixel + 1), row_end,
+                   [](float disparity_px) { return !std::isnan(disparity_px); });
+  if (next != row_end) evidence.next_disparity_px = *next;
   return evidence;
 }
 

@@ -12,18 +12,14 @@
 
 namespace glidar::stereo {
 
-/// A match with the costs that led to it, for match_stereo() and explain_stereo().
-struct MatchTrace {
-  StereoMatch match;
-  CostVolume volume;  ///< its sums are complete only if the run keeps costs
-};
+/// match_stereo() with the costs that lead to the result, whose memory `volume` keeps for the next
+/// pair. Its sums are complete only if the run keeps costs. Throws Error as match_stereo() does.
+StereoMatch match_pair(const GreyImage& left, const GreyImage& right, const StereoOptions& options,
+                       const StereoRun& run, CostVolume& volume);
 
-/// Throws Error as match_stereo() does.
-MatchTrace trace_match(const GreyImage& left, const GreyImage& right, const StereoOptions& options,
-                       const StereoRun& run);
-
-/// The evidence of pixel (x, y), computed again from complete sums.
-PixelEvidence gather_evidence(const CostVolume& volume, const GreyImage& left,
-                              const StereoOptions& options, std::uint32_t x, std::uint32_t y);
+/// The evidence of a pixel of a match, computed again from complete sums.
+PixelEvidence gather_evidence(const CostVolume& volume, const StereoMatch& match,
+                              const GreyImage& left, const StereoOptions& options,
+                              std::size_t pixel);
 
 }  // namespace glidar::stereo

@@ -48,8 +48,8 @@ class DownPaths {
     const std::size_t x = chunk * kChunkPixels;
     const std::size_t place[kMaxDownPaths] = {x, x + volume_.height - 1 - row, x + row};
     const std::size_t offset = volume_.offset(y) + x * volume_.lanes;
-    DownRow work = {.cost = volume_.cost.get() + offset,
-                    .sum = volume_.sum.get() + offset,
+    DownRow work = {.cost = volume_.cost.data() + offset,
+                    .sum = volume_.sum.data() + offset,
                     .new_sum = new_sum + x * volume_.lanes,
                     .count = std::min(kChunkPixels, volume_.width - x),
                     .lanes = volume_.lanes,
@@ -102,7 +102,7 @@ void sum_from_above(const CostSource& source, const StereoRun& run, CostVolume& 
     fill_bands(source, run, begin, end, volume, workspaces);
     const auto chunk = [&](std::size_t, std::size_t row, std::size_t index) {
       const std::size_t y = begin + row;
-      paths.advance(source.kernel, y, y, index, volume.sum.get() + volume.offset(y));
+      paths.advance(source.kernel, y, y, index, volume.sum.data() + volume.offset(y));
     };
     Wavefront(end - begin, chunk_count(volume))
         .run(run.pool, chunk, [&](std::size_t, std::size_t) { progress.add(1); });
@@ -117,7 +117,7 @@ void sum_from_below(const CostSource& source, const StereoRun& run, CostVolume& 
     for (auto& row : rows) row.resize(volume.row_size());
   }
   const auto sums_of = [&](std::size_t worker, std::size_t y) {
-    return run.keeps_costs ? volume.sum.get() + volume.offset(y) : rows[worker].data();
+    return run.keeps_costs ? volume.sum.data() + volume.offset(y) : rows[worker].data();
   };
   const auto chunk = [&](std::size_t worker, std::size_t row, std::size_t index) {
     const std::size_t y = volume.height - 1 - row;

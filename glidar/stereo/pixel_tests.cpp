@@ -35,16 +35,23 @@ bool is_consistent(const PixelEvidence& pixel, const StereoOptions& options) {
   return difference <= options.left_right_px;
 }
 
+bool is_beside_border(const PixelEvidence& pixel, const StereoOptions& options) {
+  return static_cast<double>(pixel.column) <
+         static_cast<double>(pixel.next_disparity_px) + window_radius_px(options);
+}
+
 StereoStatus classify(const PixelEvidence& pixel, const StereoOptions& options) {
   if (!is_inside(pixel, options)) return StereoStatus::border;
-  const StereoStatus no_texture =
-      is_unsaturated(pixel) ? StereoStatus::no_texture : StereoStatus::saturated;
-  if (!has_texture(pixel, options)) return no_texture;
+  const bool is_saturated = !is_unsaturated(pixel);
+  if (!has_texture(pixel, options)) {
+    return is_saturated ? StereoStatus::saturated : StereoStatus::no_texture;
+  }
+  const bool is_found = is_in_range(pixel, options) && is_unique(pixel);
+  if (is_found && is_consistent(pixel, options)) return StereoStatus::valid;
+  if (is_beside_border(pixel, options)) return StereoStatus::border;
   if (!is_in_range(pixel, options)) return StereoStatus::out_of_range;
-  const StereoStatus ambiguous =
-      is_unsaturated(pixel) ? StereoStatus::ambiguous : StereoStatus::saturated;
-  if (!is_unique(pixel)) return ambiguous;
-  return is_consistent(pixel, options) ? StereoStatus::valid : StereoStatus::left_right;
+  if (is_found) return StereoStatus::left_right;
+  return is_saturated ? StereoStatus::saturated : StereoStatus::ambiguous;
 }
 
 std::uint32_t without_neighbours(std::uint32_t rivals, std::uint32_t winner,

@@ -17,6 +17,7 @@ struct PixelEvidence {
   std::uint32_t step_sum = 0;      ///< steps of grey levels in the window
   std::uint32_t saturated_pixels = 0;
   std::uint32_t window_pixels = 1;
+  float next_disparity_px = -1.0F;  ///< of the next valid pixel on the right; negative: none
 };
 
 /// The tests one by one: true where the pixel passes.
@@ -27,7 +28,12 @@ bool is_in_range(const PixelEvidence& pixel, const StereoOptions& options);
 bool is_unique(const PixelEvidence& pixel);
 bool is_consistent(const PixelEvidence& pixel, const StereoOptions& options);
 
-/// The first test that fails.
+/// Whether the window of a match at the disparity of the next valid pixel on the right crosses the
+/// edge of the right image.
+bool is_beside_border(const PixelEvidence& pixel, const StereoOptions& options);
+
+/// The first test that fails. Where the search has no unique, consistent winner beside the edge of
+/// the right image, that edge is the cause.
 StereoStatus classify(const PixelEvidence& pixel, const StereoOptions& options);
 
 /// The lanes that rival the winner, from those of the whole row of costs that do, as the neighbours

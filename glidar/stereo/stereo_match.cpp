@@ -33,7 +33,7 @@ std::vector<std::uint16_t> copy_costs(const stereo::CostVolume& volume) {
   std::vector<std::uint16_t> cost(volume.width * volume.height * volume.disparities);
   auto to = cost.begin();
   for (std::size_t pixel = 0; pixel < volume.width * volume.height; ++pixel) {
-    const std::int16_t* const from = volume.sum.get() + pixel * volume.lanes;
+    const std::int16_t* const from = volume.sum.data() + pixel * volume.lanes;
     for (std::size_t d = 0; d < volume.disparities; ++d) {
       *to++ = static_cast<std::uint16_t>(from[d] + stereo::kSumOffset);
     }
@@ -68,11 +68,29 @@ const char* to_string(StereoStatus status) {
   return kNames[static_cast<std::size_t>(status)];
 }
 
+struct StereoMatcher::Memory {
+  stereo::CostVolume volume;
+};
+
+StereoMatcher::StereoMatcher(const StereoOptions& options)
+    : options_(options), memory_(std::make_unique<Memory>()) {
+  validate(options_);
+}
+
+StereoMatcher::~StereoMatcher() = default;
+StereoMatcher::StereoMatcher(StereoMatcher&&) noexcept = default;
+StereoMatcher& StereoMatcher::operator=(StereoMatcher&&) noexcept = default;
+
+StereoMatch StereoMatcher::match(const GreyImage& left, const GreyImage& right,
+                                 const StereoRun& run) {
+  StereoMatch match = stereo::match_pair(left, right, options_, run, memory_->volume);
+  if (run.keeps_costs) match.cost = copy_costs(memory_->volume);
+  return match;
+}
+
 StereoMatch match_stereo(const GreyImage& left, const GreyImage& right,
                          const StereoOptions& options, const StereoRun& run) {
-  stereo::MatchTrace trace = stereo::trace_match(left, right, options, run);
-  if (run.keeps_costs) trace.match.cost = copy_costs(trace.volume);
-  return std::move(trace.match);
+  return StereoMatcher(options).match(left, right, run);
 }
 
 }  // namespace glidar

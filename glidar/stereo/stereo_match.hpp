@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct GreyImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t max_level = 255;  ///< greatest that the pixel type can store
-  std::vector<std::uint16_t> level;
+  std::vector<std::uint16_t> level = {};
 };
 
 /// Why a pixel has no disparity: the first test that it fails, in this order.
@@ -62,6 +63,26 @@ struct StereoRun {
 /// is empty or too large, or an option is not allowed or wider than the image.
 StereoMatch match_stereo(const GreyImage& left, const GreyImage& right,
                          const StereoOptions& options, const StereoRun& run = {});
+
+/// Matches pairs one after the other. It keeps its memory, so that all but the first take less time.
+class StereoMatcher {
+ public:
+  /// Throws Error when an option is not allowed.
+  explicit StereoMatcher(const StereoOptions& options);
+  ~StereoMatcher();
+  StereoMatcher(StereoMatcher&& other) noexcept;
+  StereoMatcher& operator=(StereoMatcher&& other) noexcept;
+  StereoMatcher(const StereoMatcher&) = delete;
+  StereoMatcher& operator=(const StereoMatcher&) = delete;
+
+  /// The same as match_stereo(). Not for several threads at once.
+  StereoMatch match(const GreyImage& left, const GreyImage& right, const StereoRun& run = {});
+
+ private:
+  struct Memory;
+  StereoOptions options_;
+  std::unique_ptr<Memory> memory_;
+};
 
 /// Throws Error as match_stereo() does.
 void require_pair(const GreyImage& left, const GreyImage& right, const StereoOptions& options);

@@ -23,8 +23,8 @@ struct StereoOptions {
   StereoCensus census = StereoCensus::window_7x7;
   std::uint32_t box_px = 5;  ///< odd side of the window over which costs are summed
   std::uint32_t paths = 8;   ///< 4 or 8
-  double p1 = 2.0;  ///< cost of a step of 1 px along a path, bits per pixel of the box
-  double p2 = 8.0;  ///< cost of a larger step, likewise; at least p1
+  double p1 = 4.0;  ///< cost of a step of 1 px along a path, bits per pixel of the box
+  double p2 = 16.0; ///< cost of a larger step, likewise; at least p1
   StereoSubpixel subpixel = StereoSubpixel::v_shape;
   double a_factor = 0.0;                  ///< px; adds a_factor sin(2 pi fraction)
   std::uint32_t uniqueness_percent = 5;   ///< 0: no test
