@@ -31,6 +31,7 @@ std::vector<Subcommand> all_subcommands() {
           subcommand("campaign", add_campaign),
           subcommand("sensors", add_sensors),
           subcommand("schema", add_schema),
+          subcommand("stereo", add_stereo),
           subcommand("verify", add_verify)};
 }
 

@@ -19,8 +19,7 @@ PaddedImage padded(const GreyImage& image, std::size_t radius, bool is_mirrored)
   result.stride = image.width + 2 * radius + kLaneBlock;
   result.level.resize(result.stride * (image.height + 2 * radius));
   for (std::size_t row = 0; row < image.height + 2 * radius; ++row) {
-    const std::size_t y =
-        std::min<std::size_t>(std::max(row, radius) - radius, image.height - 1);
+    const std::size_t y = std::min<std::size_t>(std::max(row, radius) - radius, image.height - 1);
     const std::uint16_t* const from = image.level.data() + y * image.width;
     std::int16_t* const to = result.level.data() + row * result.stride;
     for (std::size_t column = 0; column < image.width + 2 * radius; ++column) {
@@ -60,8 +59,8 @@ Pairs make_pairs(StereoCensus kind, bool is_mirrored, std::size_t stride) {
 
 }  // namespace
 
-Census make_census(const GreyImage& image, StereoCensus kind, bool is_mirrored,
-                   std::size_t padding, const Kernel& kernel) {
+Census make_census(const GreyImage& image, StereoCensus kind, bool is_mirrored, std::size_t padding,
+                   const Kernel& kernel) {
   const std::size_t radius = census_radius_px(kind);
   const PaddedImage source = padded(image, radius, is_mirrored);
   const Pairs pairs = make_pairs(kind, is_mirrored, source.stride);

@@ -24,7 +24,7 @@ struct Census {
 
 /// Pixels beyond the edge of the image equal the nearest one of the image. A mirrored census has
 /// column width - 1 - x in place of x, followed by `padding` unspecified columns.
-Census make_census(const GreyImage& image, StereoCensus kind, bool is_mirrored,
-                   std::size_t padding, const Kernel& kernel);
+Census make_census(const GreyImage& image, StereoCensus kind, bool is_mirrored, std::size_t padding,
+                   const Kernel& kernel);
 
 }  // namespace glidar::stereo

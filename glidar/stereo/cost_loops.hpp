@@ -92,8 +92,8 @@ void box_row(const std::int16_t* total, std::int16_t* cost, std::size_t width, s
     const std::size_t removed = x > radius ? x - 1 - radius : 0;
     const std::int16_t* const before = cost + (x - 1) * lanes;
     for (std::size_t d = 0; d < lanes; d += kWords) {
-      store(cost + x * lanes + d, load(before + d) + load(total + added * lanes + d) -
-                                      load(total + removed * lanes + d));
+      store(cost + x * lanes + d,
+            load(before + d) + load(total + added * lanes + d) - load(total + removed * lanes + d));
     }
   }
 }

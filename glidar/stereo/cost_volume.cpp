@@ -105,9 +105,9 @@ void resize_volume(const GreyImage& image, std::uint32_t disparities, CostVolume
   const std::uint64_t cells = std::uint64_t{image.width} * image.height * volume.lanes;
   if (cells > kMaxCells) {
     throw Error({"stereo pair",
-                 std::to_string(image.width) + "x" + std::to_string(image.height) + " pixels with " +
-                     std::to_string(disparities) + " disparities are " + std::to_string(cells) +
-                     " costs",
+                 std::to_string(image.width) + "x" + std::to_string(image.height) +
+                     " pixels with " + std::to_string(disparities) + " disparities are " +
+                     std::to_string(cells) + " costs",
                  "at most " + std::to_string(kMaxCells),
                  "search fewer disparities, or crop or shrink the images"});
   }
@@ -120,10 +120,10 @@ CostSource::CostSource(const GreyImage& left_image, const GreyImage& right_image
     : options(matcher_options),
       kernel(inner_loops),
       left(make_census(left_image, matcher_options.census, false, 0, inner_loops)),
-      right(make_census(
-          right_image, matcher_options.census, true,
-          padded_lanes(matcher_options.disparities) + matcher_options.min_disparity_px,
-          inner_loops)) {}
+      right(
+          make_census(right_image, matcher_options.census, true,
+                      padded_lanes(matcher_options.disparities) + matcher_options.min_disparity_px,
+                      inner_loops)) {}
 
 void fill_rows(const CostSource& source, std::size_t begin, std::size_t end, CostVolume& volume,
                CostWorkspace& workspace) {

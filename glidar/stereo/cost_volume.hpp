@@ -13,8 +13,8 @@
 
 namespace glidar::stereo {
 
-/// Costs of all pixels and disparities, and sums of path costs minus kSumOffset; each height x width
-/// x lanes.
+/// Costs of all pixels and disparities, and sums of path costs minus kSumOffset; each height x
+/// width x lanes.
 struct CostVolume {
   std::size_t width = 0;
   std::size_t height = 0;
@@ -27,8 +27,8 @@ struct CostVolume {
   [[nodiscard]] std::size_t offset(std::size_t y) const { return y * row_size(); }
 };
 
-/// Gives a volume the size of a pair, in the memory that it has if that is large enough. Throws Error
-/// when the pair is too large.
+/// Gives a volume the size of a pair, in the memory that it has if that is large enough. Throws
+/// Error when the pair is too large.
 void resize_volume(const GreyImage& image, std::uint32_t disparities, CostVolume& volume);
 
 /// What the costs of rows are computed from.

@@ -56,13 +56,14 @@ struct SweepRow {
   std::size_t disparities = 0;
   std::int16_t p1 = 0;
   std::int16_t p2 = 0;
-  bool is_backwards = false;     ///< from the last pixel to the first
-  bool is_first = false;         ///< sets `sum` instead
+  bool is_backwards = false;      ///< from the last pixel to the first
+  bool is_first = false;          ///< sets `sum` instead
   std::int16_t* state = nullptr;  ///< 2 x (lanes + kStateGap) + kStateGap elements
 };
 
-/// Path costs from the row before, for `count` pixels. A path's state has lanes + kStateGap elements
-/// for each pixel, behind a gap of kNoCost, and its least cost in `least`; both are replaced.
+/// Path costs from the row before, for `count` pixels. A path's state has lanes + kStateGap
+/// elements for each pixel, behind a gap of kNoCost, and its least cost in `least`; both are
+/// replaced.
 struct DownRow {
   const std::int16_t* cost = nullptr;  ///< count x lanes
   const std::int16_t* sum = nullptr;   ///< count x lanes, minus kSumOffset
@@ -84,9 +85,9 @@ struct WinnerRow {
   std::size_t lanes = 0;
   std::size_t disparities = 0;
   std::uint32_t uniqueness_percent = 0;
-  std::int16_t* best = nullptr;     ///< least sum of each pixel, minus kSumOffset
-  std::int16_t* winner = nullptr;   ///< the first lane that has it
-  std::int16_t* rivals = nullptr;   ///< lanes whose sum (100 - percent) is at most 100 best
+  std::int16_t* best = nullptr;           ///< least sum of each pixel, minus kSumOffset
+  std::int16_t* winner = nullptr;         ///< the first lane that has it
+  std::int16_t* rivals = nullptr;         ///< lanes whose sum (100 - percent) is at most 100 best
   std::int16_t* mirror_best = nullptr;    ///< width + lanes: work space
   std::int16_t* mirror_winner = nullptr;  ///< width + lanes: lane of right pixel width - 1 - i
 };
@@ -102,7 +103,8 @@ struct Kernel {
   /// total[i] += added[i] - removed[i]
   void (*slide)(std::int16_t* total, const std::uint8_t* added, const std::uint8_t* removed,
                 std::size_t count);
-  /// cost at x = sum of `total` at x - radius ... x + radius; beyond the ends, the last pixel counts
+  /// cost at x = sum of `total` at x - radius ... x + radius; beyond the ends, the last pixel
+  /// counts
   void (*box)(const std::int16_t* total, std::int16_t* cost, std::size_t width, std::size_t lanes,
               std::size_t radius);
   void (*sweep)(const SweepRow& row);

@@ -97,8 +97,8 @@ class WinnerRows {
     if (status != StereoStatus::valid) return;
     const std::int16_t* const at = sums + evidence.winner;
     // a test keeps winners off both ends of the search
-    const double offset = corrected_offset(
-        subpixel_offset(options.subpixel, at[-1], at[0], at[1]), options.a_factor);
+    const double offset =
+        corrected_offset(subpixel_offset(options.subpixel, at[-1], at[0], at[1]), options.a_factor);
     match_.disparity_px[pixel] = static_cast<float>(rounded_disparity(
         options.min_disparity_px + evidence.winner + offset, options.steps_per_px));
   }
@@ -165,8 +165,8 @@ StereoMatch match_pair(const GreyImage& left, const GreyImage& right, const Ster
   resize_volume(left, options.disparities, volume);
   StereoMatch match = empty_match(left, options);
   const CostSource source(left, right, options, kernel_for(set));
-  const WindowSums windows = sum_windows(left, window_radius_px(options),
-                                         saturation_level(left, options), run.pool);
+  const WindowSums windows =
+      sum_windows(left, window_radius_px(options), saturation_level(left, options), run.pool);
   const std::size_t threads = run.pool == nullptr ? 1 : run.pool->threads();
   WinnerRows rows(source, volume, windows, threads, match);
   const auto on_row = [&](std::size_t worker, std::size_t y, const std::int16_t* sums) {
@@ -197,8 +197,8 @@ PixelEvidence gather_evidence(const CostVolume& volume, const StereoMatch& match
   evidence.rivals = without_neighbours(rivals, winner, options, sums);
   evidence.window_pixels = 0;
   add_window(left, options, x, y, evidence);
-  const auto row_end = match.disparity_px.begin() +
-                       static_cast<std::ptrdiff_t>((std::size_t{y} + 1) * volume.width);
+  const auto row_end =
+      match.disparity_px.begin() + static_cast<std::ptrdiff_t>((std::size_t{y} + 1) * volume.width);
   const auto next =
       std::find_if(match.disparity_px.begin() + static_cast<std::ptrdiff_t>(pixel + 1), row_end,
                    [](float disparity_px) { return !std::isnan(disparity_px); });

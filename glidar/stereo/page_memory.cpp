@@ -20,7 +20,9 @@ std::size_t byte_count(std::size_t elements) {
 
 }  // namespace
 
-PageMemory::~PageMemory() { release(); }
+PageMemory::~PageMemory() {
+  release();
+}
 
 PageMemory::PageMemory(PageMemory&& other) noexcept
     : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
@@ -34,7 +36,7 @@ PageMemory& PageMemory::operator=(PageMemory&& other) noexcept {
 void PageMemory::reserve(std::size_t count) {
   if (count <= count_) return;
   release();
-  void* const memory = ::operator new(byte_count(count), std::align_val_t{kLargePage});
+  void* const memory = ::operator new (byte_count(count), std::align_val_t{kLargePage});
   // no harm where the system has no large pages
   (void)::madvise(memory, byte_count(count), MADV_HUGEPAGE);
   data_ = static_cast<std::int16_t*>(memory);
@@ -42,7 +44,7 @@ void PageMemory::reserve(std::size_t count) {
 }
 
 void PageMemory::release() noexcept {
-  if (data_ != nullptr) ::operator delete(data_, std::align_val_t{kLargePage});
+  if (data_ != nullptr) ::operator delete (data_, std::align_val_t{kLargePage});
   data_ = nullptr;
   count_ = 0;
 }

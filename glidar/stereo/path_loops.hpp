@@ -82,8 +82,8 @@ void sweep_row(const SweepRow& row) {
   sweep_all<false>(row);
 }
 
-/// One path at one pixel, from lane to lane. The state is replaced in place: lane d - 1 of the pixel
-/// before is read before its successor is written.
+/// One path at one pixel, from lane to lane. The state is replaced in place: lane d - 1 of the
+/// pixel before is read before its successor is written.
 struct PathStep {
   std::int16_t* state;
   Words floor;
@@ -97,8 +97,8 @@ struct PathStep {
     below = load(at - 1);
   }
   GLIDAR_INLINE Words next(std::size_t d, Words cost, Words beyond, const Penalties& penalties) {
-    const Words path = max(
-        path_cost(cost, load(state + d), below, load(state + d + 1), floor, penalties), beyond);
+    const Words path =
+        max(path_cost(cost, load(state + d), below, load(state + d + 1), floor, penalties), beyond);
     below = load(state + d + kWords - 1);
     store(state + d, path);
     lowest = min(lowest, path);

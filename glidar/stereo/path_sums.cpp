@@ -104,8 +104,9 @@ void sum_from_above(const CostSource& source, const StereoRun& run, CostVolume& 
       const std::size_t y = begin + row;
       paths.advance(source.kernel, y, y, index, volume.sum.data() + volume.offset(y));
     };
-    Wavefront(end - begin, chunk_count(volume))
-        .run(run.pool, chunk, [&](std::size_t, std::size_t) { progress.add(1); });
+    Wavefront(end - begin, chunk_count(volume)).run(run.pool, chunk, [&](std::size_t, std::size_t) {
+      progress.add(1);
+    });
   }
 }
 
@@ -133,7 +134,9 @@ void sum_from_below(const CostSource& source, const StereoRun& run, CostVolume& 
 
 }  // namespace
 
-std::size_t progress_rows(const CostVolume& volume) { return 2 * volume.height; }
+std::size_t progress_rows(const CostVolume& volume) {
+  return 2 * volume.height;
+}
 
 void sum_paths(const CostSource& source, const StereoRun& run, CostVolume& volume,
                RowSumsFunction on_row, ProgressCounter& progress) {

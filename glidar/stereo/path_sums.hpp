@@ -22,8 +22,8 @@ using RowSumsFunction =
 std::size_t progress_rows(const CostVolume& volume);
 
 /// Computes the costs of all pixels and their sums over all paths: first the costs, the paths along
-/// rows and those from the row above, then the paths from the row below. With `keeps_sums`, the sums
-/// are in the volume afterwards.
+/// rows and those from the row above, then the paths from the row below. With `keeps_sums`, the
+/// sums are in the volume afterwards.
 void sum_paths(const CostSource& source, const StereoRun& run, CostVolume& volume,
                RowSumsFunction on_row, ProgressCounter& progress);
 

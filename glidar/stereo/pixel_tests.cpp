@@ -26,12 +26,14 @@ bool is_in_range(const PixelEvidence& pixel, const StereoOptions& options) {
   return pixel.winner > 0 && pixel.winner + 1 < options.disparities;
 }
 
-bool is_unique(const PixelEvidence& pixel) { return pixel.rivals == 0; }
+bool is_unique(const PixelEvidence& pixel) {
+  return pixel.rivals == 0;
+}
 
 bool is_consistent(const PixelEvidence& pixel, const StereoOptions& options) {
   if (!options.has_left_right_test) return true;
-  const std::uint32_t difference = std::max(pixel.winner, pixel.right_winner) -
-                                   std::min(pixel.winner, pixel.right_winner);
+  const std::uint32_t difference =
+      std::max(pixel.winner, pixel.right_winner) - std::min(pixel.winner, pixel.right_winner);
   return difference <= options.left_right_px;
 }
 
@@ -59,8 +61,7 @@ std::uint32_t without_neighbours(std::uint32_t rivals, std::uint32_t winner,
   if (options.uniqueness_percent == 0) return 0;
   const auto is_rival = [&](std::uint32_t lane) {
     const std::int64_t best = sums[winner] + kSumOffset;
-    return (sums[lane] + kSumOffset) * std::int64_t{100 - options.uniqueness_percent} <=
-           100 * best;
+    return (sums[lane] + kSumOffset) * std::int64_t{100 - options.uniqueness_percent} <= 100 * best;
   };
   std::uint32_t neighbours = 1;  // the winner itself
   if (winner > 0 && is_rival(winner - 1)) ++neighbours;

@@ -27,12 +27,10 @@ constexpr std::size_t kWords = kVectorBytes / sizeof(std::int16_t);
 
 using Words = std::int16_t __attribute__((vector_size(kVectorBytes)));
 using Bytes = std::uint8_t __attribute__((vector_size(kVectorBytes)));
-using LooseWords = std::int16_t
-    __attribute__((vector_size(kVectorBytes), aligned(2), may_alias));
-using LooseBytes = std::uint8_t
-    __attribute__((vector_size(kVectorBytes), aligned(1), may_alias));
-using HalfBytes = std::uint8_t
-    __attribute__((vector_size(kVectorBytes / 2), aligned(1), may_alias));
+using LooseWords = std::int16_t __attribute__((vector_size(kVectorBytes), aligned(2), may_alias));
+using LooseBytes = std::uint8_t __attribute__((vector_size(kVectorBytes), aligned(1), may_alias));
+using HalfBytes =
+    std::uint8_t __attribute__((vector_size(kVectorBytes / 2), aligned(1), may_alias));
 
 #define GLIDAR_INLINE [[gnu::always_inline]] inline
 
@@ -60,7 +58,9 @@ GLIDAR_INLINE void store_narrowed(std::uint8_t* to, Words value) {
 GLIDAR_INLINE Words broadcast(int value) {
   return Words{} + static_cast<std::int16_t>(value);
 }
-GLIDAR_INLINE Bytes broadcast_byte(std::uint8_t value) { return Bytes{} + value; }
+GLIDAR_INLINE Bytes broadcast_byte(std::uint8_t value) {
+  return Bytes{} + value;
+}
 
 GLIDAR_INLINE Words min(Words a, Words b) {
 #if defined(__AVX512BW__)
@@ -76,7 +76,9 @@ GLIDAR_INLINE Words min(Words a, Words b) {
   return a < b ? a : b;
 #endif
 }
-GLIDAR_INLINE Words max(Words a, Words b) { return ~min(~a, ~b); }
+GLIDAR_INLINE Words max(Words a, Words b) {
+  return ~min(~a, ~b);
+}
 
 /// `yes` where a < b, else `no`.
 GLIDAR_INLINE Words select_below(Words a, Words b, Words yes, Words no) {
@@ -88,8 +90,8 @@ GLIDAR_INLINE Words select_below(Words a, Words b, Words yes, Words no) {
 #elif defined(__AVX2__)
   const __m256i below =
       _mm256_cmpgt_epi16(reinterpret_cast<__m256i>(b), reinterpret_cast<__m256i>(a));
-  return reinterpret_cast<Words>(_mm256_blendv_epi8(reinterpret_cast<__m256i>(no),
-                                                    reinterpret_cast<__m256i>(yes), below));
+  return reinterpret_cast<Words>(
+      _mm256_blendv_epi8(reinterpret_cast<__m256i>(no), reinterpret_cast<__m256i>(yes), below));
 #else
   const Words below = a < b;
   return (yes & below) | (no & ~below);
@@ -131,16 +133,16 @@ GLIDAR_INLINE int least(Words value) {
 /// The number of bits that are set in each byte.
 GLIDAR_INLINE Bytes bit_counts(Bytes value) {
 #if defined(__AVX512BW__)
-  const __m512i table = _mm512_broadcast_i32x4(
-      _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
+  const __m512i table =
+      _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
   const __m512i low = reinterpret_cast<__m512i>(value & broadcast_byte(0x0F));
   const __m512i high = _mm512_and_si512(_mm512_srli_epi16(reinterpret_cast<__m512i>(value), 4),
                                         _mm512_set1_epi8(0x0F));
   return reinterpret_cast<Bytes>(
       _mm512_add_epi8(_mm512_shuffle_epi8(table, low), _mm512_shuffle_epi8(table, high)));
 #elif defined(__AVX2__)
-  const __m256i table = _mm256_broadcastsi128_si256(
-      _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
+  const __m256i table =
+      _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
   const __m256i low = reinterpret_cast<__m256i>(value & broadcast_byte(0x0F));
   const __m256i high = _mm256_and_si256(_mm256_srli_epi16(reinterpret_cast<__m256i>(value), 4),
                                         _mm256_set1_epi8(0x0F));

@@ -18,8 +18,8 @@ std::string size_text(const GreyImage& image) {
 void require_image(const GreyImage& image, const char* where) {
   const std::size_t pixels = std::size_t{image.width} * image.height;
   if (pixels == 0) {
-    throw Error({where, "has no pixels: " + size_text(image), "at least one row and one column",
-                 ""});
+    throw Error(
+        {where, "has no pixels: " + size_text(image), "at least one row and one column", ""});
   }
   if (image.level.size() == pixels) return;
   throw Error({where,
@@ -47,18 +47,17 @@ void require_pair(const GreyImage& left, const GreyImage& right, const StereoOpt
   require_image(left, "left image");
   require_image(right, "right image");
   if (left.width != right.width || left.height != right.height) {
-    throw Error({"right image", "has " + size_text(right) + " pixels, the left one " +
-                                    size_text(left),
+    throw Error({"right image",
+                 "has " + size_text(right) + " pixels, the left one " + size_text(left),
                  "images of equal size", "rectify both images to the same size"});
   }
   validate(options);
   const std::uint64_t reach = std::uint64_t{options.min_disparity_px} + options.disparities;
   if (reach > left.width) {
-    throw Error({"stereo option disparities",
-                 "min_disparity_px + disparities is " + std::to_string(reach) +
-                     ", wider than the image",
-                 "at most its " + std::to_string(left.width) + " columns",
-                 "search fewer disparities"});
+    throw Error(
+        {"stereo option disparities",
+         "min_disparity_px + disparities is " + std::to_string(reach) + ", wider than the image",
+         "at most its " + std::to_string(left.width) + " columns", "search fewer disparities"});
   }
 }
 

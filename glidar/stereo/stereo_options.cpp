@@ -40,10 +40,9 @@ constexpr const char* kPlace = "stereo option ";
 
 void require_whole(const char* key, const WholeRule& rule, std::uint32_t value) {
   if (value >= rule.min && value <= rule.max) return;
-  throw Error({kPlace + std::string(key), "is " + std::to_string(value),
-               "a whole number from " + std::to_string(rule.min) + " to " +
-                   std::to_string(rule.max),
-               ""});
+  throw Error(
+      {kPlace + std::string(key), "is " + std::to_string(value),
+       "a whole number from " + std::to_string(rule.min) + " to " + std::to_string(rule.max), ""});
 }
 
 void require_number_within(const char* key, const NumberRule& rule, double value) {
@@ -61,8 +60,8 @@ void validate_combinations(const StereoOptions& options) {
                  "1, 3, 5, 7 or 9", "use a box with a centre"});
   }
   if (options.paths != 4 && options.paths != 8) {
-    throw Error({kPlace + std::string("paths"), "is " + std::to_string(options.paths), "4 or 8",
-                 ""});
+    throw Error(
+        {kPlace + std::string("paths"), "is " + std::to_string(options.paths), "4 or 8", ""});
   }
   if (options.p2 < options.p1) {
     throw Error({kPlace + std::string("p2"), "is below p1: " + number_text(options.p2),
@@ -81,8 +80,8 @@ void validate_combinations(const StereoOptions& options) {
 }  // namespace
 
 void describe(StereoOptions& options, FieldVisitor& visitor) {
-  visitor.whole_number({"min_disparity_px", "least disparity searched", kUnitPixel},
-                       kDisparityRule, options.min_disparity_px);
+  visitor.whole_number({"min_disparity_px", "least disparity searched", kUnitPixel}, kDisparityRule,
+                       options.min_disparity_px);
   visitor.whole_number({"disparities", "number of disparities searched", kUnitPixel}, kSearchRule,
                        options.disparities);
   visit_choice(visitor, {"census", "pixels compared: each with the centre, or opposite ones"},
@@ -99,18 +98,18 @@ void describe(StereoOptions& options, FieldVisitor& visitor) {
                options.subpixel);
   visitor.number({"a_factor", "adds this times sin(2 pi fraction)", kUnitPixel}, kFactorRule,
                  options.a_factor);
-  visitor.whole_number({"uniqueness_percent",
-                        "how much more than the winner others must cost; 0: no test"},
-                       kUniquenessRule, options.uniqueness_percent);
+  visitor.whole_number(
+      {"uniqueness_percent", "how much more than the winner others must cost; 0: no test"},
+      kUniquenessRule, options.uniqueness_percent);
   visitor.boolean({"has_left_right_test", "compare with the winner of the right view"},
                   options.has_left_right_test);
   visitor.whole_number({"left_right_px", "greatest difference of both views", kUnitPixel},
                        kToleranceRule, options.left_right_px);
   visitor.number({"min_texture", "mean step of grey levels between columns; 0: no test"},
                  kTextureRule, options.min_texture);
-  visitor.whole_number({"saturation_level",
-                        "grey level of saturated pixels; 0: the greatest of the pixel type"},
-                       kGreyRule, options.saturation_level);
+  visitor.whole_number(
+      {"saturation_level", "grey level of saturated pixels; 0: the greatest of the pixel type"},
+      kGreyRule, options.saturation_level);
   visitor.whole_number({"steps_per_px", "disparities are multiples of 1/this; 0: not rounded"},
                        kStepRule, options.steps_per_px);
 }

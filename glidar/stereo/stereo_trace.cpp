@@ -16,11 +16,14 @@ using stereo::PixelEvidence;
 
 /// A number with two decimals, independent of the locale.
 std::string decimal(double value) {
-  const double hundredths = std::floor(std::abs(value) * 100.0 + 0.5);
-  const auto whole = static_cast<std::uint64_t>(hundredths);
-  const std::string rest = std::to_string(whole % 100);
-  return (value < 0.0 && whole > 0 ? "-" : "") + std::to_string(whole / 100) + "." +
-         (rest.size() < 2 ? "0" : "") + rest;
+  const auto hundredths = static_cast<std::uint64_t>(std::floor(std::abs(value) * 100.0 + 0.5));
+  std::string text;
+  if (value < 0.0 && hundredths > 0) text += '-';
+  text += std::to_string(hundredths / 100);
+  text += '.';
+  text += static_cast<char>('0' + hundredths / 10 % 10);
+  text += static_cast<char>('0' + hundredths % 10);
+  return text;
 }
 
 /// What makes the edge the cause of a later test's failure.
@@ -40,20 +43,21 @@ std::vector<StereoTest> list_tests(const PixelEvidence& pixel, const StereoOptio
            std::to_string(disparity) + " + window " + std::to_string(window_radius_px(options)) +
            border_text(pixel, options)},
       {StereoStatus::no_texture, has_texture(pixel, options),
-       "mean step of grey levels " + decimal(pixel.step_sum / pixels) + ", needed: " +
-           decimal(options.min_texture)},
+       "mean step of grey levels " + decimal(pixel.step_sum / pixels) +
+           ", needed: " + decimal(options.min_texture)},
       {StereoStatus::saturated, is_unsaturated(pixel),
        decimal(100.0 * pixel.saturated_pixels / pixels) +
            " % of the window is saturated; above 50 % it is the cause of no texture or ambiguity"},
       {StereoStatus::out_of_range, is_in_range(pixel, options),
-       "winner " + std::to_string(disparity) + ", search: " +
-           std::to_string(options.min_disparity_px) + " to " + std::to_string(last)},
+       "winner " + std::to_string(disparity) +
+           ", search: " + std::to_string(options.min_disparity_px) + " to " + std::to_string(last)},
       {StereoStatus::ambiguous, is_unique(pixel),
        std::to_string(pixel.rivals) + " other disparities cost less than " +
            std::to_string(options.uniqueness_percent) + " % more"},
       {StereoStatus::left_right, is_consistent(pixel, options),
        "left " + std::to_string(disparity) + ", right " +
-           std::to_string(options.min_disparity_px + pixel.right_winner) + ", allowed difference: " +
+           std::to_string(options.min_disparity_px + pixel.right_winner) +
+           ", allowed difference: " +
            (options.has_left_right_test ? std::to_string(options.left_right_px) : "any")}};
 }
 
@@ -72,8 +76,8 @@ void set_disparity(const PixelEvidence& pixel, const StereoOptions& options, Ste
     trace.offset_px = stereo::subpixel_offset(options.subpixel, at[-1], at[0], at[1]);
   }
   trace.corrected_offset_px = stereo::corrected_offset(trace.offset_px, options.a_factor);
-  trace.disparity_px = stereo::rounded_disparity(trace.winner_px + trace.corrected_offset_px,
-                                                 options.steps_per_px);
+  trace.disparity_px =
+      stereo::rounded_disparity(trace.winner_px + trace.corrected_offset_px, options.steps_per_px);
 }
 
 std::string cost_lines(const StereoTrace& trace) {

@@ -77,8 +77,8 @@ void sum_band(const GreyImage& image, std::size_t radius, std::uint32_t saturati
 
 }  // namespace
 
-WindowSums sum_windows(const GreyImage& image, std::uint32_t radius,
-                       std::uint32_t saturation_level, ThreadPool* pool) {
+WindowSums sum_windows(const GreyImage& image, std::uint32_t radius, std::uint32_t saturation_level,
+                       ThreadPool* pool) {
   WindowSums windows;
   const std::size_t count = std::size_t{image.width} * image.height;
   windows.step.resize(count);

@@ -20,7 +20,7 @@ struct WindowSums {
 };
 
 /// `pool` may be null.
-WindowSums sum_windows(const GreyImage& image, std::uint32_t radius,
-                       std::uint32_t saturation_level, ThreadPool* pool);
+WindowSums sum_windows(const GreyImage& image, std::uint32_t radius, std::uint32_t saturation_level,
+                       ThreadPool* pool);
 
 }  // namespace glidar::stereo

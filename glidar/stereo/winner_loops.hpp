@@ -101,8 +101,8 @@ void win_row(const WinnerRow& row) {
     row.winner[x] = static_cast<std::int16_t>(best.first_lane(lowest));
     if (row.uniqueness_percent == 0) continue;
     const int limit = rival_limit(lowest, row.uniqueness_percent);
-    row.rivals[x] = static_cast<std::int16_t>(count_rivals(row, sum, limit) -
-                                              count_beyond(row, sum, limit));
+    row.rivals[x] =
+        static_cast<std::int16_t>(count_rivals(row, sum, limit) - count_beyond(row, sum, limit));
   }
 }
 

@@ -12,8 +12,8 @@ namespace {
 int level_at(const GreyImage& image, int x, int y) {
   const int column = std::clamp<int>(x, 0, static_cast<int>(image.width) - 1);
   const int row = std::clamp<int>(y, 0, static_cast<int>(image.height) - 1);
-  return image.level[static_cast<std::size_t>(row) * image.width +
-                     static_cast<std::size_t>(column)];
+  return image
+      .level[static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column)];
 }
 
 /// The census of one pixel as a list of truth values.
@@ -62,7 +62,8 @@ int BruteForce::hamming(const GreyImage& left, const GreyImage& right, int x, in
 
 void BruteForce::sum_boxes(const GreyImage& left, const GreyImage& right) {
   std::vector<int> distances(cost_.size());
-  for_cells([&](int x, int y, int d) { distances[index(x, y, d)] = hamming(left, right, x, y, d); });
+  for_cells(
+      [&](int x, int y, int d) { distances[index(x, y, d)] = hamming(left, right, x, y, d); });
   const int side = static_cast<int>(options_.box_px);
   for_cells([&](int x, int y, int d) {
     for (int i = 0; i < side * side; ++i) {

@@ -22,15 +22,17 @@ StereoMatch match_with(std::vector<float> disparity_px) {
 }
 
 TEST(StereoDepth, IsFocalLengthTimesBaselineOverDisparity) {
-  const auto depth = stereo_depth_m(match_with({64.0F, 10.5F, kNaNf}),
-                                    {.focal_length_px = 400.0, .baseline_m = 0.05, .depth_unit_m = 0.0});
+  const auto depth =
+      stereo_depth_m(match_with({64.0F, 10.5F, kNaNf}),
+                     {.focal_length_px = 400.0, .baseline_m = 0.05, .depth_unit_m = 0.0});
   EXPECT_EQ(depth[0], 0.3125F);
   EXPECT_FLOAT_EQ(depth[1], 20.0F / 10.5F);
   EXPECT_TRUE(std::isnan(depth[2]));
 }
 
 TEST(StereoDepth, IsAMultipleOfTheCamerasUnit) {
-  const auto depth = stereo_depth_m(match_with({64.0F}), {.focal_length_px = 400.0, .baseline_m = 0.05});
+  const auto depth =
+      stereo_depth_m(match_with({64.0F}), {.focal_length_px = 400.0, .baseline_m = 0.05});
   EXPECT_FLOAT_EQ(depth[0], 0.313F);
 }
 

@@ -25,10 +25,13 @@ void add_dot(double column, double row, std::vector<double>& level, const GreyIm
   const int reach = 5;
   const int u = static_cast<int>(std::floor(column));
   const int v = static_cast<int>(std::floor(row));
-  for (int y = std::max(v - reach, 0); y <= std::min(v + reach, static_cast<int>(image.height) - 1); ++y) {
-    for (int x = std::max(u - reach, 0); x <= std::min(u + reach, static_cast<int>(image.width) - 1); ++x) {
+  for (int y = std::max(v - reach, 0); y <= std::min(v + reach, static_cast<int>(image.height) - 1);
+       ++y) {
+    for (int x = std::max(u - reach, 0);
+         x <= std::min(u + reach, static_cast<int>(image.width) - 1); ++x) {
       const double r2 = (x - column) * (x - column) + (y - row) * (y - row);
-      level[static_cast<std::size_t>(y) * image.width + static_cast<std::size_t>(x)] += 150.0 * std::exp(-r2 / (2.0 * kDotSigma_px * kDotSigma_px));
+      level[static_cast<std::size_t>(y) * image.width + static_cast<std::size_t>(x)] +=
+          150.0 * std::exp(-r2 / (2.0 * kDotSigma_px * kDotSigma_px));
     }
   }
 }

@@ -37,8 +37,12 @@ std::vector<const Kernel*> usable_kernels() {
   return usable;
 }
 
-const Kernel& find_kernel(std::string_view name) { return kernel_for(find_instruction_set(name)); }
+const Kernel& find_kernel(std::string_view name) {
+  return kernel_for(find_instruction_set(name));
+}
 
-const Kernel& select_kernel() { return kernel_for(select_instruction_set()); }
+const Kernel& select_kernel() {
+  return kernel_for(select_instruction_set());
+}
 
 }  // namespace glidar::rays
