@@ -28,6 +28,8 @@ from ._presets import DatasheetEntry, SensorPreset, datasheet, sensor_file, sens
 from ._sensor import Sensor, camera, load_sensor, sensor
 from ._simulate import simulate, simulate_batch, simulate_iter, simulate_rig
 from ._simulator import Simulator
+from ._stereo import (StereoMatch, StereoOptions, StereoStatus, StereoTest, StereoTrace, explain_stereo, match_stereo,
+                      sample_stereo_pair)
 from ._status import ReturnSource, Status
 from ._point_trace import RandomSample, Echo, Measurement, NoiseStep, PointTrace
 from ._trajectory import Trajectory
@@ -60,6 +62,11 @@ __all__ = [
     "DatasheetEntry",
     "Simulator",
     "Status",
+    "StereoMatch",
+    "StereoOptions",
+    "StereoStatus",
+    "StereoTest",
+    "StereoTrace",
     "NoiseStep",
     "PointTrace",
     "Trajectory",
@@ -67,6 +74,7 @@ __all__ = [
     "AccuracyReport",
     "AccuracyCase",
     "camera",
+    "explain_stereo",
     "from_open3d",
     "from_trimesh",
     "imu_names",
@@ -74,9 +82,11 @@ __all__ = [
     "load_scene",
     "load_sensor",
     "look_at",
+    "match_stereo",
     "pose",
     "quaternion",
     "rig_imus",
+    "sample_stereo_pair",
     "save_bag",
     "sensor",
     "sensor_file",
