@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The stereo matcher and OpenCV's semi-global matcher with one thread, in turn: 848x480 pixels, 128 disparities.
 
-usage: PYTHONPATH=build/dev/python build/venv-opencv/bin/python bench/stereo_bench.py [ROUNDS]
+usage: PYTHONPATH=build/dev/python build/venv/bin/python bench/stereo_bench.py [ROUNDS]
 Times are of the processor; medians, and their ratio: above 1, GLIDAR is faster. OpenCV keeps its memory from call to
 call, and glidar.match_stereo() allocates it each time (build/dev/bench/stereo_bench measures without that).
 """

@@ -43,6 +43,9 @@ class Pages(unittest.TestCase):
     def test_tutorial_of_the_loop(self):
         self.run_page("docs/tutorial/4-loop.md", ("5600", str(free_ports())))
 
+    def test_stereo(self):
+        self.run_page("docs/stereo.md")
+
     def test_troubleshooting(self):
         self.run_page("docs/troubleshooting.md", ("5555", str(free_ports())))
 

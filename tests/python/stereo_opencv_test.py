@@ -1,27 +1,19 @@
-#!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """The stereo matcher and OpenCV's semi-global matcher, on the infrared pair of a RealSense D415 with the camera's own
 depth (GLIDAR_DATA), and on generated pairs."""
 
 import os
-import sys
 import unittest
-from importlib.util import find_spec
 from pathlib import Path
 
-if not find_spec("cv2"):
-    print("skipped: opencv-python-headless (scripts/requirements_opencv.txt) is not installed")
-    sys.exit(77)
-
-import cv2
 import numpy as np
+import pytest
+from pair_score import FOLDER, score
 
 import glidar
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from pair_score import FOLDER, score  # noqa: E402
-
+cv2 = pytest.importorskip("cv2")
 DATA = os.environ.get("GLIDAR_DATA")
 SEARCH = 128
 
@@ -96,7 +88,3 @@ class GeneratedPair(unittest.TestCase):
             with self.subTest(f"{shift_px} px: {ours} and {theirs}"):
                 self.assertLessEqual(abs(ours - shift_px), 0.1)
                 self.assertLessEqual(abs(theirs - shift_px), 0.1)
-
-
-if __name__ == "__main__":
-    unittest.main()
