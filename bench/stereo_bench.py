@@ -36,7 +36,7 @@ def main():
     left = np.roll(right, SHIFT, axis=1)
     for name, (mode, paths) in MODES.items():
         area = BLOCK * BLOCK
-        theirs = cv2.StereoSGBM_create(0, SEARCH, BLOCK, 8 * area, 32 * area, 1, uniquenessRatio=5, mode=mode)
+        theirs = cv2.StereoSGBM_create(0, SEARCH, BLOCK, 8 * area, 32 * area, 1, uniquenessRatio=15, mode=mode)
         options = glidar.StereoOptions(disparities=SEARCH, box_px=BLOCK, paths=paths)
 
         def match_ours(chosen=options):

@@ -25,7 +25,7 @@ inline constexpr std::size_t kPlaneBits = 8;
 struct CensusRow {
   const std::int16_t* centre = nullptr;    ///< pixel 0 of the row in the padded image
   const std::ptrdiff_t* first = nullptr;   ///< offsets from the centre, one for each bit
-  const std::ptrdiff_t* second = nullptr;  ///< likewise
+  const std::ptrdiff_t* second = nullptr;  ///< one for each bit
   std::size_t bits = 0;
   std::size_t width = 0;
   std::uint8_t* planes = nullptr;  ///< plane after plane

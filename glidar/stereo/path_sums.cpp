@@ -11,7 +11,7 @@ namespace glidar::stereo {
 
 namespace {
 
-/// Rows whose costs a thread computes before their paths go on: they stay in the cache.
+/// Rows whose costs a thread computes before their paths continue: they stay in the cache.
 constexpr std::size_t kBandRows = 16;
 /// Pixels between checks of the row before.
 constexpr std::size_t kChunkPixels = 64;

@@ -92,8 +92,8 @@ void describe(StereoOptions& options, FieldVisitor& visitor) {
                        options.paths);
   visitor.number({"p1", "penalty of a step of 1 px, bits per pixel of the box"}, kPenaltyRule,
                  options.p1);
-  visitor.number({"p2", "penalty of a larger step, likewise; at least `p1`"}, kPenaltyRule,
-                 options.p2);
+  visitor.number({"p2", "penalty of a larger step, bits per pixel of the box; at least `p1`"},
+                 kPenaltyRule, options.p2);
   visit_choice(visitor, {"subpixel", "curve through three costs"}, kSubpixelNames,
                options.subpixel);
   visitor.number({"a_factor", "adds this times sin(2 pi fraction)", kUnitPixel}, kFactorRule,

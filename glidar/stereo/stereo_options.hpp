@@ -24,11 +24,11 @@ struct StereoOptions {
   std::uint32_t box_px = 5;  ///< odd side of the window over which costs are summed
   std::uint32_t paths = 8;   ///< 4 or 8
   double p1 = 4.0;           ///< cost of a step of 1 px along a path, bits per pixel of the box
-  double p2 = 16.0;          ///< cost of a larger step, likewise; at least p1
+  double p2 = 16.0;          ///< cost of a larger step, bits per pixel of the box; at least p1
   StereoSubpixel subpixel = StereoSubpixel::v_shape;
-  double a_factor = 0.04;                ///< px; adds a_factor sin(2 pi fraction)
-  std::uint32_t uniqueness_percent = 5;  ///< 0: no test
-  std::uint32_t left_right_px = 1;       ///< greatest difference of both views
+  double a_factor = 0.04;                 ///< px; adds a_factor sin(2 pi fraction)
+  std::uint32_t uniqueness_percent = 15;  ///< 0: no test
+  std::uint32_t left_right_px = 1;        ///< greatest difference of both views
   bool has_left_right_test = true;
   double min_texture = 0.5;  ///< mean grey-level step between neighbours; 0: no test
   std::uint32_t saturation_level =

@@ -26,9 +26,10 @@ struct StereoTrace {
   std::uint32_t min_disparity_px = 0;
   std::vector<std::uint16_t> matching_cost =
       {};  ///< Hamming distances summed over the box, a disparity each
-  std::vector<std::uint16_t> summed_cost = {};  ///< path costs summed over the paths, likewise
-  std::uint32_t winner_px = 0;                  ///< disparity of the least summed cost
-  std::uint32_t right_winner_px = 0;            ///< disparity that the right image selects there
+  std::vector<std::uint16_t> summed_cost =
+      {};                              ///< path costs summed over the paths, one for each disparity
+  std::uint32_t winner_px = 0;         ///< disparity of the least summed cost
+  std::uint32_t right_winner_px = 0;   ///< disparity that the right image selects there
   double offset_px = 0.0;              ///< minimum of the curve, from the winner; 0 at the ends
   double corrected_offset_px = 0.0;    ///< with the a-factor
   double disparity_px = 0.0;           ///< rounded; also for pixels that fail a test

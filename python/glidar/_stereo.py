@@ -51,12 +51,12 @@ class StereoOptions:
     p1: float = 4.0
     """Penalty of a step of 1 px along a path, bits per pixel of the box."""
     p2: float = 16.0
-    """Penalty of a larger step, likewise; at least ``p1``."""
+    """Penalty of a larger step, bits per pixel of the box; at least ``p1``."""
     subpixel: str = "v"
     """Curve through three costs: "v", "parabola" or "none"."""
     a_factor: float = 0.04
     """Adds this times sin(2 pi fraction), px."""
-    uniqueness_percent: int = 5
+    uniqueness_percent: int = 15
     """How much more than the winner other disparities must cost; 0: no test."""
     has_left_right_test: bool = True
     """Whether the right view must select the same disparity."""
@@ -132,7 +132,7 @@ class StereoTrace:
     matching_cost: npt.NDArray[np.uint16]
     """Hamming distances summed over the box, for each disparity."""
     summed_cost: npt.NDArray[np.uint16]
-    """Path costs summed over the paths, likewise."""
+    """Path costs summed over the paths, for each disparity."""
     text: str
 
     def __str__(self) -> str:

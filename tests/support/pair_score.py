@@ -38,7 +38,7 @@ def score(disparity_px, depth_mm):
         near = np.abs(error - np.median(error)) < 1.0
         scale, offset = np.polyfit(inverse[near], disparity[near], 1)
     error = disparity - (scale * inverse + offset)
-    bins = np.round(np.mod(disparity_px[found], 1.0) * SUBPIXEL_BINS).astype(int) % SUBPIXEL_BINS
+    bins = np.floor(np.mod(disparity_px[found], 1.0) * SUBPIXEL_BINS).astype(int)
     counts = np.bincount(bins, minlength=SUBPIXEL_BINS)
     return Score(100.0 * found.mean(), 100.0 * (np.abs(error) > 1.0).mean(),
                  1.4826 * float(np.median(np.abs(error - np.median(error)))),

@@ -31,7 +31,7 @@ disparity in the right one or the cause of a hole.
 Examples:
   glidar stereo builtin:dots -o disparity.npy -o status.png
   glidar stereo builtin:dots --focal-length-px 430 --baseline-mm 50 -o depth.png
-  glidar stereo builtin:dots --explain 120,90
+  glidar stereo builtin:dots --explain 128,81
 With your own files:
   glidar stereo left.png right.png --disparities 96 -o disparity.png
 
@@ -96,7 +96,8 @@ void match_and_write(const StereoFlags& flags, const StereoPair& pair, Console& 
         match_stereo(pair.left, pair.right, flags.options,
                      {.pool = &pool, .progress = [&](double done) { console.set_progress(done); }});
   }
-  const std::array<std::string, 2> read = {flags.left, flags.right};
+  std::vector<std::string> read;
+  if (!flags.right.empty()) read = {flags.left, flags.right};
   write_stereo_files(flags.outputs, read, match, geometry_of(flags));
   if (flags.quiet) return;
   fmt::print("{}x{} pixels: {}\nwrote {}\n", match.width, match.height, share_text(match),

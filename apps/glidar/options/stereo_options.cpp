@@ -26,7 +26,7 @@ void add_search_options(CLI::App& command, StereoOptions& options) {
             whole<std::uint32_t>(4, 8));
   group.add("--p1", "BITS", "Penalty of a step of 1 px, per pixel of the box [4]", options.p1,
             number(0.0, 1000.0, "a number from 0 to 1000"));
-  group.add("--p2", "BITS", "Penalty of a larger step, likewise [16]", options.p2,
+  group.add("--p2", "BITS", "Penalty of a larger step, bits per pixel [16]", options.p2,
             number(0.0, 1000.0, "a number from 0 to 1000"));
   group.add("--subpixel", "CURVE", "Curve through three costs: v, parabola, none [v]",
             options.subpixel,
@@ -41,7 +41,7 @@ void add_search_options(CLI::App& command, StereoOptions& options) {
 
 void add_test_options(CLI::App& command, StereoOptions& options) {
   const OptionGroup group(command, "Tests of a pixel");
-  group.add("--uniqueness", "PERCENT", "How much more others must cost; 0: no test [5]",
+  group.add("--uniqueness", "PERCENT", "How much more others must cost; 0: no test [15]",
             options.uniqueness_percent, whole<std::uint32_t>(0, 99));
   group.add("--left-right", "PX", "Greatest difference of both views [1]", options.left_right_px,
             whole<std::uint32_t>(0, 4096));

@@ -21,7 +21,7 @@ struct StereoFlags {
   std::vector<std::string> outputs;
   StereoOptions options;
   double focal_length_px = 0.0;  ///< 0: not given
-  double baseline_mm = 0.0;      ///< likewise
+  double baseline_mm = 0.0;      ///< 0: not given
   double column_offset_px = 0.0;
   double depth_unit_mm = 1.0;
   std::optional<std::array<std::uint32_t, 2>> explained;  ///< column and row
