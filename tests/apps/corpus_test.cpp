@@ -42,6 +42,7 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"ouster", {"plain", "window"}},
       {"trajectory", {"tum", "csv"}},
       {"png", {"RGB", "RGBA", "L", "LA", "P", "I16"}},
+      {"grey_png", {"RGB", "RGBA", "L", "LA", "P", "I16"}},
       {"sidecar", {"camera"}},
       {"recording", {"two_frames"}},
       {"mesh_blob", {"triangle", "textured", "failure", "cached"}},

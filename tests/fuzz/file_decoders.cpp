@@ -12,6 +12,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/files/unique_fd.hpp>
+#include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
@@ -138,7 +139,7 @@ void read_rosbag2(const fs::path& file) {
   read_bag(file.parent_path());
 }
 
-constexpr std::array<FileDecoder, 19> kDecoders = {{
+constexpr std::array<FileDecoder, 20> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"scene", "scene.yaml", read_scene},
     {"beam_csv", "beams.csv", [](const fs::path& file) { load_scan_csv(file); }},
@@ -146,6 +147,7 @@ constexpr std::array<FileDecoder, 19> kDecoders = {{
     {"ouster", "metadata.json", [](const fs::path& file) { load_ouster_metadata(file); }},
     {"trajectory", "poses.txt", [](const fs::path& file) { load_trajectory_file(file); }},
     {"png", "texture.png", [](const fs::path& file) { read_png_texture(file); }},
+    {"grey_png", "image.png", [](const fs::path& file) { load_grey_image(file); }},
     {"sidecar", "cloud.pcd.json", read_sidecar_of_cloud},
     {"recording", "stream.jsonl", read_recording},
     {"mesh_blob", "a.model", read_block},

@@ -16,7 +16,7 @@ int level_at(const GreyImage& image, int x, int y) {
       .level[static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column)];
 }
 
-/// The census of one pixel as a list of truth values.
+/// The census of one pixel as a list of booleans.
 std::vector<bool> census_at(const GreyImage& image, StereoCensus kind, int x, int y) {
   std::vector<bool> bits;
   const int r = kind == StereoCensus::window_9x9 ? 4 : 3;
