@@ -49,7 +49,7 @@ GLIDAR_INLINE int sweep_pixel(const SweepRow& row, const Beyond& beyond, std::si
   const auto finish = [&](std::size_t d, Words path) {
     store(after + d, path);
     lowest = min(lowest, path);
-    store(sum + d, kIsFirst ? path ^ broadcast(-kSumOffset) : load(sum + d) + path);
+    store(sum + d, kIsFirst ? path ^ broadcast(-kSumOffset) : wrapped_sum(load(sum + d), path));
   };
   const std::size_t last = row.lanes - kLaneBlock;
   for (std::size_t d = 0; d < last; d += kWords) finish(d, step(d));
@@ -117,7 +117,9 @@ GLIDAR_INLINE void down_pixel(const DownRow& row, const Beyond& beyond, std::siz
   const auto advance = [&](std::size_t d, Words past) {
     const Words cost = load(row.cost + offset + d);
     Words sum = load(row.sum + offset + d);
-    for (std::size_t k = 0; k < kPaths; ++k) sum += steps[k].next(d, cost, past, penalties);
+    for (std::size_t k = 0; k < kPaths; ++k) {
+      sum = wrapped_sum(sum, steps[k].next(d, cost, past, penalties));
+    }
     store(row.new_sum + offset + d, sum);
   };
   const std::size_t last = row.lanes - kLaneBlock;

@@ -62,6 +62,12 @@ GLIDAR_INLINE Bytes broadcast_byte(std::uint8_t value) {
   return Bytes{} + value;
 }
 
+/// a + b modulo 2^16: sums in lanes beyond the search may wrap.
+GLIDAR_INLINE Words wrapped_sum(Words a, Words b) {
+  using Unsigned = std::uint16_t __attribute__((vector_size(kVectorBytes)));
+  return reinterpret_cast<Words>(reinterpret_cast<Unsigned>(a) + reinterpret_cast<Unsigned>(b));
+}
+
 GLIDAR_INLINE Words min(Words a, Words b) {
 #if defined(__AVX512BW__)
   return reinterpret_cast<Words>(
