@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -28,25 +29,38 @@ constexpr std::byte kCommandStart{0xAA};    // of packets on the ports of comman
       {"Livox packets of " + sensor.name, std::move(found), std::move(allowed), std::move(remedy)});
 }
 
-const Prism& checked_prism(const Sensor& sensor) {
-  const auto* prism = std::get_if<Prism>(&sensor.optics);
-  if (prism == nullptr)
+/// What packets need to know of the optics.
+struct LivoxOptics {
+  std::size_t beams = 0;  ///< that fire at once
+  double pulse_hz = 0.0;  ///< of each beam
+};
+
+std::optional<LivoxOptics> livox_optics(const Optics& optics) {
+  if (const auto* prism = std::get_if<Prism>(&optics))
+    return LivoxOptics{prism->incidence_tangent.size(), prism->pulse_hz};
+  if (const auto* mirror = std::get_if<WedgeMirror>(&optics))
+    return LivoxOptics{mirror->incidence_rad.size(), mirror->pulse_hz};
+  return std::nullopt;
+}
+
+LivoxOptics checked_optics(const Sensor& sensor) {
+  const std::optional<LivoxOptics> optics = livox_optics(sensor.optics);
+  if (!optics)
     fail_of_livox(sensor, "optics without prisms", "rotating prisms", "use a preset of Livox");
   if (sensor.receiver.returns.size() != 1)
     fail_of_livox(sensor, std::to_string(sensor.receiver.returns.size()) + " returns", "one",
                   "add --returns first, for example");
-  const std::size_t rows = prism->incidence_tangent.size();
-  if (rows == 0 || kLivoxPoints % rows != 0)
-    fail_of_livox(sensor, std::to_string(rows) + " beams", "a divisor of 96",
+  if (optics->beams == 0 || kLivoxPoints % optics->beams != 0)
+    fail_of_livox(sensor, std::to_string(optics->beams) + " beams", "a divisor of 96",
                   "use a preset of Livox");
-  return *prism;
+  return *optics;
 }
 
 /// Duration of a packet in 0.1 us.
-std::uint16_t packet_interval(const Sensor& sensor, const Prism& prism) {
-  const std::size_t firings = kLivoxPoints / prism.incidence_tangent.size();  // whole firings only
+std::uint16_t packet_interval(const Sensor& sensor, const LivoxOptics& optics) {
+  const std::size_t firings = kLivoxPoints / optics.beams;  // whole firings only
   const double interval =
-      std::round(static_cast<double>(firings) * kSecond_ns / prism.pulse_hz / kInterval_ns);
+      std::round(static_cast<double>(firings) * kSecond_ns / optics.pulse_hz / kInterval_ns);
   if (interval >= 1.0 && interval <= 65'535.0) return static_cast<std::uint16_t>(interval);
   fail_of_livox(sensor, std::to_string(interval * 1e-4) + " ms for 96 points", "up to 6.5 ms",
                 "raise optics.pulse_hz");
@@ -97,9 +111,9 @@ class LivoxEncoder final : public PacketEncoder {
  public:
   LivoxEncoder(const Sensor& sensor, LivoxDataType type)
       : sensor_(sensor),
-        prism_(checked_prism(sensor)),
-        period_ns_(kSecond_ns / prism_.pulse_hz),
-        interval_(packet_interval(sensor, prism_)),
+        optics_(checked_optics(sensor)),
+        period_ns_(kSecond_ns / optics_.pulse_hz),
+        interval_(packet_interval(sensor, optics_)),
         type_(type) {}
 
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
@@ -130,7 +144,7 @@ class LivoxEncoder final : public PacketEncoder {
 
  private:
   void check(const Frame& frame, const Beams& beams) const {
-    const bool fits = beams.rows == prism_.incidence_tangent.size() && beams.returns == 1 &&
+    const bool fits = beams.rows == optics_.beams && beams.returns == 1 &&
                       beams.times_ns.size() == beams.size() &&
                       beams.size() == std::size_t{beams.rows} * beams.cols &&
                       frame.range_m.size() == beams.size() &&
@@ -160,7 +174,7 @@ class LivoxEncoder final : public PacketEncoder {
   }
 
   Sensor sensor_;
-  Prism prism_;
+  LivoxOptics optics_;
   double period_ns_;
   std::uint16_t interval_;
   LivoxDataType type_;
@@ -172,7 +186,7 @@ class LivoxEncoder final : public PacketEncoder {
 class LivoxDecoder final : public PacketDecoder {
  public:
   explicit LivoxDecoder(const Sensor& sensor)
-      : rows_(checked_prism(sensor).incidence_tangent.size()), assembler_(rows_, sensor.rate_hz) {}
+      : rows_(checked_optics(sensor).beams), assembler_(rows_, sensor.rate_hz) {}
 
   void decode(const UdpPacket& received, std::vector<DecodedFrame>& frames) override {
     if (!received.payload.empty() && received.payload[0] == kCommandStart) return;
@@ -205,7 +219,7 @@ class LivoxDecoder final : public PacketDecoder {
 }  // namespace
 
 bool is_livox(const Sensor& sensor) {
-  return sensor.name.starts_with("Livox") && std::holds_alternative<Prism>(sensor.optics);
+  return sensor.name.starts_with("Livox") && livox_optics(sensor.optics).has_value();
 }
 
 std::unique_ptr<PacketEncoder> make_livox_encoder(const Sensor& sensor, LivoxDataType type) {

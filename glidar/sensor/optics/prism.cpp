@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/optics/prism.hpp>
 
-#include <cmath>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
-#include <limits>
+#include <glidar/math/elementary.hpp>
+#include <glidar/sensor/optics/steered_beams.hpp>
+
+#include <cmath>
 #include <numbers>
 
 namespace glidar {
@@ -38,46 +40,36 @@ void validate(const Prism& prism) {
   for (const RisleyPrism& p : prism.prisms) validate(p);
 }
 
-/// Snell's law for vectors: the unit direction behind a face whose unit normal is opposed to the
-/// light; `ratio` is the refractive index before over that behind. NaN for total reflection.
-Eigen::Vector3d refract(const Eigen::Vector3d& b, const Eigen::Vector3d& normal, double ratio) {
-  const double cosine = -b.dot(normal);
-  const double root = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
-  if (!(root >= 0.0)) return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  return (ratio * b + (ratio * cosine - std::sqrt(root)) * normal).normalized();
-}
-
 /// The normal of the oblique face at this phase, opposed to the light. Axes: x along the boresight,
 /// y left, z up; the prism deflects downwards at phase 0, then to the right, up and left.
-Eigen::Vector3d slope_normal(const RisleyPrism& p, double phase_rad) {
+Eigen::Vector3d slope_normal(const RisleyPrism& p, double turns) {
   const double side = p.slope == RisleyPrism::Slope::entry ? 1.0 : -1.0;
-  const double s = side * std::sin(p.apex_rad);
-  return {-std::cos(p.apex_rad), -s * std::sin(phase_rad), s * std::cos(phase_rad)};
+  const SineCosine apex = sincos_turns(p.apex_rad / kTwoPi);
+  const SineCosine phase = sincos_turns(turns);
+  return {-apex.cosine, -side * apex.sine * phase.sine, side * apex.sine * phase.cosine};
 }
 
-Eigen::Vector3d pass(const RisleyPrism& p, double phase_rad, const Eigen::Vector3d& incident) {
+Eigen::Vector3d pass(const RisleyPrism& p, double turns, const Eigen::Vector3d& incident) {
   const Eigen::Vector3d square = -Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d slope = slope_normal(p, phase_rad);
+  const Eigen::Vector3d slope = slope_normal(p, turns);
   const bool slope_first = p.slope == RisleyPrism::Slope::entry;
   const Eigen::Vector3d inside =
       refract(incident, slope_first ? slope : square, 1.0 / p.refractive_index);
   return refract(inside, slope_first ? square : slope, p.refractive_index);
 }
 
-/// Phases of all prisms at firing k; whole turns are left out, so that they stay exact for long.
-void set_phases(const Prism& prism, std::int64_t k, std::vector<double>& phases_rad) {
-  for (std::size_t i = 0; i < prism.prisms.size(); ++i) {
-    const RisleyPrism& p = prism.prisms[i];
-    const double turns = std::fmod(static_cast<double>(k) * (p.rotation_hz / prism.pulse_hz), 1.0);
-    phases_rad[i] = p.phase_rad + 2.0 * std::numbers::pi * turns;
-  }
+/// Phases of all prisms at firing k, in turns.
+std::vector<double> phases_at(const Prism& prism, std::int64_t k) {
+  std::vector<double> turns;
+  for (const RisleyPrism& p : prism.prisms)
+    turns.push_back(phase_turns(p.phase_rad / kTwoPi, p.rotation_hz / prism.pulse_hz, k));
+  return turns;
 }
 
-Eigen::Vector3d pass_all(const Prism& prism, const std::vector<double>& phases_rad, double right) {
+Eigen::Vector3d pass_all(const Prism& prism, const std::vector<double>& turns, double right) {
   Eigen::Vector3d beam(std::sqrt(1.0 - right * right), -right, 0.0);
-  for (std::size_t i = 0; i < prism.prisms.size(); ++i) {
-    beam = pass(prism.prisms[i], phases_rad[i], beam);
-  }
+  for (std::size_t i = 0; i < prism.prisms.size(); ++i)
+    beam = pass(prism.prisms[i], turns[i], beam);
   return beam;
 }
 
@@ -85,30 +77,14 @@ Eigen::Vector3d pass_all(const Prism& prism, const std::vector<double>& phases_r
 
 Beams make_beams(const Prism& prism, const FrameInterval& interval) {
   validate(prism);
-  const std::size_t rows = prism.incidence_tangent.size();
   const FiringSchedule pulses = {0.0, kSecond_ns / prism.pulse_hz};
-  const FiringRange range = firings_in(pulses, interval, kMaxBeams / rows);
-  Beams beams;
-  beams.rows = static_cast<std::uint32_t>(rows);
-  beams.cols = static_cast<std::uint32_t>(range.size());
-  beams.frame_id = "lidar_frame";
-  beams.boresight = Eigen::Vector3d::UnitX();
-  beams.directions.resize(rows * range.size());
-  beams.times_ns.resize(rows * range.size());
-  beams.rings.resize(rows * range.size());
-  std::vector<double> phases_rad(prism.prisms.size());
-  for (std::size_t col = 0; col < range.size(); ++col) {
-    const std::int64_t k = range.begin + static_cast<std::int64_t>(col);
-    set_phases(prism, k, phases_rad);
-    const auto time_ns = static_cast<std::uint32_t>(firing_time_ns(pulses, k) - interval.start_ns);
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::size_t i = row * range.size() + col;
-      beams.directions[i] = pass_all(prism, phases_rad, prism.incidence_tangent[row]);
-      beams.times_ns[i] = time_ns;
-      beams.rings[i] = static_cast<std::uint16_t>(row);
-    }
-  }
-  return beams;
+  return make_steered_beams(pulses, interval, prism.incidence_tangent.size(),
+                            [&](std::int64_t k, std::span<Eigen::Vector3d> directions) {
+                              const std::vector<double> turns = phases_at(prism, k);
+                              for (std::size_t row = 0; row < directions.size(); ++row)
+                                directions[row] =
+                                    pass_all(prism, turns, prism.incidence_tangent[row]);
+                            });
 }
 
 void describe(RisleyPrism& prism, FieldVisitor& visitor) {

@@ -13,21 +13,22 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr auto kEntry = RisleyPrism::Slope::entry;
 constexpr auto kExit = RisleyPrism::Slope::exit;
 
-// Numbers of HELIOS++ (scanner catalogue), which fitted them to the sensors.
+// Fitted to Livox' scan tables.
 Prism mid40() {
-  return {.prisms = {{-121.5657, 18.7481 * kDegree, 0.0, 1.51, kEntry},
-                     {77.7430, 17.9634 * kDegree, 0.0, 1.51, kEntry}},
+  return {.prisms = {{121.56667, 18.7723 * kDegree, 90.0 * kDegree, 1.51, kEntry},
+                     {-77.73333, 17.9630 * kDegree, 90.0 * kDegree, 1.51, kEntry}},
           .incidence_tangent = {0.0},
           .pulse_hz = 100e3};
 }
 
 Prism mid70() {
-  return {.prisms = {{-77.7333, 29.7 * kDegree, 0.0, 1.5095, kExit},
-                     {121.5667, 29.7 * kDegree, 0.0, 1.5095, kEntry}},
+  return {.prisms = {{121.56667, 18.0 * kDegree, 270.0 * kDegree, 1.8144, kEntry},
+                     {-77.73333, 18.0 * kDegree, 270.0 * kDegree, 1.8144, kExit}},
           .incidence_tangent = {0.0},
           .pulse_hz = 100e3};
 }
 
+// Numbers of HELIOS++ (scanner catalogue), which fitted them to the sensor.
 Prism avia() {
   return {.prisms = {{-131.5463, 30.8856 * kDegree, 0.0, 1.51, kEntry},
                      {40.8032, 29.7735 * kDegree, 0.0, 1.51, kEntry},
@@ -45,8 +46,26 @@ double widest_deg(const Beams& beams) {
   return widest;
 }
 
-TEST(Prism, Mid40HasTheGoldenDirections) {
-  const Beams beams = make_beams(mid40(), {0, kSecond_ns / 10});
+// The first rows of Livox' scan tables (10 us), azimuth to the left and elevation.
+TEST(Prism, BeginsAsLivoxScanTables) {
+  constexpr double kTolerance_deg = 5e-4;  // the tables are printed to 1e-4; the fit has 5e-4
+  const auto expect_second_shot = [&](const Prism& prism, double azimuth_deg,
+                                      double elevation_deg) {
+    const Eigen::Vector3d d = make_beams(prism, {0, kSecond_ns / 10}).directions[1];
+    EXPECT_NEAR(std::atan2(d.y(), d.x()) / kDegree, azimuth_deg, kTolerance_deg);
+    EXPECT_NEAR(std::asin(d.z()) / kDegree, elevation_deg, kTolerance_deg);
+  };
+  expect_second_shot(mid40(), 19.1724, 0.0301);
+  expect_second_shot(mid70(), -35.2147, -0.0242);
+}
+
+// Directions of two prisms computed by another program (HELIOS++, with its numbers of the Mid-40).
+TEST(Prism, TwoPrismsDeflectAsInHelios) {
+  const Prism prism = {.prisms = {{-121.5657, 18.7481 * kDegree, 0.0, 1.51, kEntry},
+                                  {77.7430, 17.9634 * kDegree, 0.0, 1.51, kEntry}},
+                       .incidence_tangent = {0.0},
+                       .pulse_hz = 100e3};
+  const Beams beams = make_beams(prism, {0, kSecond_ns / 10});
   validate(beams);
   ASSERT_EQ(beams.size(), 10'000U);
   // Published axes: x right, y forward, z up; computed independently at t = 0, 1, 2.5, 10 ms.
@@ -64,8 +83,9 @@ TEST(Prism, Mid40HasTheGoldenDirections) {
 
 TEST(Prism, FieldsOfViewAreThoseOfTheDataSheets) {
   const FrameInterval second = {0, kSecond_ns};
-  EXPECT_NEAR(widest_deg(make_beams(mid40(), second)), 19.160, 2e-3);  // data sheet: 38.4 / 2
-  EXPECT_NEAR(widest_deg(make_beams(mid70(), second)), 35.19, 1e-2);   // data sheet: 70.4 / 2
+  // The greatest angles of Livox' scan tables; data sheets: 38.4 / 2 and 70.4 / 2.
+  EXPECT_NEAR(widest_deg(make_beams(mid40(), second)), 19.173, 1e-3);
+  EXPECT_NEAR(widest_deg(make_beams(mid70(), second)), 35.216, 1e-3);
   const Beams beams = make_beams(avia(), second);
   Eigen::Vector2d low = Eigen::Vector2d::Zero();
   Eigen::Vector2d high = Eigen::Vector2d::Zero();
