@@ -17,9 +17,26 @@ bool all_finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
+bool is_vertical(const LineScan& scan) {
+  return scan.lines == LineScan::Lines::vertical;
+}
+
+std::size_t line_count(const LineScan& scan) {
+  return is_vertical(scan) ? scan.azimuths_rad.size() : scan.elevations_rad.size();
+}
+
+std::size_t point_count(const LineScan& scan) {
+  return is_vertical(scan) ? scan.elevations_rad.size() : scan.azimuths_rad.size();
+}
+
+Eigen::Vector3d direction_of(const LineScan& scan, std::size_t line, std::size_t point) {
+  return is_vertical(scan) ? direction_at(scan.azimuths_rad[line], scan.elevations_rad[point])
+                           : direction_at(scan.azimuths_rad[point], scan.elevations_rad[line]);
+}
+
 void validate(const LineScan& r) {
-  const std::size_t lines = r.elevations_rad.size();
-  const std::size_t points = r.azimuths_rad.size();
+  const std::size_t lines = line_count(r);
+  const std::size_t points = point_count(r);
   require_number(lines >= 1 && lines <= kMaxBeams, "optics, number of lines",
                  static_cast<double>(lines), "at least 1");
   require_number(points >= 1 && points <= kMaxBeams / lines, "optics, number of points in a line",
@@ -36,14 +53,14 @@ void validate(const LineScan& r) {
 /// The pattern in time order.
 RayTable in_time_order(const LineScan& r) {
   RayTable table;
-  table.rows = static_cast<std::uint32_t>(r.elevations_rad.size());
-  table.cols = static_cast<std::uint32_t>(r.azimuths_rad.size());
+  table.rows = static_cast<std::uint32_t>(line_count(r));
+  table.cols = static_cast<std::uint32_t>(point_count(r));
   table.period_ns = kSecond_ns / r.scan_hz;
   for (std::size_t line = 0; line < table.rows; ++line) {
     const bool backwards = r.bidirectional && line % 2 == 1;
     for (std::size_t point = 0; point < table.cols; ++point) {
       const std::size_t col = backwards ? table.cols - 1 - point : point;
-      table.directions.push_back(direction_at(r.azimuths_rad[col], r.elevations_rad[line]));
+      table.directions.push_back(direction_of(r, line, col));
       table.times_ns.push_back(static_cast<double>(line) * r.line_ns +
                                static_cast<double>(point) * r.point_ns);
     }
@@ -66,7 +83,7 @@ void reverse_lines(Beams& beams) {
 Beams make_beams(const LineScan& raster, const FrameInterval& interval) {
   validate(raster);
   Beams beams = make_beams(in_time_order(raster), interval);
-  const bool grid = beams.rows == raster.elevations_rad.size();
+  const bool grid = beams.rows == line_count(raster);
   if (grid && raster.bidirectional) reverse_lines(beams);
   return beams;
 }
@@ -78,6 +95,12 @@ void describe(LineScan& scan, FieldVisitor& visitor) {
   constexpr NumberRule kPointTime = {0.0, 1e6, false, "microseconds from 0 to 1e6"};
   if (visitor.is_report())
     visitor.number({"scan_hz", "scans per second", kUnitHertz}, kAboveZero, scan.scan_hz);
+  using Lines = LineScan::Lines;
+  constexpr std::array<Named<Lines>, 2> kLines = {
+      {{"horizontal", Lines::horizontal}, {"vertical", Lines::vertical}}};
+  visit_choice(visitor,
+               {"lines", "`vertical`: lines along the elevation, one for each of `azimuth_deg`"},
+               kLines, scan.lines);
   visitor.numbers(
       {"elevation_deg",
        "lines in the order of time: one number, a list, or `{from: , to: , count: }`", kUnitDegree},
@@ -92,8 +115,8 @@ void describe(LineScan& scan, FieldVisitor& visitor) {
                  scan.point_ns);
   if (visitor.is_reading()) {
     // as if the file had the number, in its unit
-    scan.line_ns = scan.point_ns * static_cast<double>(scan.azimuths_rad.size()) / kMicrosecond_ns *
-                   kMicrosecond_ns;
+    scan.line_ns =
+        scan.point_ns * static_cast<double>(point_count(scan)) / kMicrosecond_ns * kMicrosecond_ns;
   }
   visitor.number({"line_us", "time between lines", kUnitMicrosecond_ns, false,
                   "`point_us` times the points of a line"},

@@ -10,16 +10,21 @@ namespace glidar {
 
 class FieldVisitor;
 
-/// A beam that mirrors steer along lines, scan after scan: elevations x azimuths. A 2D scanner has
-/// one line. Azimuths are from +x towards +y, elevations towards +z.
+/// A beam that mirrors steer along lines, scan after scan: elevations x azimuths, or azimuths x
+/// elevations if the lines are vertical (terrestrial scanners, whose head turns from line to line).
+/// A 2D scanner has one line. Azimuths are from +x towards +y, elevations towards +z.
 struct LineScan {
   static constexpr TypeInfo kType = {"line_scan", "a scanner that measures lines of points"};
-  std::vector<double> elevations_rad = {0.0};  ///< of the lines in time order; one row each
-  std::vector<double> azimuths_rad;            ///< of the points of a line in time order
-  double point_ns = 0.0;                       ///< time between points
-  double line_ns = 0.0;                        ///< time between lines
-  bool bidirectional = false;                  ///< every second line is scanned backwards
-  double scan_hz = 10.0;                       ///< scans per second; a scan begins at time 0
+  enum class Lines : std::uint8_t { horizontal, vertical };
+  Lines lines = Lines::horizontal;
+  /// Of the lines in time order, one row each, and of the points of a line in time order; the other
+  /// way round if the lines are vertical.
+  std::vector<double> elevations_rad = {0.0};
+  std::vector<double> azimuths_rad;
+  double point_ns = 0.0;       ///< time between points
+  double line_ns = 0.0;        ///< time between lines
+  bool bidirectional = false;  ///< every second line is scanned backwards
+  double scan_hz = 10.0;       ///< scans per second; a scan begins at time 0
 };
 
 /// Keys of `optics` in sensor files.

@@ -50,6 +50,20 @@ TEST(LineScan, BidirectionalReversesEverySecondLine) {
   EXPECT_EQ(beams.times_ns[9], 20'000U);
 }
 
+TEST(LineScan, VerticalLinesRunAlongTheElevationAtEachAzimuth) {
+  LineScan r = small_raster();
+  r.lines = LineScan::Lines::vertical;
+  const Beams beams = make_beams(sensor_of(r));
+  validate(beams);
+  ASSERT_EQ(beams.rows, 5U);
+  ASSERT_EQ(beams.cols, 3U);
+  EXPECT_LT((beams.directions[3] - direction_at(-0.2, 0.1)).norm(), 1e-15);  // line 1, point 0
+  EXPECT_LT((beams.directions[5] - direction_at(-0.2, -0.1)).norm(), 1e-15);
+  EXPECT_EQ(beams.times_ns[5], 22'000U);
+  EXPECT_EQ(beams.rings[5], 1U);
+  testing::expect_windows_join(r, 0, 300'000'000);
+}
+
 TEST(LineScan, IntervalsJoinWithoutGapOrOverlap) {
   testing::expect_windows_join(small_raster(), 0, 300'000'000);
   testing::expect_windows_join(small_raster(), -66'666'667, 100'000'001);
