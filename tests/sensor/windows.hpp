@@ -18,6 +18,7 @@ using Shot = std::tuple<std::int64_t, std::uint16_t, double, double, double>;
 inline void add_shots(const Beams& beams, const FrameInterval& window, std::vector<Shot>& shots) {
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const Eigen::Vector3d& d = beams.directions[i];
+    if (d.hasNaN()) continue;  // a channel that does not fire in this column
     shots.emplace_back(window.start_ns + beams.times_ns[i], beams.rings[i], d.x(), d.y(), d.z());
   }
 }

@@ -14,6 +14,7 @@ namespace glidar {
 namespace {
 
 constexpr double kMaxTurns_hz = 1e4;
+constexpr std::uint32_t kMaxFiringLoops = 64;
 
 void validate(const SpinningChannel& channel) {
   require_number(std::abs(channel.elevation_rad) <= 0.5 * std::numbers::pi, "optics, elevation",
@@ -24,6 +25,21 @@ void validate(const SpinningChannel& channel) {
                  channel.fire_time_ns, "-1e9 to 1e9 ns");
   require_number(channel.origin_m.allFinite(), "optics, origin offset", channel.origin_m.norm(),
                  "finite metres");
+}
+
+void validate(const FiringLoop& loop, std::size_t channels) {
+  require_number(!loop.channels.empty() && loop.channels.size() == loop.fire_times_ns.size(),
+                 "optics, firing_loops", static_cast<double>(loop.fire_times_ns.size()),
+                 "one fire time for each channel of the loop");
+  std::vector<bool> is_used(channels, false);
+  for (std::size_t i = 0; i < loop.channels.size(); ++i) {
+    const std::uint32_t channel = loop.channels[i];
+    require_number(channel < channels && !is_used[channel], "optics, firing_loops, channel",
+                   channel, "the index of a channel, each at most once in a loop");
+    is_used[channel] = true;
+    require_number(std::abs(loop.fire_times_ns[i]) <= kSecond_ns, "optics, fire time",
+                   loop.fire_times_ns[i], "-1e9 to 1e9 ns");
+  }
 }
 
 void validate(const Spinning& s) {
@@ -39,6 +55,9 @@ void validate(const Spinning& s) {
                  "optics, azimuth_range", s.azimuth_width_rad,
                  "a finite start and a width above 0");
   for (const SpinningChannel& channel : s.channels) validate(channel);
+  require_number(s.firing_loops.size() <= kMaxFiringLoops, "optics, number of firing loops",
+                 static_cast<double>(s.firing_loops.size()), "up to 64");
+  for (const FiringLoop& loop : s.firing_loops) validate(loop, s.channels.size());
 }
 
 /// Channels by decreasing elevation; equal ones in the order of the table.
@@ -76,7 +95,19 @@ bool is_in_sector(const Spinning& s, double azimuth_rad) {
   return (into < 0.0 ? into + kTwoPi : into) <= s.azimuth_width_rad;
 }
 
+/// The loop of sequence k, which may be negative.
+std::size_t loop_of(const Spinning& s, std::int64_t k) {
+  const auto loops = static_cast<std::int64_t>(s.firing_loops.size());
+  return static_cast<std::size_t>((k % loops + loops) % loops);
+}
+
 double first_firing_ns(const Spinning& s) {
+  if (!s.firing_loops.empty()) {
+    double earliest = kInfinity;
+    for (const FiringLoop& loop : s.firing_loops)
+      earliest = std::min(earliest, *std::ranges::min_element(loop.fire_times_ns));
+    return earliest;
+  }
   double first = s.channels.front().fire_time_ns;
   for (const SpinningChannel& channel : s.channels) first = std::min(first, channel.fire_time_ns);
   return first;
@@ -137,24 +168,101 @@ Heads find_heads(const Spinning& s, const std::vector<double>& starts_rad, doubl
   return heads;
 }
 
-/// The beams of a row, beginning at index `first`. Sines and cosines take most of the time, so each
-/// is computed once.
-void set_row(const Spinning& s, const SpinningChannel& channel, const Heads& heads,
-             std::size_t first, Beams& beams) {
+/// FiringColumns of a frame whose sequences fire the same channels at the same times.
+struct FiringColumns {
+  std::vector<std::size_t> indices;
+  std::vector<std::int64_t> sequences;
+  std::vector<double> starts_rad;  ///< azimuths of the head at the start of each sequence
+};
+
+/// The columns whose sequences fire a loop; without loops, all.
+FiringColumns columns_of(const Spinning& s, const std::vector<std::int64_t>& sequences,
+                         std::size_t loop) {
+  FiringColumns columns;
+  for (std::size_t col = 0; col < sequences.size(); ++col) {
+    const std::int64_t k = sequences[col];
+    if (!s.firing_loops.empty() && loop_of(s, k) != loop) continue;
+    columns.indices.push_back(col);
+    columns.sequences.push_back(k);
+    columns.starts_rad.push_back(head_azimuth_rad(s, k));
+  }
+  return columns;
+}
+
+/// The beams of a channel in these columns; its row begins at index `first`. Sines and cosines take
+/// most of the time, so each is computed once.
+void set_beams(const Spinning& s, const SpinningChannel& channel, const FiringColumns& columns,
+               const Heads& heads, std::size_t first, Beams& beams) {
   const double level = std::cos(channel.elevation_rad);
   const double height = std::sin(channel.elevation_rad);
   const Eigen::Vector3d& offset = channel.origin_m;
-  for (std::size_t col = 0; col < heads.azimuths_rad.size(); ++col) {
-    const std::size_t i = first + col;
+  for (std::size_t n = 0; n < heads.azimuths_rad.size(); ++n) {
+    const std::size_t i = first + columns.indices[n];
     const Eigen::Vector3d out =
-        direction_at(heads.azimuths_rad[col] + channel.azimuth_offset_rad, 0.0);
+        direction_at(heads.azimuths_rad[n] + channel.azimuth_offset_rad, 0.0);
     beams.directions[i] = Eigen::Vector3d(level * out.x(), level * out.y(), height).normalized();
-    beams.rings[i] = channel.ring;
     if (beams.origins_m.empty()) continue;
     const Eigen::Vector3d left(-out.y(), out.x(), 0.0);
-    beams.origins_m[i] = s.beam_origin_m * heads.directions[col] + offset.x() * out +
+    beams.origins_m[i] = s.beam_origin_m * heads.directions[n] + offset.x() * out +
                          offset.y() * left + offset.z() * Eigen::Vector3d::UnitZ();
   }
+}
+
+void set_times(const FiringSchedule& firings, const FiringColumns& columns, std::int64_t start_ns,
+               std::uint32_t* row_times_ns) {
+  for (std::size_t n = 0; n < columns.indices.size(); ++n) {
+    row_times_ns[columns.indices[n]] =
+        static_cast<std::uint32_t>(firing_time_ns(firings, columns.sequences[n]) - start_ns);
+  }
+}
+
+/// The channels that fire in a loop, by row, with its fire times; without loops, all channels.
+std::vector<std::pair<std::size_t, SpinningChannel>> firing_rows(const Spinning& s,
+                                                                 std::size_t loop) {
+  const std::vector<std::size_t> rows = rows_of(s);
+  std::vector<std::pair<std::size_t, SpinningChannel>> fired;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    SpinningChannel channel = s.channels[rows[row]];
+    if (!s.firing_loops.empty()) {
+      const FiringLoop& fires = s.firing_loops[loop];
+      const auto at = std::ranges::find(fires.channels, rows[row]);
+      if (at == fires.channels.end()) continue;
+      channel.fire_time_ns =
+          fires.fire_times_ns[static_cast<std::size_t>(at - fires.channels.begin())];
+    }
+    fired.emplace_back(row, channel);
+  }
+  return fired;
+}
+
+/// The beams of a loop in its columns.
+void set_loop(const Spinning& s, std::size_t loop, const FiringColumns& columns,
+              const FrameInterval& interval, Beams& beams) {
+  Heads heads;
+  double known_ns = kNaN;  // of `heads`; channels often fire together
+  for (const auto& [row, channel] : firing_rows(s, loop)) {
+    const std::size_t first = row * beams.cols;
+    if (channel.fire_time_ns != known_ns) {
+      heads = find_heads(s, columns.starts_rad, channel.fire_time_ns);
+      known_ns = channel.fire_time_ns;
+    }
+    set_beams(s, channel, columns, heads, first, beams);
+    set_times({channel.fire_time_ns, sequence_period_ns(s)}, columns, interval.start_ns,
+              beams.times_ns.data() + first);
+  }
+}
+
+/// Beams of rows that do not fire in every column: none, until they are set.
+void clear_beams(Beams& beams) {
+  std::ranges::fill(beams.directions, Eigen::Vector3d::Constant(kNaN));
+  std::ranges::fill(beams.origins_m, Eigen::Vector3d::Zero());
+  std::ranges::fill(beams.times_ns, 0U);
+}
+
+void set_rings(const Spinning& s, Beams& beams) {
+  const std::vector<std::size_t> rows = rows_of(s);
+  for (std::size_t i = 0; i < beams.rings.size(); ++i)
+    beams.rings[i] = s.channels[rows[i / beams.cols]].ring;
 }
 
 /// What starts a firing sequence: the encoder or a clock.
@@ -183,29 +291,34 @@ double sequence_period_ns(const Spinning& s) {
 
 Beams make_beams(const Spinning& s, const FrameInterval& interval) {
   validate(s);
-  const std::vector<std::size_t> rows = rows_of(s);
   const std::vector<std::int64_t> sequences = sequences_in(s, interval);
-  const double period_ns = sequence_period_ns(s);
   Beams beams = make_grid(s, sequences.size());
-  std::vector<double> starts_rad;
-  for (const std::int64_t k : sequences) starts_rad.push_back(head_azimuth_rad(s, k));
-  Heads heads;
-  double known_ns = kNaN;  // of `heads`; channels often fire together
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const SpinningChannel& channel = s.channels[rows[row]];
-    const std::size_t first = row * sequences.size();
-    if (channel.fire_time_ns != known_ns) {
-      heads = find_heads(s, starts_rad, channel.fire_time_ns);
-      known_ns = channel.fire_time_ns;
-    }
-    set_row(s, channel, heads, first, beams);
-    const FiringSchedule firings = {channel.fire_time_ns, period_ns};
-    for (std::size_t col = 0; col < sequences.size(); ++col) {
-      beams.times_ns[first + col] =
-          static_cast<std::uint32_t>(firing_time_ns(firings, sequences[col]) - interval.start_ns);
-    }
-  }
+  set_rings(s, beams);
+  if (!s.firing_loops.empty()) clear_beams(beams);
+  for (std::size_t loop = 0; loop < std::max<std::size_t>(1, s.firing_loops.size()); ++loop)
+    set_loop(s, loop, columns_of(s, sequences, loop), interval, beams);
   return beams;
+}
+
+void describe(FiringLoop& loop, FieldVisitor& visitor) {
+  constexpr NumberRule kChannel = {0.0, kMaxChannels - 1.0, false, "a channel, counted from 0"};
+  constexpr NumberRule kFireTime = {-1e6, 1e6, false, "microseconds from -1e6 to 1e6"};
+  std::vector<double> channels(loop.channels.begin(), loop.channels.end());
+  visitor.numbers({"channels", "channels that fire, counted from 0", kNoUnit, kRequired},
+                  {.number = kChannel, .max_size = kMaxChannels}, channels);
+  visitor.numbers({"fire_time_us", "firing time of each of them after the start of the sequence",
+                   kUnitMicrosecond_ns, kRequired},
+                  {.number = kFireTime, .max_size = kMaxChannels}, loop.fire_times_ns);
+  if (!visitor.is_reading()) return;
+  if (channels.size() != loop.fire_times_ns.size())
+    visitor.reject("fire_time_us", std::to_string(loop.fire_times_ns.size()) + " numbers",
+                   std::to_string(channels.size()) + ": one for each of channels");
+  loop.channels.clear();
+  for (const double channel : channels) {
+    if (channel != std::floor(channel))
+      visitor.reject("channels", "a channel that is not a whole number", "whole numbers from 0");
+    loop.channels.push_back(static_cast<std::uint32_t>(channel));
+  }
 }
 
 void describe(Spinning& s, FieldVisitor& visitor) {
@@ -228,6 +341,13 @@ void describe(Spinning& s, FieldVisitor& visitor) {
       kOffset, s.beam_origin_m);
   visit_azimuth_range(visitor, s);
   visit_channels(visitor, s.channels);
+  if (visitor.is_document() && s.firing_loops.empty()) return;
+  visit_list(visitor,
+             {"firing_loops",
+              "firing sequences that take turns, instead of `fire_time_us`: each fires some of the "
+              "channels",
+              kNoUnit, false, "none"},
+             {0, kMaxFiringLoops}, "a list of up to 64 loops", s.firing_loops);
 }
 
 }  // namespace glidar

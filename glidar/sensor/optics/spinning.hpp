@@ -23,6 +23,12 @@ struct SpinningChannel {
   std::uint16_t ring = 0;  ///< channel number in clouds
 };
 
+/// A firing sequence of some of the channels, at times of its own.
+struct FiringLoop {
+  std::vector<std::uint32_t> channels;  ///< indices into Spinning::channels, each at most once
+  std::vector<double> fire_times_ns;    ///< of these channels, since the start of the sequence
+};
+
 /// A rotating head that fires all channels, sequence after sequence.
 struct Spinning {
   static constexpr TypeInfo kType = {"spinning", "a rotating LiDAR with one beam per channel"};
@@ -42,6 +48,9 @@ struct Spinning {
   /// width to the left.
   double azimuth_start_rad = 0.0;
   double azimuth_width_rad = 2.0 * std::numbers::pi;
+  /// Loops that take turns: sequence k fires loop k mod n. Empty: every sequence fires all channels
+  /// at their own fire times.
+  std::vector<FiringLoop> firing_loops;
 };
 
 /// Maximum number of columns per turn.
@@ -49,11 +58,13 @@ inline constexpr std::uint32_t kMaxColumnsPerTurn = 1U << 20U;
 
 /// Keys of `optics` in sensor files.
 void describe(Spinning& spinning, FieldVisitor& visitor);
+void describe(FiringLoop& loop, FieldVisitor& visitor);
 
 /// One column per firing sequence whose first firing is in the interval, in time order; one row per
 /// channel, the highest beam in row 0. Frame lidar_frame (x forward, y left, z up), boresight +x.
 /// Sequence k starts at t = k T; channel c fires at t + fire_time with the azimuth
 ///   start -+ 2 pi rotation_hz (t + fire_time) + azimuth_offset.
+/// A channel that does not fire in a sequence has no beam there (NaN).
 /// Throws Error when a number is out of range.
 Beams make_beams(const Spinning& spinning, const FrameInterval& interval);
 

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/sensor/optics/spinning.hpp>
+#include <support/error_text.hpp>
 
 namespace glidar {
 namespace {
@@ -56,6 +57,57 @@ TEST(Spinning, FiresEachLaserAtItsTimeAndAzimuth) {
                                    std::sin(elevation_rad));
     EXPECT_LT((beams.directions[i] - expected).norm(), 1e-13);  // rounding of an angle below 2 pi
   }
+}
+
+/// Two loops that take turns: lasers 0 and 1, then 1 and 2.
+Spinning with_loops() {
+  Spinning s = puck();
+  s.channels.resize(3);
+  s.firing_loops = {{{0, 1}, {1000.0, 5000.0}}, {{2, 1}, {2000.0, 9000.0}}};
+  return s;
+}
+
+TEST(Spinning, LoopsFireTheirChannelsInTurn) {
+  const Beams beams = make_beams(with_loops(), {0, kSecond_ns / 10});
+  validate(beams);
+  ASSERT_EQ(beams.rows, 3U);
+  const std::vector<std::vector<double>> fire_times_ns = {{1000.0, 5000.0, kNaN},
+                                                          {kNaN, 9000.0, 2000.0}};
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const std::size_t sequence = i % beams.cols;
+    const std::size_t laser = beams.rings[i];
+    const double fire_time_ns = fire_times_ns[sequence % 2][laser];
+    EXPECT_EQ(beams.directions[i].hasNaN(), std::isnan(fire_time_ns)) << i;
+    if (std::isnan(fire_time_ns)) continue;
+    const double time_ns = 55296.0 * static_cast<double>(sequence) + fire_time_ns;
+    EXPECT_EQ(beams.times_ns[i], time_ns);
+    const double azimuth_rad = -2.0 * std::numbers::pi * 10.0 * 1e-9 * time_ns;
+    EXPECT_LT((beams.directions[i] -
+               direction_at(azimuth_rad, with_loops().channels[laser].elevation_rad))
+                  .norm(),
+              1e-13);
+  }
+}
+
+TEST(Spinning, LoopsContinueAcrossIntervals) {
+  testing::expect_windows_join(with_loops(), 0, kSecond_ns / 5);
+  testing::expect_windows_join(with_loops(), -kSecond_ns / 3, kSecond_ns / 7);
+}
+
+TEST(Spinning, RefusesLoopsWithWrongChannels) {
+  const auto error_with = [](const FiringLoop& loop) {
+    Spinning s = puck();
+    s.firing_loops = {loop};
+    return error_text([&] { make_beams(s, {0, 1000}); });
+  };
+  EXPECT_EQ(error_with({{16}, {0.0}}),
+            "optics, firing_loops, channel: 16; allowed: the index of a channel, each at most once "
+            "in a loop");
+  EXPECT_EQ(error_with({{1, 1}, {0.0, 0.0}}),
+            "optics, firing_loops, channel: 1; allowed: the index of a channel, each at most once "
+            "in a loop");
+  EXPECT_EQ(error_with({{1, 2}, {0.0}}),
+            "optics, firing_loops: 1; allowed: one fire time for each channel of the loop");
 }
 
 TEST(Spinning, StepsInAzimuthByRateTimesSequence) {
