@@ -79,6 +79,11 @@ double percent_byte(double reflectivity) {
   return reflectivity_byte(reflectivity, 100.0);
 }
 
+/// The percentage up to 255 %: PandarXT manual, appendix on the packet's reflectivity.
+double linear_percent_byte(double reflectivity) {
+  return std::min(kMaxByte, std::round(100.0 * reflectivity));
+}
+
 /// 0 to 150 is 0 to 100 % Lambertian reflection: Livox Avia User Manual, "Output Data".
 double livox_byte(double reflectivity) {
   return reflectivity_byte(reflectivity, 150.0);
@@ -104,8 +109,8 @@ std::vector<LayoutField> with_xyz(std::vector<LayoutField> fields) {
 }
 
 /// The fields of rslidar_sdk and HesaiLidar_ROS_2.0, which are equal.
-std::vector<LayoutField> absolute_time_fields() {
-  return with_xyz({{"intensity", F32{}, kReflectivity, 0, percent_byte},
+std::vector<LayoutField> absolute_time_fields(double (*byte_of)(double)) {
+  return with_xyz({{"intensity", F32{}, kReflectivity, 0, byte_of},
                    {"ring", U16{}, "ring", 0, same},
                    {"timestamp", F64{}, "stamp", 0, seconds}});
 }
@@ -145,8 +150,8 @@ const std::vector<Layout>& layouts() {
         {"reflectivity", U8{}, kReflectivity, 0, livox_byte},
         {"tag", U8{}, "return", 0, livox_tag},
         {"line", U8{}, "ring", 0, same}}},
-      {"robosense", "rslidar_sdk", absolute_time_fields()},
-      {"hesai", "HesaiLidar_ROS_2.0", absolute_time_fields()},
+      {"robosense", "rslidar_sdk", absolute_time_fields(percent_byte)},
+      {"hesai", "HesaiLidar_ROS_2.0", absolute_time_fields(linear_percent_byte)},
       {"autoware", "Autoware",
        with_xyz({{"intensity", U8{}, kReflectivity, 0, percent_byte},
                  {"return_type", U8{}, "status", 0, return_type},
@@ -224,7 +229,7 @@ Spelling spelling_of(const Sensor& sensor) {
     const auto* scale = std::get_if<IntensityScale>(&step);
     if (scale == nullptr) continue;
     spelling.is_reflectance = spelling.is_reflectance || scale->reference_m > 0.0;
-    if (scale->kind == IntensityScale::Kind::vendor) spelling = {true, scale};
+    if (is_byte_scale(*scale)) spelling = {true, scale};
   }
   return spelling;
 }
@@ -238,8 +243,7 @@ std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
   std::vector<double> numbers = field_values(cloud, layout, "intensity", 0);
   const Spelling spelling = spelling_of(sensor);
   if (spelling.vendor != nullptr) {
-    for (double& number : numbers)
-      number = vendor_reflectance(number, spelling.vendor->max_reflectance);
+    for (double& number : numbers) number = reflectance_of_byte(*spelling.vendor, number);
   }
   if (spelling.is_reflectance) return numbers;
   const std::vector<double> ranges_m = field_values(cloud, layout, "range", 0);
@@ -257,6 +261,12 @@ T nearest(double value) {
     constexpr double kMax = std::numeric_limits<T>::max();
     return static_cast<T>(std::round(std::min(std::max(0.0, value), kMax)));  // max(0, NaN) is 0
   }
+}
+
+/// Whether the field holds what the sensor itself reports, and this is a byte of its own scale.
+bool is_own_byte(const LayoutField& field, const Sensor& sensor) {
+  return (field.convert == percent_byte || field.convert == linear_percent_byte) &&
+         spelling_of(sensor).vendor != nullptr;
 }
 
 Column made(const LayoutField& field, const std::vector<double>& numbers, std::size_t count) {
@@ -332,9 +342,12 @@ PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const 
   const Layout& wanted = layouts()[place_of(layout)];
   check_returns(wanted, beams);
   PointCloud result{cloud.rows, cloud.cols, cloud.frame_id, cloud.world_from_cloud, {}};
-  for (const LayoutField& field : wanted.fields) {
+  for (LayoutField field : wanted.fields) {
     std::vector<double> numbers;
-    if (field.column == kReflectivity) {
+    if (is_own_byte(field, sensor)) {
+      numbers = field_values(cloud, wanted, "intensity", 0);
+      field.convert = same;
+    } else if (field.column == kReflectivity) {
       numbers = reflectivity(cloud, wanted, sensor, beams);
     } else if (!field.column.empty()) {
       numbers = field_values(cloud, wanted, field.column, field.component);

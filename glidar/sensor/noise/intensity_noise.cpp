@@ -24,28 +24,43 @@ GLIDAR_SIMD void disturb(const IntensityGaussian& step, const Batch<double>& nor
 }
 
 double scaled_intensity(const IntensityScale& step, double reflectance) {
-  switch (step.kind) {
-    case IntensityScale::Kind::vendor:
-      return vendor_intensity(reflectance, step.max_reflectance);
-    case IntensityScale::Kind::linear:
-      return reflectance;
-    default:
-      return std::clamp(reflectance, 0.0, 1.0);
-  }
+  if (is_byte_scale(step)) return byte_of_reflectance(step, reflectance);
+  if (step.kind == IntensityScale::Kind::linear) return reflectance;
+  return std::clamp(reflectance, 0.0, 1.0);
+}
+
+double range_compensation(const IntensityScale& step, double range_m) {
+  if (!(step.reference_m > 0.0)) return 1.0;
+  const double ratio = range_m / step.reference_m;
+  return step.range_exponent == 2.0 ? ratio * ratio : portable_pow(ratio, step.range_exponent);
+}
+
+double whole(double value) {
+  return std::floor(value + 0.5);
 }
 
 }  // namespace
 
-double vendor_intensity(double reflectance, double max_reflectance) {
-  if (!(reflectance > 0.0)) return 0.0;
-  if (reflectance <= 1.0) return std::floor(100.0 * reflectance + 0.5);
-  const double share = portable_log(reflectance) / portable_log(max_reflectance);
-  return 101.0 + std::floor(154.0 * std::min(share, 1.0) + 0.5);
+bool is_byte_scale(const IntensityScale& scale) {
+  return scale.kind == IntensityScale::Kind::vendor || scale.kind == IntensityScale::Kind::percent;
 }
 
-double vendor_reflectance(double intensity, double max_reflectance) {
-  if (!(intensity > 100.0)) return intensity / 100.0;
-  return portable_exp((intensity - 101.0) / 154.0 * portable_log(max_reflectance));
+double byte_of_reflectance(const IntensityScale& scale, double reflectance) {
+  if (!(reflectance > 0.0)) return 0.0;
+  constexpr double kMaxByte = 255.0;
+  if (scale.kind == IntensityScale::Kind::percent)
+    return std::min(kMaxByte, whole(100.0 * reflectance));
+  const double white = scale.diffuse_counts;
+  if (reflectance <= 1.0) return whole(white * reflectance);
+  const double share = portable_log(reflectance) / portable_log(scale.max_reflectance);
+  return white + 1.0 + whole((kMaxByte - 1.0 - white) * std::min(share, 1.0));
+}
+
+double reflectance_of_byte(const IntensityScale& scale, double byte) {
+  if (scale.kind == IntensityScale::Kind::percent) return byte / 100.0;
+  const double white = scale.diffuse_counts;
+  if (!(byte > white)) return byte / white;
+  return portable_exp((byte - white - 1.0) / (254.0 - white) * portable_log(scale.max_reflectance));
 }
 
 void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
@@ -55,11 +70,10 @@ void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch&
 }
 
 void apply(const IntensityScale& step, const NoiseView& /*view*/, NoiseBatch& batch) {
-  const bool compensates = step.reference_m > 0.0;
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i)) continue;
-    const double times = compensates ? batch.range_m[i] / step.reference_m : 1.0;
-    batch.intensity[i] = scaled_intensity(step, step.gain * batch.intensity[i] * times * times);
+    const double compensation = range_compensation(step, batch.range_m[i]);
+    batch.intensity[i] = scaled_intensity(step, step.gain * batch.intensity[i] * compensation);
   }
 }
 
@@ -70,12 +84,17 @@ void describe(IntensityGaussian& step, FieldVisitor& visitor) {
 
 void describe(IntensityScale& step, FieldVisitor& visitor) {
   using Kind = IntensityScale::Kind;
-  constexpr std::array<Named<Kind>, 3> kNames = {
-      {{"unit", Kind::unit}, {"vendor", Kind::vendor}, {"linear", Kind::linear}}};
+  constexpr std::array<Named<Kind>, 4> kNames = {{{"unit", Kind::unit},
+                                                  {"vendor", Kind::vendor},
+                                                  {"linear", Kind::linear},
+                                                  {"percent", Kind::percent}}};
   constexpr NumberRule kAboveOne = {1.0, 1e300, true, "a finite number above 1"};
   visitor.number({"gain", "factor"}, kAboveZero, step.gain);
   visitor.number({"reference_m", "range of the range compensation; 0: none", kUnitMetre}, kFromZero,
                  step.reference_m);
+  visitor.number({"range_exponent", "of the range compensation"}, kFromZero, step.range_exponent);
+  visitor.number({"diffuse_counts", "what `vendor` reports for a white diffuse surface"},
+                 {1.0, 253.0, false, "a number from 1 to 253"}, step.diffuse_counts);
   visitor.number({"max_reflectance", "reflectance that `vendor` reports as 255"}, kAboveOne,
                  step.max_reflectance);
   visit_choice(visitor, {"kind", "of the reported numbers"}, kNames, step.kind);

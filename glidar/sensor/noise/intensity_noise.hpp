@@ -21,27 +21,35 @@ struct IntensityGaussian {
 };
 
 /// The scale of reported intensities. The apparent reflectance is gain I, or gain I (R /
-/// reference)^2 if the sensor compensates the range.
+/// reference)^range_exponent if the sensor compensates the range.
 ///  linear: unchanged.
 ///  unit: clipped to 0..1.
-///  vendor: an integer from 0 to 255: round(100 rho) up to 100 for diffuse surfaces;
-///  101 + round(154 ln(rho) / ln(max_reflectance)), up to 255, for retro-reflectors.
+///  vendor: an integer from 0 to 255: round(n rho), n = diffuse_counts, for diffuse surfaces;
+///  n + 1 + round((254 - n) ln(rho) / ln(max_reflectance)), up to 255, for retro-reflectors.
+///  percent: round(100 rho), up to 255.
 struct IntensityScale {
   static constexpr TypeInfo kType = {
       "intensity_scale",
-      "ρ = gain I, times (R/reference)² if set; `linear`: unchanged; `unit`: clipped to 0..1; "
-      "`vendor`: round(100 ρ), for retro-reflectors 101 + round(154 ln ρ / ln max_reflectance)",
-      "0-100 and 101-255 as Velodyne"};
-  enum class Kind : std::uint8_t { unit, vendor, linear };
+      "ρ = gain I, times (R/reference)^range_exponent if set; `linear`: unchanged; `unit`: clipped "
+      "to 0..1; `vendor`: round(n ρ), n = diffuse_counts, for retro-reflectors n + 1 + round((254 "
+      "- "
+      "n) ln ρ / ln max_reflectance); `percent`: round(100 ρ), up to 255",
+      "n: 100 of Velodyne and Ouster, 110 of the VLS-128, 150 of Livox; `percent`: Hesai"};
+  enum class Kind : std::uint8_t { unit, vendor, linear, percent };
   Kind kind = Kind::unit;
   double gain = 1.0;
   double reference_m = 0.0;        ///< 0: no range compensation
+  double range_exponent = 2.0;     ///< of the range compensation; as that of the lidar equation
   double max_reflectance = 100.0;  ///< reflectance of the value 255
+  double diffuse_counts = 100.0;   ///< value of a white diffuse surface
 };
 
-double vendor_intensity(double reflectance, double max_reflectance);
-/// The apparent reflectance of a vendor intensity, the inverse of the scale.
-double vendor_reflectance(double intensity, double max_reflectance);
+/// Whether the scale reports bytes.
+bool is_byte_scale(const IntensityScale& scale);
+/// The byte of a reflectance. Requires is_byte_scale().
+double byte_of_reflectance(const IntensityScale& scale, double reflectance);
+/// The apparent reflectance of a byte, the inverse. Requires is_byte_scale().
+double reflectance_of_byte(const IntensityScale& scale, double byte);
 
 /// Keys in sensor files.
 void describe(IntensityGaussian& step, FieldVisitor& visitor);

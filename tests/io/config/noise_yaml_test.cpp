@@ -50,7 +50,7 @@ const std::string kEvery = R"(
   - {type: stereo, focal_px: 674, baseline_m: 0.05, sigma_px: 0.08, step_px: 0.125}
   - {type: continuous_wave, frequencies_hz: [80e6, 16e6], electrons_at_full_scale: 20000, background_electrons: 5000, contrast: 0.6, multipath_fraction: 0.1, min_coherence: 0.5, max_phase_residual: 0.05}
   - {type: intensity_gaussian, sigma: 0.01, relative: 0.02}
-  - {type: intensity_scale, kind: vendor, gain: 2, reference_m: 10, max_reflectance: 50}
+  - {type: intensity_scale, kind: vendor, gain: 2, reference_m: 10, range_exponent: 2.5, diffuse_counts: 120, max_reflectance: 50}
   - {type: pointing_jitter, sigma_azimuth_deg: 0.1, sigma_elevation_deg: 0.05}
   - {type: encoder_error, step_deg: 0.01, eccentricity_deg: 0.02, phase_deg: 45, turn_sigma_deg: 0.03}
 )";

@@ -107,7 +107,7 @@ def layout_values(c):
                          "tag": zero, "line": np.minimum(c["ring"], 255)},
         "robosense": {"intensity": percent, "ring": c["ring"],
                       "timestamp": c["stamp"].astype(np.float64) * 1e-9},
-        "hesai": {"intensity": percent, "ring": c["ring"],
+        "hesai": {"intensity": np.minimum(255, np.floor(100 * c["intensity"].astype(np.float64) + 0.5)), "ring": c["ring"],
                   "timestamp": c["stamp"].astype(np.float64) * 1e-9},
         "autoware": {"intensity": percent, "return_type": c["status"] == 0, "channel": c["ring"],
                      "azimuth": turn, "elevation": c["elevation"], "distance": c["range"],

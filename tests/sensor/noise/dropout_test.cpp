@@ -123,13 +123,48 @@ TEST(IntensityGaussian, HasTheStatedSpreadAndIsNeverNegative) {
 }
 
 TEST(IntensityScale, ReportsDiffuseAndRetroReflectorsOnTheVendorScale) {
-  EXPECT_EQ(vendor_intensity(0.0, 100.0), 0.0);
-  EXPECT_EQ(vendor_intensity(0.104, 100.0), 10.0);
-  EXPECT_EQ(vendor_intensity(1.0, 100.0), 100.0);
-  EXPECT_EQ(vendor_intensity(1.0001, 100.0), 101.0);
-  EXPECT_EQ(vendor_intensity(10.0, 100.0), 178.0);
-  EXPECT_EQ(vendor_intensity(100.0, 100.0), 255.0);
-  EXPECT_EQ(vendor_intensity(5000.0, 100.0), 255.0);
+  const IntensityScale velodyne{.kind = IntensityScale::Kind::vendor};
+  for (const auto& [reflectance, byte] : std::vector<std::pair<double, double>>{{0.0, 0.0},
+                                                                                {0.104, 10.0},
+                                                                                {1.0, 100.0},
+                                                                                {1.0001, 101.0},
+                                                                                {10.0, 178.0},
+                                                                                {100.0, 255.0},
+                                                                                {5000.0, 255.0}})
+    EXPECT_EQ(byte_of_reflectance(velodyne, reflectance), byte) << reflectance;
+  const IntensityScale livox{.kind = IntensityScale::Kind::vendor, .diffuse_counts = 150.0};
+  for (const auto& [reflectance, byte] : std::vector<std::pair<double, double>>{
+           {0.0, 0.0}, {0.104, 16.0}, {1.0, 150.0}, {1.0001, 151.0}, {10.0, 203.0}, {100.0, 255.0}})
+    EXPECT_EQ(byte_of_reflectance(livox, reflectance), byte) << reflectance;
+  const IntensityScale hesai{.kind = IntensityScale::Kind::percent};
+  for (const auto& [reflectance, byte] : std::vector<std::pair<double, double>>{
+           {0.0, 0.0}, {0.104, 10.0}, {1.0, 100.0}, {2.5, 250.0}, {2.6, 255.0}})
+    EXPECT_EQ(byte_of_reflectance(hesai, reflectance), byte) << reflectance;
+}
+
+TEST(IntensityScale, EveryByteComesFromItsReflectance) {
+  const std::array<IntensityScale, 4> scales = {
+      IntensityScale{.kind = IntensityScale::Kind::vendor},
+      IntensityScale{.kind = IntensityScale::Kind::vendor, .diffuse_counts = 110.0},
+      IntensityScale{.kind = IntensityScale::Kind::vendor, .diffuse_counts = 150.0},
+      IntensityScale{.kind = IntensityScale::Kind::percent}};
+  for (const IntensityScale& scale : scales) {
+    for (double byte = 0.0; byte <= 255.0; ++byte) {
+      if (byte == scale.diffuse_counts + 1.0 && scale.kind == IntensityScale::Kind::vendor)
+        continue;  // a reflectance just above 1, which is rounded to 1
+      EXPECT_EQ(byte_of_reflectance(scale, reflectance_of_byte(scale, byte)), byte);
+    }
+  }
+}
+
+TEST(IntensityScale, CompensatesTheRangeWithTheExponentOfTheSensor) {
+  NoiseStage stage(1, 4, 20.0, 0.125);
+  stage.apply({IntensityScale{
+      .kind = IntensityScale::Kind::linear, .reference_m = 10.0, .range_exponent = 3.0}});
+  EXPECT_FLOAT_EQ(stage.frame.intensity[0], 1.0F);  // 0.125 at twice the distance
+}
+
+TEST(IntensityScale, ScalesAndClipsNumbers) {
   NoiseStage stage(1, 4, 20.0, 0.125);
   stage.apply(
       {IntensityScale{.kind = IntensityScale::Kind::vendor, .gain = 1.0, .reference_m = 10.0}});
