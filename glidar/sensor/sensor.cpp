@@ -37,6 +37,26 @@ void repeat_for_returns(std::size_t returns, Beams& beams) {
   beams.pinhole.reset();  // no longer one grid
 }
 
+std::size_t channels_of(const Pinhole& /*optics*/) {
+  return 1;
+}
+std::size_t channels_of(const Spinning& optics) {
+  return optics.channels.size();
+}
+std::size_t channels_of(const LineScan& optics) {
+  const bool is_vertical = optics.lines == LineScan::Lines::vertical;
+  return is_vertical ? optics.azimuths_rad.size() : optics.elevations_rad.size();
+}
+std::size_t channels_of(const Prism& optics) {
+  return optics.incidence_tangent.size();
+}
+std::size_t channels_of(const WedgeMirror& optics) {
+  return optics.incidence_rad.size();
+}
+std::size_t channels_of(const RayTable& optics) {
+  return optics.rows;
+}
+
 }  // namespace
 
 Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
@@ -74,6 +94,22 @@ void check_weather(const Sensor& sensor) {
                  .remedy = "add 'lidar_equation' to a sensor file (docs/files.md)"});
   }
   extinction_per_m(*sensor.weather, sensor.wavelength_m);
+}
+
+std::size_t channel_count(const Optics& optics) {
+  return std::visit([](const auto& alternative) { return channels_of(alternative); }, optics);
+}
+
+void check_channel_ranges(const Sensor& sensor) {
+  if (!sensor.lidar_equation || sensor.lidar_equation->channel_range_m.empty()) return;
+  const std::size_t channels = channel_count(sensor.optics);
+  const std::size_t found = sensor.lidar_equation->channel_range_m.size();
+  if (found == channels) return;
+  throw Error({.where = "lidar_equation, channel_range_m",
+               .found = std::to_string(found) + " ranges for " + std::to_string(channels) +
+                        (channels == 1 ? " channel" : " channels"),
+               .allowed = "one range for each channel of the optics",
+               .remedy = "add or remove ranges, or leave channel_range_m out"});
 }
 
 FrameInterval frame_interval(const Sensor& sensor, std::uint32_t frame) {

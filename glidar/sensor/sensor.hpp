@@ -12,6 +12,7 @@
 #include <glidar/sensor/optics/prism.hpp>
 #include <glidar/sensor/optics/ray_table.hpp>
 #include <glidar/sensor/optics/spinning.hpp>
+#include <glidar/sensor/optics/wedge_mirror.hpp>
 #include <glidar/sensor/phong_shading.hpp>
 
 #include <limits>
@@ -24,7 +25,7 @@ namespace glidar {
 
 class FieldVisitor;
 
-using Optics = std::variant<Pinhole, Spinning, LineScan, Prism, RayTable>;
+using Optics = std::variant<Pinhole, Spinning, LineScan, Prism, WedgeMirror, RayTable>;
 
 /// The distances that the sensor reports. A surface outside them still blocks the beam.
 struct Limits {
@@ -72,6 +73,13 @@ void set_rate(Sensor& sensor, double rate_hz);
 
 /// Throws Error for weather without a lidar equation, and for fog without a wavelength.
 void check_weather(const Sensor& sensor);
+
+/// The number of channels: rings of clouds are below it.
+std::size_t channel_count(const Optics& optics);
+
+/// Throws Error unless the sensor has one of lidar_equation.channel_range_m for each channel, or
+/// none.
+void check_channel_ranges(const Sensor& sensor);
 
 /// The interval of a frame at the sensor's rate. Frames join without gap or overlap.
 FrameInterval frame_interval(const Sensor& sensor, std::uint32_t frame);

@@ -56,6 +56,7 @@ bool needs_waveform(const Sensor& sensor, const Scene& scene) {
 }
 
 PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
+  check_channel_ranges(sensor);
   PreparedSensor prepared{.sensor = sensor,
                           .noise = plan_noise(sensor.noise, 1.0 / sensor.rate_hz),
                           .required_hit_columns = required_hit_columns(sensor),

@@ -161,7 +161,8 @@ void measure_tile(const Simulation& s, BeamRange tile) {
   const Sensor& sensor = s.prepared.sensor;
   check_limits(sensor.limits, *s.fired, tile, s.frame);
   if (sensor.lidar_equation) {
-    shade_lidar(*sensor.lidar_equation, s.scene, sensor.wavelength_m, tile, s.frame);
+    shade_lidar(*sensor.lidar_equation, s.scene, sensor.wavelength_m, s.fired->rings, tile,
+                s.frame);
   } else {
     shade_phong(sensor.light, tile, s.frame);
   }

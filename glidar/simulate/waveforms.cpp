@@ -64,22 +64,32 @@ void add_weather(const std::optional<PreparedWeather>& weather, const RngKey& ke
   }
 }
 
-/// Adds the receiver's noise to the echoes and keeps those at or above the threshold. The k-th echo
-/// of a pulse samples block k.
-void detect_echoes(const LidarEquation& light, const RngKey& key, double first_noise,
-                   WaveformBuffer& waveform) {
+/// Adds the receiver's noise to the echoes and keeps those at or above the threshold of the
+/// channel. The k-th echo of a pulse samples block k.
+void detect_echoes(const LidarEquation& light, double threshold, const RngKey& key,
+                   double first_noise, WaveformBuffer& waveform) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < waveform.echoes; ++k) {
     PulseEcho echo = waveform.echo[k];
+    echo.signal /= threshold;
     if (light.noise_sigma > 0.0) {
       RngKey echo_key = key;
       echo_key.block = static_cast<std::uint32_t>(k);
       echo.signal =
           with_noise(light, echo.signal, k == 0 ? first_noise : normals(random_words(echo_key))[0]);
     }
-    if (echo.signal >= 1.0) waveform.echo[kept++] = echo;
+    if (!(echo.signal >= 1.0)) continue;
+    echo.signal *= threshold;
+    waveform.echo[kept++] = echo;
   }
   waveform.echoes = kept;
+}
+
+/// The threshold of the channel of an entry.
+double threshold_of(const Simulation& s, std::size_t entry) {
+  const std::vector<std::uint16_t>& rings = s.fired->rings;
+  return channel_threshold(s.prepared.pulse_model->lidar_equation,
+                           rings.empty() ? std::uint16_t{0} : rings[entry]);
 }
 
 void report_echo(const Simulation& s, const PulseEcho& echo, const EchoContribution& path,
@@ -89,7 +99,8 @@ void report_echo(const Simulation& s, const PulseEcho& echo, const EchoContribut
   const double saturation = s.prepared.pulse_model->lidar_equation.saturation;
   const double range_m = reported_range_m(sensor.receiver, echo);
   Status status = check_limits(sensor.limits, *s.fired, entry, range_m);
-  if (status == Status::hit && saturation > 0.0 && echo.signal >= saturation)
+  if (status == Status::hit && saturation > 0.0 &&
+      echo.signal >= saturation * threshold_of(s, entry))
     status = Status::saturated;
   if (status != Status::hit) return invalidate_return(frame, entry, status);
   frame.status[entry] = Status::hit;
@@ -198,9 +209,10 @@ Status find_returns(const Simulation& s, std::size_t pulse, const EchoContributi
     if (is_surface) strongest_signal = std::max(strongest_signal, waveform.echo[k].signal);
   }
   const std::size_t in_run = pulse - memory.samples.key.beam;
-  detect_echoes(model.lidar_equation, key, memory.samples.noise[in_run], waveform);
+  const double threshold = threshold_of(s, pulse);
+  detect_echoes(model.lidar_equation, threshold, key, memory.samples.noise[in_run], waveform);
   enforce_min_separation(sensor.receiver.min_return_separation_m, waveform);
-  return missing_return_status(s, surface, strongest_signal, pulse);
+  return missing_return_status(s, surface, strongest_signal / threshold, pulse);
 }
 
 void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) {

@@ -72,6 +72,17 @@ void visit_light(Sensor& sensor, FieldVisitor& visitor) {
   visitor.object({"receiver", "echoes of pulses"}, is_pulsed, FieldVisitor::Describe(receiver));
 }
 
+/// Where the file has them, with the place in the file.
+void check_ranges(const Sensor& sensor, const FieldVisitor& visitor) {
+  try {
+    check_channel_ranges(sensor);
+  } catch (const Error& error) {
+    const ErrorParts& parts = error.parts();
+    visitor.reject("lidar_equation", parts.found + " in channel_range_m", parts.allowed,
+                   parts.remedy);
+  }
+}
+
 void visit_weather(Sensor& sensor, FieldVisitor& visitor) {
   visitor.needs({"weather", "lidar_equation", "weather for a sensor with pulsed light",
                  "add 'lidar_equation: ...'"});
@@ -138,6 +149,7 @@ void describe(SensorKeys& keys, FieldVisitor& visitor) {
   }
   visit_scan(sensor, visitor);
   visit_light(sensor, visitor);
+  if (visitor.is_reading()) check_ranges(sensor, visitor);
   visit_weather(sensor, visitor);
   visit_projector(sensor, visitor);
   visit_list(visitor,

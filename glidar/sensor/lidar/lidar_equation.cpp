@@ -135,8 +135,10 @@ bool is_lost_in_noise(const LidarEquation& light, double signal) {
   return signal < std::min(kMinSignalToNoise * light.noise_sigma, 1.0);
 }
 
-void measure_hit(const LidarEquation& light, double received, std::size_t beam, Frame& frame) {
-  frame.intensity[beam] = static_cast<float>(received);
+/// `received` is the signal over the threshold of the channel.
+void measure_hit(const LidarEquation& light, double received, double threshold, std::size_t beam,
+                 Frame& frame) {
+  frame.intensity[beam] = static_cast<float>(received * threshold);
   if (received < 1.0) {
     invalidate_return(frame, beam,
                       classify_weak_return(light, received, frame.ground_truth.range_m[beam]));
@@ -145,6 +147,7 @@ void measure_hit(const LidarEquation& light, double received, std::size_t beam, 
     invalidate_return(frame, beam, Status::saturated);
 }
 
+constexpr std::size_t kMaxChannelRanges = 4096;
 constexpr NumberRule kEquationRange = {0.0, 1e9, true, "metres above 0, up to 1e9"};
 
 /// The noise by the range at which a data sheet promises a detection of 90 %.
@@ -191,6 +194,11 @@ void validate(const LidarEquation& light) {
     require_number(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]),
                    "lidar_equation, overlap", range_m, "ranges that rise from 0 or above");
     require_number(from_zero(share), "lidar_equation, overlap", share, "shares of 0 or above");
+  }
+  for (const double range_m : light.channel_range_m) {
+    require_number(positive(range_m), "lidar_equation, channel_range_m", range_m, "metres above 0");
+    require_number(interpolate(light.overlap, range_m, 1.0) > 0.0, "lidar_equation, overlap", 0.0,
+                   "a share above 0 at the range of each channel");
   }
   require_number(interpolate(light.overlap, light.reference_range_m, 1.0) > 0.0,
                  "lidar_equation, overlap", 0.0, "a share above 0 at the reference range");
@@ -242,6 +250,23 @@ void received_signals(const LidarEquation& light, const Scene& scene, double wav
   }
 }
 
+double channel_threshold(const LidarEquation& light, std::uint16_t ring) {
+  if (light.channel_range_m.empty()) return 1.0;
+  LidarEquation clear = light;
+  clear.weather_extinction_per_m = 0.0;
+  return received_signal(clear, light.reference_reflectance, light.channel_range_m.at(ring));
+}
+
+double ChannelThresholds::operator()(std::size_t beam) {
+  if (light_.channel_range_m.empty()) return 1.0;
+  const std::uint16_t ring = rings_.empty() ? std::uint16_t{0} : rings_[beam];
+  if (ring != ring_ || threshold_ == 0.0) {
+    ring_ = ring;
+    threshold_ = channel_threshold(light_, ring);
+  }
+  return threshold_;
+}
+
 Status classify_weak_return(const LidarEquation& light, double signal, double range_m) {
   if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
   const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
@@ -269,7 +294,8 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 }
 
 void shade_lidar(const LidarEquation& light, const Scene& scene, double wavelength_m,
-                 BeamRange range, Frame& frame) {
+                 std::span<const std::uint16_t> rings, BeamRange range, Frame& frame) {
+  ChannelThresholds thresholds(light, rings);
   Batch<double> noise{};
   Batch<double> signals;
   for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -280,7 +306,9 @@ void shade_lidar(const LidarEquation& light, const Scene& scene, double waveleng
       if (light.noise_sigma > 0.0) sample_normals(rng_key(frame, Purpose::detection, i), noise);
     }
     if (frame.status[i] == Status::hit) {
-      measure_hit(light, with_noise(light, signals[k], noise[k]), i, frame);
+      const double threshold = thresholds(i);
+      const double received = with_noise(light, signals[k] / threshold, noise[k]);
+      measure_hit(light, received, threshold, i, frame);
     } else {
       frame.intensity[i] = 0.0F;
     }
@@ -298,6 +326,11 @@ void describe(LidarEquation& light, FieldVisitor& visitor) {
        "R_ref: range at which a surface of that reflectance is detected with probability 1/2",
        kUnitMetre, kRequired},
       kEquationRange, light.reference_range_m);
+  visitor.numbers({"channel_range_m",
+                   "reference range of each channel, by its number in clouds, where they differ",
+                   kUnitMetre, false, "`reference_range_m` for all"},
+                  {.number = kEquationRange, .min_size = 0, .max_size = kMaxChannelRanges},
+                  light.channel_range_m);
   visitor.number({"range_exponent", "q"}, kExponent, light.range_exponent);
   visitor.table({"overlap", "O: pairs `[range, O]`, linear between them, constant outside",
                  kUnitMetre, false, "1 everywhere"},

@@ -6,7 +6,9 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/math/lookup_table.hpp>
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 namespace glidar {
 
@@ -30,6 +32,10 @@ struct LidarEquation {
   /// Extinction of fog, rain and snow, a factor exp(-2 alpha R): data sheets state ranges in clear
   /// air.
   double weather_extinction_per_m = 0.0;
+  /// The reference range of each channel (ring) where it differs from channel to channel; empty:
+  /// reference_range_m for all. A channel whose range is shorter needs a stronger signal, see
+  /// channel_threshold(). The unit of signals stays that of reference_range_m.
+  std::vector<double> channel_range_m = {};
 };
 
 /// Throws Error with the number that is out of range.
@@ -51,6 +57,25 @@ double relative_overlap(const LidarEquation& light, double range_m);
 
 /// S of a surface with this backscatter at a range.
 double received_signal(const LidarEquation& light, double backscatter, double range_m);
+
+/// The signal that a channel detects with probability 1/2, without weather: S of the reference
+/// reflectance at the reference range of the channel; 1 without ranges of channels.
+double channel_threshold(const LidarEquation& light, std::uint16_t ring);
+
+/// Thresholds of beams, most of which have the ring of the beam before.
+class ChannelThresholds {
+ public:
+  /// `rings` of all beams; empty: all have ring 0. Both must outlive this object.
+  ChannelThresholds(const LidarEquation& light, std::span<const std::uint16_t> rings)
+      : light_(light), rings_(rings) {}
+  double operator()(std::size_t beam);
+
+ private:
+  const LidarEquation& light_;
+  std::span<const std::uint16_t> rings_;
+  std::uint16_t ring_ = 0;
+  double threshold_ = 0.0;  ///< of ring_; 0: not known yet
+};
 
 /// The status of a signal that is not detected: weather if it would be detected in clear air, else
 /// below_threshold.
@@ -87,8 +112,9 @@ void received_signals(const LidarEquation& light, const Scene& scene, double wav
 
 /// Fills a range of frame.intensity with received signals, noise included, and removes returns that
 /// are too weak or too strong (status below_threshold, weather or saturated; range_m NaN, intensity
-/// 0). Requires cos_shading and reflectance in frame.ground_truth; uses Purpose::detection.
+/// 0). `rings` of all beams; empty: all have ring 0. Requires cos_shading and reflectance in
+/// frame.ground_truth; uses Purpose::detection.
 void shade_lidar(const LidarEquation& light, const Scene& scene, double wavelength_m,
-                 BeamRange range, Frame& frame);
+                 std::span<const std::uint16_t> rings, BeamRange range, Frame& frame);
 
 }  // namespace glidar

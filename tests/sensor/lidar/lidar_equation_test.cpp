@@ -197,7 +197,7 @@ struct Stage {
     frame.ground_truth.diffuse.assign(size, 0.8F);
   }
   void measure(const LidarEquation& light) {
-    shade_lidar(light, scene, 905e-9, {0, beams.size()}, frame);
+    shade_lidar(light, scene, 905e-9, {}, {0, beams.size()}, frame);
   }
   [[nodiscard]] double share_of(Status status) const {
     return static_cast<double>(std::count(frame.status.begin(), frame.status.end(), status)) /
@@ -217,6 +217,34 @@ TEST(ShadeLidar, DetectsWithTheProbabilityOfTheDataSheet) {
     EXPECT_NEAR(stage.share_of(Status::hit), probability, 4.0 * deviation);
     EXPECT_NEAR(stage.share_of(Status::below_threshold), 1.0 - probability, 4.0 * deviation);
   }
+}
+
+TEST(ShadeLidar, EachChannelDetectsWithProbabilityOneHalfAtItsOwnRange) {
+  constexpr std::size_t kBeams = 40000;
+  const LidarEquation light{.reference_reflectance = 0.8,
+                            .reference_range_m = 80.0,
+                            .range_exponent = 2.4,
+                            .noise_sigma = 0.3,
+                            .channel_range_m = {80.0, 50.0, 120.0}};
+  for (std::uint16_t ring = 0; ring < 3; ++ring) {
+    const double range_m = light.channel_range_m[ring];
+    Stage stage(kBeams, range_m);
+    const std::vector<std::uint16_t> rings(kBeams, ring);
+    shade_lidar(light, stage.scene, 905e-9, rings, {0, kBeams}, stage.frame);
+    EXPECT_NEAR(stage.share_of(Status::hit), 0.5, 4.0 * 0.5 / std::sqrt(kBeams)) << ring;
+    // the threshold is the signal there, in the unit that all channels share
+    EXPECT_NEAR(channel_threshold(light, ring), std::pow(80.0 / range_m, 2.4), 1e-13);
+  }
+}
+
+TEST(ShadeLidar, IntensitiesHaveTheSameUnitInAllChannels) {
+  const LidarEquation light{
+      .reference_reflectance = 0.8, .reference_range_m = 80.0, .channel_range_m = {80.0, 50.0}};
+  Stage stage(2, 20.0);
+  const std::vector<std::uint16_t> rings = {0, 1};
+  shade_lidar(light, stage.scene, 905e-9, rings, {0, 2}, stage.frame);
+  EXPECT_FLOAT_EQ(stage.frame.intensity[0], 16.0F);  // (80 / 20)^2
+  EXPECT_FLOAT_EQ(stage.frame.intensity[1], 16.0F);
 }
 
 TEST(ShadeLidar, NoiseAloneIsNotAReturnOfASurface) {
@@ -240,7 +268,7 @@ TEST(ShadeLidar, IsIndependentOfHowBeamsAreDivided) {
   whole.measure(light);
   for (const auto& [begin, end] :
        {std::pair{300U, 1000U}, std::pair{0U, 17U}, std::pair{17U, 300U}}) {
-    shade_lidar(light, parts.scene, 905e-9, {begin, end}, parts.frame);
+    shade_lidar(light, parts.scene, 905e-9, {}, {begin, end}, parts.frame);
   }
   EXPECT_EQ(whole.frame.status, parts.frame.status);
   EXPECT_EQ(whole.frame.intensity, parts.frame.intensity);
