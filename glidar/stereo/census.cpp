@@ -42,17 +42,17 @@ Pairs make_pairs(StereoCensus kind, bool is_mirrored, std::size_t stride) {
   Pairs pairs;
   const bool is_symmetric = kind == StereoCensus::symmetric_7x7;
   const auto radius = static_cast<std::ptrdiff_t>(census_radius_px(kind));
-  for (std::ptrdiff_t dy = -radius; dy <= radius; ++dy) {
-    for (std::ptrdiff_t dx = -radius; dx <= radius; ++dx) {
-      if (dx == 0 && dy == 0) {
-        if (is_symmetric) return pairs;  // the other half is opposite
-        continue;
-      }
-      const std::ptrdiff_t offset =
-          dy * static_cast<std::ptrdiff_t>(stride) + (is_mirrored ? -dx : dx);
-      pairs.first.push_back(offset);
-      pairs.second.push_back(is_symmetric ? -offset : 0);
-    }
+  const std::ptrdiff_t side = 2 * radius + 1;
+  const std::ptrdiff_t centre = side * side / 2;
+  // of a symmetric census only the pixels before the centre: the others are opposite
+  for (std::ptrdiff_t i = 0; i < (is_symmetric ? centre : side * side); ++i) {
+    if (i == centre) continue;
+    const std::ptrdiff_t dx = i % side - radius;
+    const std::ptrdiff_t dy = i / side - radius;
+    const std::ptrdiff_t offset =
+        dy * static_cast<std::ptrdiff_t>(stride) + (is_mirrored ? -dx : dx);
+    pairs.first.push_back(offset);
+    pairs.second.push_back(is_symmetric ? -offset : 0);
   }
   return pairs;
 }

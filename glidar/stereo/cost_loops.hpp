@@ -9,21 +9,25 @@
 namespace glidar::stereo::GLIDAR_KERNEL {
 namespace {
 
+/// The bits [begin, end) of the pixels from `centre` on, one pixel in each lane.
+GLIDAR_INLINE Words census_bits(const CensusRow& row, const std::int16_t* centre, std::size_t begin,
+                                std::size_t end) {
+  Words bits = {};
+  Words value = broadcast(1);
+  for (std::size_t bit = begin; bit < end; ++bit) {
+    bits |=
+        select_below(load(centre + row.first[bit]), load(centre + row.second[bit]), value, Words{});
+    value += value;
+  }
+  return bits;
+}
+
 void census_row(const CensusRow& row) {
   for (std::size_t begin = 0; begin < row.bits; begin += kPlaneBits) {
     const std::size_t end = begin + kPlaneBits < row.bits ? begin + kPlaneBits : row.bits;
     std::uint8_t* const plane = row.planes + begin / kPlaneBits * row.plane_stride;
-    for (std::size_t x = 0; x < row.width; x += kWords) {
-      const std::int16_t* const centre = row.centre + x;
-      Words bits = {};
-      Words value = broadcast(1);
-      for (std::size_t bit = begin; bit < end; ++bit) {
-        bits |= select_below(load(centre + row.first[bit]), load(centre + row.second[bit]), value,
-                             Words{});
-        value += value;
-      }
-      store_narrowed(plane + x, bits);
-    }
+    for (std::size_t x = 0; x < row.width; x += kWords)
+      store_narrowed(plane + x, census_bits(row, row.centre + x, begin, end));
   }
 }
 
