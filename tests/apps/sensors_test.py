@@ -35,11 +35,11 @@ class Sensors(CliTest):
             return [line.split()[0] for line in self.succeed("sensors", *arguments).stdout.splitlines()[1:]]
 
         self.assertLessEqual({"OS1-128", "OS1-32", "OS1-64"}, set(names("ouster os1")))
-        self.assertEqual(names("velodyne hdl"), ["HDL-32E", "HDL-64E-S3"])
+        self.assertEqual(names("velodyne hdl"), ["HDL-32E", "HDL-64E-S1", "HDL-64E-S2", "HDL-64E-S3", "HDL-64E-S3-unit-2"])
         listed = json.loads(self.succeed("sensors", "velodyne_HDL", "--json").stdout)
-        self.assertEqual([one["name"] for one in listed], ["HDL-32E", "HDL-64E-S3"])
+        self.assertEqual([one["name"] for one in listed], ["HDL-32E", "HDL-64E-S1", "HDL-64E-S2", "HDL-64E-S3", "HDL-64E-S3-unit-2"])
         self.assertIn("--mode: no sensor is given", self.refused("sensors", "ouster", "--mode", "512x10"))
-        self.assertIn("did you mean OS1-64", self.refused("sensors", "os1-46"))
+        self.assertIn("did you mean OS1-16, OS1-64", self.refused("sensors", "os1-46"))
 
     def test_a_sensor_prints_its_aliases_and_the_values_of_the_chosen_mode(self):
         lines = self.succeed("sensors", "os1").stdout.splitlines()

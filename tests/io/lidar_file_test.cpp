@@ -147,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{
             "type", "optics: {type: spining}\n",
             "s.yaml:1:16: optics.type: 'spining'; allowed: pinhole, spinning, line_scan, prism, "
-            "table, ouster; did you mean 'spinning'?"},
+            "wedge_mirror, table, ouster; did you mean 'spinning'?"},
         BadFile{"counts",
                 "optics: {type: spinning, firing_period_us: 5, elevation_deg: [1, 2], "
                 "fire_time_us: [0]}\n",

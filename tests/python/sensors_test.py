@@ -42,7 +42,8 @@ def test_every_alias_and_mode_of_a_preset_loads():
 
 
 def test_presets_are_found_by_a_part_of_their_name():
-    assert [preset.name for preset in glidar.sensor_presets("hdl_")] == ["HDL-32E", "HDL-64E-S3"]
+    assert [preset.name for preset in glidar.sensor_presets("hdl_")] == [
+        "HDL-32E", "HDL-64E-S1", "HDL-64E-S2", "HDL-64E-S3", "HDL-64E-S3-unit-2"]
     assert [preset.name for preset in glidar.sensor_presets("velodyne vlp16")] == ["VLP-16"]
     assert glidar.sensor_presets("no such sensor") == []
 

@@ -59,7 +59,8 @@ TEST(ClosedForm, ALevelPlaneHasConstantDepthAndTheRangesOfAFloor) {
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double down = -beams.directions[i].z();
     if (down < 0.01) continue;
-    const double range_m = 1.8 / down;  // R = h / (-n d)
+    const double height_m = 1.8 + beams.origins_m[i].z();
+    const double range_m = height_m / down;  // R = h / (-n d)
     ASSERT_NEAR(turn.range_m[i], range_m, range_m * kDouble);
     ++hits;
   }

@@ -14,6 +14,7 @@
 #include <io/yaml_files.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace glidar {
 namespace {
@@ -80,7 +81,9 @@ void expect_room_measured(const SensorReference& reference) {
   sensor.limits = {.along = Limits::Along::range};
   const Ball room(sensor, 2.0, 0.5);
   EXPECT_GT(room.share_of_hits(), 0.999);
-  EXPECT_LT(room.range_error_m(), 0.11);  // flash arrays: 0.1 m
+  // flash arrays: 0.1 m; altimeters: steps of 37.5 cm (MOLA), 1 m (Hayabusa)
+  const bool is_altimeter = sensor.rate_hz <= 10.0 && room.beams.size() == 1;
+  EXPECT_LT(room.range_error_m(), is_altimeter ? 3.0 : 0.11);
   for (std::size_t i = 0; i < room.beams.size(); ++i) {
     ASSERT_TRUE(room.frame.status[i] != Status::hit || room.frame.range_m[i] > 0.0);
     ASSERT_TRUE(room.frame.intensity[i] >= 0.0F && std::isfinite(room.frame.intensity[i]));
@@ -117,6 +120,19 @@ void PrintTo(const SheetPair& pair, std::ostream* out) {
 
 class PresetRange : public ::testing::TestWithParam<SheetPair> {};
 
+// Half of the channels of the XT32 reach 80 m on 10 %, the others 50 m.
+TEST(Presets, OuterChannelsOfTheXt32DetectLess) {
+  constexpr double kRange_m = 60.0;
+  const auto probability = [&](double reference_m) {
+    const double signal = reference_m * reference_m / (kRange_m * kRange_m);
+    return 0.5 * std::erfc((1.0 - signal) / (0.33 * std::numbers::sqrt2));
+  };
+  Sensor sensor = preset("XT32");
+  sensor.limits = {.along = Limits::Along::range};
+  const double expected = 0.5 * (probability(80.0) + probability(50.0));
+  EXPECT_NEAR(Ball(sensor, kRange_m, 0.1).share_of_hits(), expected, 0.01);
+}
+
 TEST_P(PresetRange, IsThatOfTheDataSheetWithinOneMetre) {
   const SheetPair& pair = GetParam();
   Sensor sensor = preset(pair.sensor);
@@ -138,10 +154,9 @@ INSTANTIATE_TEST_SUITE_P(
                       SheetPair{"OS1-32", 0.8, 120.0}, SheetPair{"OS1-32", 0.1, 55.0},
                       SheetPair{"OS2-32", 0.8, 240.0}, SheetPair{"OS2-32", 0.1, 100.0},
                       SheetPair{"HDL-64E-S3", 0.8, 120.0}, SheetPair{"HDL-64E-S3", 0.1, 50.0},
-                      SheetPair{"VLS-128", 0.1, 120.0}, SheetPair{"XT32", 0.1, 80.0},
-                      SheetPair{"QT64", 0.1, 20.0}, SheetPair{"Livox-Mid-40", 0.8, 260.0},
-                      SheetPair{"Livox-Mid-70", 0.8, 260.0}, SheetPair{"Livox-Avia", 0.8, 450.0},
-                      SheetPair{"TiM781", 0.05, 5.0}),
+                      SheetPair{"VLS-128", 0.1, 120.0}, SheetPair{"QT64", 0.1, 20.0},
+                      SheetPair{"Livox-Mid-40", 0.8, 260.0}, SheetPair{"Livox-Mid-70", 0.8, 260.0},
+                      SheetPair{"Livox-Avia", 0.8, 320.0}, SheetPair{"TiM781", 0.05, 5.0}),
     testing::parameter_name<SheetPair>);
 
 TEST(Presets, OfOusterDetectNinetyPercentAtTheRangeOfTheDataSheet) {

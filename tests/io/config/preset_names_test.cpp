@@ -74,7 +74,8 @@ TEST(SensorPresets, AreFoundByAPartOfTheirNameAliasOrTitle) {
     for (const SensorPreset& preset : matching_presets(text)) found.push_back(preset.name);
     return found;
   };
-  EXPECT_EQ(names("hdl_"), (std::vector<std::string>{"HDL-32E", "HDL-64E-S3"}));
+  EXPECT_EQ(names("hdl_"), (std::vector<std::string>{"HDL-32E", "HDL-64E-S1", "HDL-64E-S2",
+                                                     "HDL-64E-S3", "HDL-64E-S3-unit-2"}));
   EXPECT_EQ(names("Velodyne VLP16"), (std::vector<std::string>{"VLP-16"}));
   EXPECT_EQ(names("").size(), sensor_presets().size());
   EXPECT_TRUE(names("no such sensor").empty());
@@ -84,7 +85,7 @@ TEST(SensorPresets, APartOfANameIsNotAName) {
   EXPECT_FALSE(preset_named("VLP").has_value());
   EXPECT_FALSE(preset_named("").has_value());
   EXPECT_EQ(preset_named("OS1")->name, "OS1-128");
-  EXPECT_NE(error_text([] { find_sensor_file("OS1-46"); }).find("did you mean OS1-64"),
+  EXPECT_NE(error_text([] { find_sensor_file("Pandar46"); }).find("did you mean Pandar"),
             std::string::npos);
 }
 

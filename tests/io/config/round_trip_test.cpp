@@ -11,7 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace glidar {
@@ -73,7 +75,11 @@ class Filler final : public FieldVisitor {
                std::vector<double>& values) override {
     if (!has(field.key)) return;
     values.resize(rule.max_size > 2 ? std::max<std::size_t>(rule.min_size, 2) : rule.max_size);
-    for (double& value : values) value = next(rule.number) * field.unit.size;
+    const bool is_whole = std::string_view(field.key) == "channels";
+    for (double& value : values) {
+      value = next(rule.number) * field.unit.size;
+      if (is_whole) value = std::floor(value);
+    }
   }
   void table(const FieldInfo& field, const NumberRule& position, const NumberRule& value,
              LookupTable& pairs) override {

@@ -236,7 +236,8 @@ const BadFile kBadFiles[] = {
      "s.yaml:1:58: optics.pixel_centre: 1; allowed: a number from 0 to below 1; 0.5 and 0 are "
      "usual"},
     {"UnknownOptics", optics("type: pinhoel, width: 4"),
-     "s.yaml:1:16: optics.type: 'pinhoel'; allowed: pinhole, spinning, line_scan, prism, table, "
+     "s.yaml:1:16: optics.type: 'pinhoel'; allowed: pinhole, spinning, line_scan, prism, "
+     "wedge_mirror, table, "
      "ouster; did you mean 'pinhole'?"},
     {"UnknownDistortion", optics("width: 4, height: 2, fov_deg: 20, distortion: {model: fish_eye}"),
      "s.yaml:1:64: optics.distortion.model: 'fish_eye'; allowed: none, radial_tangential, fisheye; "
