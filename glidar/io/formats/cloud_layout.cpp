@@ -63,14 +63,20 @@ double whole_turn(double angle_rad) {
 
 constexpr double kMaxByte = 255.0;
 
+/// The byte of a scale; NaN, the reflectivity of a miss, is unchanged.
+double byte_on(const IntensityScale& scale, double reflectivity) {
+  return std::isnan(reflectivity) ? reflectivity : byte_of_reflectance(scale, reflectivity);
+}
+
 /// A byte that is linear up to `white` for a reflectivity of 1 and logarithmic beyond, up to 255
 /// for a retro-reflector of 1000. Manufacturers publish `white` and that larger values are
 /// retro-reflective, but not the slope.
 double reflectivity_byte(double reflectivity, double white) {
   constexpr double kBrightest = 1000.0;
-  if (!(reflectivity > 1.0)) return std::round(white * reflectivity);
-  const double share = std::log(reflectivity) / std::log(kBrightest);
-  return std::min(255.0, white + 1.0 + std::round((254.0 - white) * share));
+  return byte_on({.kind = IntensityScale::Kind::vendor,
+                  .max_reflectance = kBrightest,
+                  .diffuse_counts = white},
+                 reflectivity);
 }
 
 /// 0 to 100 is the percentage of diffuse surfaces: VLP-16 User Manual 63-9243, "Calibrated
@@ -81,7 +87,7 @@ double percent_byte(double reflectivity) {
 
 /// The percentage up to 255 %: PandarXT manual, appendix on the packet's reflectivity.
 double linear_percent_byte(double reflectivity) {
-  return std::min(kMaxByte, std::round(100.0 * reflectivity));
+  return byte_on({.kind = IntensityScale::Kind::percent}, reflectivity);
 }
 
 /// 0 to 150 is 0 to 100 % Lambertian reflection: Livox Avia User Manual, "Output Data".
@@ -219,8 +225,8 @@ std::vector<double> field_values(const PointCloud& cloud, const Layout& layout,
 
 /// How the sensor reports intensity.
 struct Spelling {
-  bool is_reflectance = false;             ///< already corrected for range
-  const IntensityScale* vendor = nullptr;  ///< reflectance as a byte; nullptr: as a number
+  bool is_reflectance = false;                 ///< already corrected for range
+  const IntensityScale* byte_scale = nullptr;  ///< nullptr: as a number, not as a byte
 };
 
 Spelling spelling_of(const Sensor& sensor) {
@@ -242,8 +248,8 @@ std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
                                  const Sensor& sensor, const Beams& beams) {
   std::vector<double> numbers = field_values(cloud, layout, "intensity", 0);
   const Spelling spelling = spelling_of(sensor);
-  if (spelling.vendor != nullptr) {
-    for (double& number : numbers) number = reflectance_of_byte(*spelling.vendor, number);
+  if (spelling.byte_scale != nullptr) {
+    for (double& number : numbers) number = reflectance_of_byte(*spelling.byte_scale, number);
   }
   if (spelling.is_reflectance) return numbers;
   const std::vector<double> ranges_m = field_values(cloud, layout, "range", 0);
@@ -266,7 +272,7 @@ T nearest(double value) {
 /// Whether the field holds what the sensor itself reports, and this is a byte of its own scale.
 bool is_own_byte(const LayoutField& field, const Sensor& sensor) {
   return (field.convert == percent_byte || field.convert == linear_percent_byte) &&
-         spelling_of(sensor).vendor != nullptr;
+         spelling_of(sensor).byte_scale != nullptr;
 }
 
 Column made(const LayoutField& field, const std::vector<double>& numbers, std::size_t count) {
@@ -301,7 +307,7 @@ const Layout& unit_layout() {
 
 std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& sensor,
                                     const Beams& beams) {
-  const bool has_bytes = spelling_of(sensor).vendor != nullptr;
+  const bool has_bytes = spelling_of(sensor).byte_scale != nullptr;
   const bool is_calibrated = sensor.lidar_equation.has_value() && !has_bytes;
   std::vector<double> numbers = is_calibrated ? reflectivity(cloud, unit_layout(), sensor, beams)
                                               : field_values(cloud, unit_layout(), "intensity", 0);

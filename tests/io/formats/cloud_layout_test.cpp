@@ -161,6 +161,17 @@ TEST(PointFieldLayout, UnknownFieldsAreZeroAndMissesHaveNoReturn) {
   EXPECT_TRUE(std::isnan(field<float>(made, "minimal", "x")[2]));
 }
 
+TEST(PointFieldLayout, MissesHaveNoReflectivity) {
+  const CloudFixture made = points_with("intensity", std::vector<float>{kNaNf, 0.5F});
+  for (const char* layout : {"velodyne", "livox", "robosense", "hesai"}) {
+    const std::vector<float> bytes = field<float>(made, layout, "intensity");
+    EXPECT_TRUE(std::isnan(bytes[0])) << layout;
+    EXPECT_FALSE(std::isnan(bytes[1])) << layout;
+  }
+  EXPECT_EQ(field<std::uint8_t>(made, "autoware", "intensity")[0], 0);
+  EXPECT_EQ(field<std::uint8_t>(made, "livox-custom", "reflectivity")[0], 0);
+}
+
 TEST(PointFieldLayout, AnUnknownNameIsReportedWithAllNamesAndTheNearest) {
   EXPECT_THAT(
       error_text([] { find_layout("velodine"); }),
