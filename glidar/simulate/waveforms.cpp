@@ -85,22 +85,15 @@ void detect_echoes(const LidarEquation& light, double threshold, const RngKey& k
   waveform.echoes = kept;
 }
 
-/// The threshold of the channel of an entry.
-double threshold_of(const Simulation& s, std::size_t entry) {
-  const std::vector<std::uint16_t>& rings = s.fired->rings;
-  return channel_threshold(s.prepared.pulse_model->lidar_equation,
-                           rings.empty() ? std::uint16_t{0} : rings[entry]);
-}
-
 void report_echo(const Simulation& s, const PulseEcho& echo, const EchoContribution& path,
                  std::size_t entry) {
   Frame& frame = s.frame;
   const Sensor& sensor = s.prepared.sensor;
-  const double saturation = s.prepared.pulse_model->lidar_equation.saturation;
+  const LidarEquation& light = s.prepared.pulse_model->lidar_equation;
   const double range_m = reported_range_m(sensor.receiver, echo);
   Status status = check_limits(sensor.limits, *s.fired, entry, range_m);
-  if (status == Status::hit && saturation > 0.0 &&
-      echo.signal >= saturation * threshold_of(s, entry))
+  if (status == Status::hit && light.saturation > 0.0 &&
+      echo.signal >= light.saturation * channel_threshold(light, s.fired->rings, entry))
     status = Status::saturated;
   if (status != Status::hit) return invalidate_return(frame, entry, status);
   frame.status[entry] = Status::hit;
@@ -209,7 +202,7 @@ Status find_returns(const Simulation& s, std::size_t pulse, const EchoContributi
     if (is_surface) strongest_signal = std::max(strongest_signal, waveform.echo[k].signal);
   }
   const std::size_t in_run = pulse - memory.samples.key.beam;
-  const double threshold = threshold_of(s, pulse);
+  const double threshold = channel_threshold(model.lidar_equation, s.fired->rings, pulse);
   detect_echoes(model.lidar_equation, threshold, key, memory.samples.noise[in_run], waveform);
   enforce_min_separation(sensor.receiver.min_return_separation_m, waveform);
   return missing_return_status(s, surface, strongest_signal / threshold, pulse);

@@ -130,6 +130,19 @@ bool is_power_law_only(const LidarEquation& light) {
          light.weather_extinction_per_m == 0.0;
 }
 
+/// received_signal() through weather of another extinction.
+double signal_through(double weather_per_m, const LidarEquation& light, double backscatter,
+                      double range_m) {
+  const double ratio = light.reference_range_m / range_m;
+  const double falloff =
+      light.range_exponent == 2.0 ? ratio * ratio : portable_pow(ratio, light.range_exponent);
+  double signal = backscatter / light.reference_reflectance * falloff;
+  if (light.extinction_per_m > 0.0)
+    signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
+  if (weather_per_m > 0.0) signal *= two_way(weather_per_m, range_m);
+  return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
+}
+
 /// See kMinSignalToNoise; signals above the threshold are always detected.
 bool is_lost_in_noise(const LidarEquation& light, double signal) {
   return signal < std::min(kMinSignalToNoise * light.noise_sigma, 1.0);
@@ -218,17 +231,7 @@ double relative_overlap(const LidarEquation& light, double range_m) {
 }
 
 double received_signal(const LidarEquation& light, double backscatter, double range_m) {
-  const double ratio = light.reference_range_m / range_m;
-  const double falloff =
-      light.range_exponent == 2.0 ? ratio * ratio : portable_pow(ratio, light.range_exponent);
-  double signal = backscatter / light.reference_reflectance * falloff;
-  if (light.extinction_per_m > 0.0) {
-    signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
-  }
-  if (light.weather_extinction_per_m > 0.0) {
-    signal *= two_way(light.weather_extinction_per_m, range_m);
-  }
-  return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
+  return signal_through(light.weather_extinction_per_m, light, backscatter, range_m);
 }
 
 double backscatter_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam) {
@@ -252,19 +255,13 @@ void received_signals(const LidarEquation& light, const Scene& scene, double wav
 
 double channel_threshold(const LidarEquation& light, std::uint16_t ring) {
   if (light.channel_range_m.empty()) return 1.0;
-  LidarEquation clear = light;
-  clear.weather_extinction_per_m = 0.0;
-  return received_signal(clear, light.reference_reflectance, light.channel_range_m.at(ring));
+  const double range_m = light.channel_range_m.at(ring);
+  return signal_through(0.0, light, light.reference_reflectance, range_m);
 }
 
-double ChannelThresholds::operator()(std::size_t beam) {
-  if (light_.channel_range_m.empty()) return 1.0;
-  const std::uint16_t ring = rings_.empty() ? std::uint16_t{0} : rings_[beam];
-  if (ring != ring_ || threshold_ == 0.0) {
-    ring_ = ring;
-    threshold_ = channel_threshold(light_, ring);
-  }
-  return threshold_;
+double channel_threshold(const LidarEquation& light, std::span<const std::uint16_t> rings,
+                         std::size_t beam) {
+  return channel_threshold(light, rings.empty() ? std::uint16_t{0} : rings[beam]);
 }
 
 Status classify_weak_return(const LidarEquation& light, double signal, double range_m) {
@@ -295,7 +292,6 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 
 void shade_lidar(const LidarEquation& light, const Scene& scene, double wavelength_m,
                  std::span<const std::uint16_t> rings, BeamRange range, Frame& frame) {
-  ChannelThresholds thresholds(light, rings);
   Batch<double> noise{};
   Batch<double> signals;
   for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -306,7 +302,7 @@ void shade_lidar(const LidarEquation& light, const Scene& scene, double waveleng
       if (light.noise_sigma > 0.0) sample_normals(rng_key(frame, Purpose::detection, i), noise);
     }
     if (frame.status[i] == Status::hit) {
-      const double threshold = thresholds(i);
+      const double threshold = channel_threshold(light, rings, i);
       const double received = with_noise(light, signals[k] / threshold, noise[k]);
       measure_hit(light, received, threshold, i, frame);
     } else {

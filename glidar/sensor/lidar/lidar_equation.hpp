@@ -62,20 +62,9 @@ double received_signal(const LidarEquation& light, double backscatter, double ra
 /// reflectance at the reference range of the channel; 1 without ranges of channels.
 double channel_threshold(const LidarEquation& light, std::uint16_t ring);
 
-/// Thresholds of beams, most of which have the ring of the beam before.
-class ChannelThresholds {
- public:
-  /// `rings` of all beams; empty: all have ring 0. Both must outlive this object.
-  ChannelThresholds(const LidarEquation& light, std::span<const std::uint16_t> rings)
-      : light_(light), rings_(rings) {}
-  double operator()(std::size_t beam);
-
- private:
-  const LidarEquation& light_;
-  std::span<const std::uint16_t> rings_;
-  std::uint16_t ring_ = 0;
-  double threshold_ = 0.0;  ///< of ring_; 0: not known yet
-};
+/// The same for a beam; `rings` of all beams, empty: all have ring 0.
+double channel_threshold(const LidarEquation& light, std::span<const std::uint16_t> rings,
+                         std::size_t beam);
 
 /// The status of a signal that is not detected: weather if it would be detected in clear air, else
 /// below_threshold.

@@ -31,9 +31,8 @@ struct IntensityScale {
   static constexpr TypeInfo kType = {
       "intensity_scale",
       "ρ = gain I, times (R/reference)^range_exponent if set; `linear`: unchanged; `unit`: clipped "
-      "to 0..1; `vendor`: round(n ρ), n = diffuse_counts, for retro-reflectors n + 1 + round((254 "
-      "- "
-      "n) ln ρ / ln max_reflectance); `percent`: round(100 ρ), up to 255",
+      "to 0..1; `vendor`: round(n ρ), n = diffuse_counts, for retro-reflectors "
+      "n + 1 + round((254 - n) ln ρ / ln max_reflectance); `percent`: round(100 ρ), up to 255",
       "n: 100 of Velodyne and Ouster, 110 of the VLS-128, 150 of Livox; `percent`: Hesai"};
   enum class Kind : std::uint8_t { unit, vendor, linear, percent };
   Kind kind = Kind::unit;
