@@ -48,7 +48,7 @@ std::size_t channels_of(const LineScan& optics) {
   return is_vertical ? optics.azimuths_rad.size() : optics.elevations_rad.size();
 }
 std::size_t channels_of(const Prism& optics) {
-  return optics.incidence_tangent.size();
+  return optics.incidence_rad.size();
 }
 std::size_t channels_of(const WedgeMirror& optics) {
   return optics.incidence_rad.size();

@@ -109,7 +109,7 @@ bool try_livox_packet(std::span<const std::byte> bytes) {
   }
   Sensor sensor;
   sensor.name = "Livox";
-  sensor.optics = Prism{.prisms = {}, .incidence_tangent = {-0.05, 0.05}};
+  sensor.optics = Prism{.prisms = {}, .incidence_rad = {-0.05, 0.05}};
   sensor.receiver.returns = {Return{}};
   sensor.rate_hz = 10.0;
   const auto decoder = make_livox_decoder(sensor);

@@ -68,11 +68,11 @@ TEST(LidarFile, ReadsRastersAndPrisms) {
   EXPECT_EQ(raster.line_ns, 100'000.0);
   EXPECT_TRUE(raster.bidirectional);
   const Sensor livox = load(
-      "optics: {type: prism, pulse_hz: 1000, incidence_tangent: [0.1, 0.2], prisms: "
+      "optics: {type: prism, pulse_hz: 1000, incidence_deg: [1, 2], prisms: "
       "[{rotation_hz: -3, apex_deg: 20, phase_deg: 90, refractive_index: 1.4, slope: exit}]}\n");
   const auto& prism = std::get<Prism>(livox.optics);
   EXPECT_EQ(livox.rate_hz, 10.0);
-  EXPECT_EQ(prism.incidence_tangent[1], 0.2);
+  EXPECT_DOUBLE_EQ(prism.incidence_rad[1], 2 * kDegree);
   EXPECT_EQ(prism.prisms[0].rotation_hz, -3.0);
   EXPECT_DOUBLE_EQ(prism.prisms[0].phase_rad, 90 * kDegree);
   EXPECT_EQ(prism.prisms[0].slope, RisleyPrism::Slope::exit);

@@ -156,7 +156,9 @@ INSTANTIATE_TEST_SUITE_P(
                       SheetPair{"HDL-64E-S3", 0.8, 120.0}, SheetPair{"HDL-64E-S3", 0.1, 50.0},
                       SheetPair{"VLS-128", 0.1, 120.0}, SheetPair{"QT64", 0.1, 20.0},
                       SheetPair{"Livox-Mid-40", 0.8, 260.0}, SheetPair{"Livox-Mid-70", 0.8, 260.0},
-                      SheetPair{"Livox-Avia", 0.8, 320.0}, SheetPair{"TiM781", 0.05, 5.0}),
+                      SheetPair{"Livox-Avia", 0.8, 320.0}, SheetPair{"Livox-Horizon", 0.8, 260.0},
+                      SheetPair{"Livox-Horizon", 0.1, 90.0}, SheetPair{"Livox-Tele-15", 0.8, 500.0},
+                      SheetPair{"Livox-Tele-15", 0.1, 200.0}, SheetPair{"TiM781", 0.05, 5.0}),
     testing::parameter_name<SheetPair>);
 
 TEST(Presets, OfOusterDetectNinetyPercentAtTheRangeOfTheDataSheet) {

@@ -37,7 +37,7 @@ struct LivoxOptics {
 
 std::optional<LivoxOptics> livox_optics(const Optics& optics) {
   if (const auto* prism = std::get_if<Prism>(&optics))
-    return LivoxOptics{prism->incidence_tangent.size(), prism->pulse_hz};
+    return LivoxOptics{prism->incidence_rad.size(), prism->pulse_hz};
   if (const auto* mirror = std::get_if<WedgeMirror>(&optics))
     return LivoxOptics{mirror->incidence_rad.size(), mirror->pulse_hz};
   return std::nullopt;

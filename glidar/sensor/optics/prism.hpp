@@ -24,14 +24,15 @@ struct RisleyPrism {
   Slope slope = Slope::entry;
 };
 
-/// Beams that rotating prisms steer along rosettes (Livox Mid-40, Mid-70, Avia).
+/// Beams that rotating prisms steer along rosettes (Livox Mid-40, Mid-70, Avia, Horizon, Tele-15).
 struct Prism {
   static constexpr TypeInfo kType = {"prism", "a scanner with rotating prisms"};
   std::vector<RisleyPrism> prisms;  ///< in the order in which the light passes through them
-  /// Sine of the angle of each beam to the right of the boresight, before the first prism. All fire
-  /// at once; row = ring = index of the beam.
-  std::vector<double> incidence_tangent = {0.0};
-  double pulse_hz = 1e5;  ///< firings per second of each beam
+  /// Angle of each beam to the boresight before the first prism. All fire at once; row = ring =
+  /// index of the beam.
+  std::vector<double> incidence_rad = {0.0};
+  double incidence_roll_rad = 0.0;  ///< positive angles point to the right at 0, up at pi/2
+  double pulse_hz = 1e5;            ///< firings per second of each beam
 };
 
 /// Keys of `optics` in sensor files, and those of each of its `prisms`.

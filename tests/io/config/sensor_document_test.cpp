@@ -138,7 +138,8 @@ TEST(SensorDocument, EveryKindOfOpticsReadsBackTheSame) {
            "type: line_scan, azimuth_deg: {from: -35.1, to: 35.3, count: 71}, elevation_deg: [1.1, "
            "0.7], point_us: 7.7, bidirectional: true",
            "type: line_scan, azimuth_deg: [3.3, 1.1], point_us: 0.3, line_us: 1.7",
-           "type: prism, pulse_hz: 1003.3, incidence_tangent: [-0.1, 0.3], prisms: [{rotation_hz: "
+           "type: prism, pulse_hz: 1003.3, incidence_deg: [-5.7, 17.1], incidence_roll_deg: 33.7, "
+           "prisms: [{rotation_hz: "
            "121.3, apex_deg: 18.1, refractive_index: 1.51, phase_deg: 33.3}, {rotation_hz: -77.7, "
            "apex_deg: 17.3, refractive_index: 1.51, slope: exit}]",
        }) {

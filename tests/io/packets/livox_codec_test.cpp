@@ -84,7 +84,7 @@ TEST_P(LivoxPackets, HaveThePointsOfTheSdkInTheOrderOfFiring) {
   const std::map<LivoxDataType, std::size_t> sizes = {{LivoxDataType::cartesian_mm, 1380},
                                                       {LivoxDataType::cartesian_cm, 804},
                                                       {LivoxDataType::spherical, 996}};
-  const std::size_t beams = std::get<Prism>(sensor.optics).incidence_tangent.size();
+  const std::size_t beams = std::get<Prism>(sensor.optics).incidence_rad.size();
   std::uint64_t last_ns = 0;
   for (const UdpPacket& packet : livox_packets(sensor, stream.type, 1)) {
     EXPECT_EQ(packet.payload.size(), sizes.at(stream.type));
@@ -159,7 +159,7 @@ TEST(LivoxEncoder, RejectsSensorsThatDoNotFit) {
   dual.receiver.returns.resize(2);
   EXPECT_THROW(make_packet_encoder(dual), Error);
   Sensor seven = packet_sensor("Livox-Avia", false);
-  std::get<Prism>(seven.optics).incidence_tangent.resize(7);
+  std::get<Prism>(seven.optics).incidence_rad.resize(7);
   EXPECT_THROW(make_packet_encoder(seven), Error);
   EXPECT_THROW(make_livox_encoder(packet_sensor("VLP-16", false)), Error);
   EXPECT_THROW(make_livox_encoder(packet_sensor("Livox-Avia", false), LivoxDataType::imu), Error);
