@@ -41,7 +41,8 @@ std::vector<Subcommand> all_subcommands() {
 int main(int argc, char** argv) {
   try {
     glidar::app::end_cleanly_on_interrupt();
-    const int status = glidar::app::run_program(glidar::app::all_subcommands(), argc, argv);
+    const int status = glidar::app::run_program(glidar::app::all_subcommands(),
+                                                glidar::app::has_viewer(), argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       return glidar::app::report_error("standard output could not be written; is the disk full?");
     }

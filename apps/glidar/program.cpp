@@ -7,6 +7,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/exr_encoder.hpp>
+#include <glidar/link/control/tcp_service.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/foxglove/server.hpp>
 
@@ -131,9 +132,11 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
 }
 
 /// The version, and the optional parts of this build.
-std::string version_text() {
+std::string version_text(bool has_viewer) {
   std::vector<std::string> parts;
+  if (has_viewer) parts.emplace_back("window");
   if (foxglove::has_foxglove_server()) parts.emplace_back("Foxglove server");
+  if (control::has_tcp_services()) parts.emplace_back("sensor control (HTTP, PTC)");
   if (dds::has_dds()) parts.emplace_back("ROS 2 (DDS)");
   if (has_openexr()) parts.emplace_back("OpenEXR");
   if (parts.empty()) parts.emplace_back("none");
@@ -147,11 +150,12 @@ int report_error(const std::string& message) {
   return kBadInput;
 }
 
-int run_program(std::span<const Subcommand> subcommands, int argc, char** argv) {
+int run_program(std::span<const Subcommand> subcommands, bool has_viewer, int argc, char** argv) {
   CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
                    "glidar");
   use_help_layout(program);
-  program.set_version_flag("--version", version_text(), "Print the version and the optional parts");
+  program.set_version_flag("--version", version_text(has_viewer),
+                           "Print the version and the optional parts");
   program.require_subcommand(1);
   program.footer(kExamples);
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);

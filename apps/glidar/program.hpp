@@ -18,8 +18,9 @@ struct Subcommand {
   std::function<Command(CLI::App& program, const std::vector<std::string>& arguments)> add;
 };
 
-/// Parses the command line and runs the chosen subcommand; returns the exit code.
-int run_program(std::span<const Subcommand> subcommands, int argc, char** argv);
+/// Parses the command line and runs the chosen subcommand; returns the exit code. `has_viewer`:
+/// --version lists the window.
+int run_program(std::span<const Subcommand> subcommands, bool has_viewer, int argc, char** argv);
 
 /// Prints the message as an error; returns the exit code of invalid input.
 int report_error(const std::string& message);

@@ -291,4 +291,8 @@ Command add_view(CLI::App& program) {
   return [flags] { return run(*flags); };
 }
 
+bool has_viewer() {
+  return true;
+}
+
 }  // namespace glidar::app

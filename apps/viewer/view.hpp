@@ -9,4 +9,7 @@ namespace glidar::app {
 /// Adds `glidar view`, see commands.hpp.
 Command add_view(CLI::App& program);
 
+/// Whether this build has the window.
+bool has_viewer();
+
 }  // namespace glidar::app

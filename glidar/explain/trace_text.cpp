@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/explain/trace_text.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/config/noise_text.hpp>
 #include <glidar/math/constants.hpp>
 
@@ -15,6 +16,8 @@
 namespace glidar {
 namespace {
 
+constexpr std::size_t kMaxLine_bytes = 1000;
+
 /// The inputs of the text, and the text written so far.
 struct TraceWriter {
   const PointTrace& trace;
@@ -27,7 +30,8 @@ struct TraceWriter {
   template <class... Values>
   void line(std::string_view head, fmt::format_string<Values...> form, Values&&... values) {
     fmt::format_to(std::back_inserter(text), "{:<10}", head);
-    fmt::format_to(std::back_inserter(text), form, std::forward<Values>(values)...);
+    // names of models may contain control sequences of terminals
+    text += excerpt(fmt::format(form, std::forward<Values>(values)...), kMaxLine_bytes);
     text += '\n';
   }
   [[nodiscard]] bool has_hit() const {

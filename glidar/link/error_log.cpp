@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/error_log.hpp>
 
+#include <glidar/core/excerpt.hpp>
+
 #include <utility>
 
 namespace glidar::link {
 namespace {
 
 constexpr std::chrono::seconds kPause{1};
+constexpr std::size_t kMaxText_bytes = 1000;
 
 }  // namespace
 
@@ -18,7 +21,7 @@ void ErrorLog::report(const std::string& kind, std::string_view what) {
   const std::lock_guard lock(mutex_);
   Kind& known = kinds_[kind];
   ++known.count;
-  known.what = what;
+  known.what = excerpt(what, kMaxText_bytes);
   const Clock::time_point now = now_();
   if (known.count > 1 && now - known.last < kPause) return;
   known.last = now;

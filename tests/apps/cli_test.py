@@ -21,7 +21,7 @@ from waiting import wait_until
 class Help(CliTest):
     def test_version(self):
         self.assertRegex(self.succeed("--version").stdout, 
-                         r"^glidar \d+\.\d+\.\d+\noptional parts: (none|(Foxglove server|ROS 2 \(DDS\)|OpenEXR|, )+)\n$")
+                         r"^glidar \d+\.\d+\.\d+\noptional parts: (none|(window|Foxglove server|sensor control \(HTTP, PTC\)|ROS 2 \(DDS\)|OpenEXR|, )+)\n$")
 
     def test_examples_of_every_help_run(self):
         lines = []

@@ -36,6 +36,7 @@ std::set<std::string> taken(const testing::FileDecoder& decoder, std::size_t& fi
 TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
   const std::map<std::string_view, std::set<std::string>> expected = {
       {"sensor", {"pinhole", "fisheye", "spinning", "raster", "prism", "alias"}},
+      {"imu", {"bmi088"}},
       {"scene", {"models", "rig"}},
       {"beam_csv", {"plain", "livox"}},
       {"beam_npy", {"rays", "floats"}},
@@ -49,12 +50,14 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"pose_text", {"position", "quaternion"}},
       {"cdr", {"cloud", "transforms", "scan"}},
       {"ros1", {"cloud", "transforms", "scan"}},
-      {"mcap", {"chunk", "plain", "lz4"}},
+      {"mcap", {"chunk", "plain", "lz4", "cloud_and_poses", "velodyne_packets", "ouster_packets"}},
       {"rosbag1", {"chunk", "lz4"}},
       {"rosbag2", {"database"}},
       {"ouster_source", {"plain"}},
       {"packets",
-       {"vlp16", "vlp16_dual", "hdl32", "xt32", "qt64", "pandar64_dual", "ouster", "ouster_dual"}},
+       {"vlp16", "vlp16_dual", "hdl32", "xt32", "qt64", "pandar64_dual", "ouster", "ouster_dual",
+        "vlp32c", "vlp32c_dual", "hdl64", "vls128", "vls128_dual", "ouster_legacy", "ouster_rng15",
+        "livox"}},
       {"pcap", {"two", "big_endian", "pcapng", "fragments", "cut"}},
   };
   for (const testing::FileDecoder& decoder : testing::file_decoders()) {

@@ -78,6 +78,16 @@ class Text(CliTest):
             self.write("r.jsonl", json.dumps({**HEAD, **change}) + '\n{"frames": 0}\n')
             self.assertIn("without control characters", self.refused("replay", "r.jsonl"))
 
+    def test_names_in_models_do_not_control_the_terminal(self):
+        self.write("red.mtl", "newmtl m\x1b[31m\n")
+        self.write("red.obj", "mtllib red.mtl\no x\x1b[31m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\x1b[31m\nf 1 2 3\n")
+        for command in (("info", "red.obj"), ("render", "red.obj", "--eye", "0.2,0.2,2", "--target", "0.2,0.2,0", "-o", "x.pcd"),
+                        ("explain", "x.pcd", "--index", "32896")):
+            with self.subTest(command[0]):
+                done = self.succeed(*command)
+                self.assertNotIn("\x1b", done.stdout + done.stderr)
+        self.assertIn("m?[31m", self.succeed("info", "red.obj").stdout)
+
     def test_times_beyond_64_bit_nanoseconds_are_refused(self):
         self.write("s.yaml", "optics: {type: table, file: t.csv}\n")
         for time in ("1e12", "9223372036854775807", "-1e12", "8640001"):

@@ -23,6 +23,24 @@ TEST(Excerpt, ControlCharactersBecomeQuestionMarks) {
   EXPECT_EQ(excerpt(std::string_view("a\0b\n\x1b[31m\x7f", 10)), "a?b??[31m?");
 }
 
+TEST(Excerpt, BytesThatAreNoUtf8BecomeQuestionMarks) {
+  EXPECT_EQ(excerpt("a\xDF\x80z"), "a\xDF\x80z");
+  EXPECT_EQ(excerpt("\xDFz"), "?z");
+  EXPECT_EQ(excerpt("\xE2\x82"), "??");
+  EXPECT_EQ(excerpt("\xC0\x80"), "??") << "longer than necessary";
+  EXPECT_EQ(excerpt("\xED\xA0\x80"), "???") << "half of a pair";
+  EXPECT_EQ(excerpt("\xF4\x90\x80\x80"), "????") << "beyond U+10FFFF";
+  EXPECT_EQ(excerpt("\xF0\x9F\x9B\xB0"), "\xF0\x9F\x9B\xB0");
+}
+
+TEST(Excerpt, ControlCharactersOfTwoBytesBecomeQuestionMarks) {
+  EXPECT_EQ(excerpt("\xC2\x9B"
+                    "31m"),
+            "??31m")
+      << "U+009B begins a control sequence";
+  EXPECT_EQ(excerpt("\xC2\xA0\xC2\xB5"), "\xC2\xA0\xC2\xB5");
+}
+
 TEST(Excerpt, MultiByteCharactersAreNotSplit) {
   const std::string euros = "\xE2\x82\xAC\xE2\x82\xAC\xE2\x82\xAC";
   EXPECT_EQ(excerpt(euros, 9), euros);

@@ -5,8 +5,10 @@
 #include "packet_decoders.hpp"
 
 #include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/run/packet_frames.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag.hpp>
+#include <glidar/io/bags/bag_clouds.hpp>
+#include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/ray_file.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
@@ -28,6 +30,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -106,11 +109,15 @@ void read_ros_message(std::span<const std::byte> bytes, ros::Wire wire) {
 /// The first byte selects the type of the message in the rest.
 void read_ros_message(const fs::path& file, ros::Wire wire) {
   using Read = void (*)(std::span<const std::byte>, ros::Wire);
-  constexpr std::array<Read, 8> kReaders = {
+  constexpr std::array<Read, 15> kReaders = {
       read_ros_message<ros::PointCloud2>,  read_ros_message<ros::LaserScan>,
       read_ros_message<ros::CameraInfo>,   read_ros_message<ros::TFMessage>,
       read_ros_message<ros::Odometry>,     read_ros_message<ros::CustomMsg>,
-      read_ros_message<ros::VelodyneScan>, read_ros_message<ros::Image>};
+      read_ros_message<ros::VelodyneScan>, read_ros_message<ros::Image>,
+      read_ros_message<ros::PoseStamped>,  read_ros_message<ros::Imu>,
+      read_ros_message<ros::Clock>,        read_ros_message<ros::CompressedImage>,
+      read_ros_message<ros::PacketMsg>,    read_ros_message<ros::String>,
+      read_ros_message<ros::MarkerArray>};
   std::ifstream in(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), {});
   if (text.empty()) throw Error({"message", "no type", "at least one byte"});
@@ -118,7 +125,34 @@ void read_ros_message(const fs::path& file, ros::Wire wire) {
   kReaders[std::to_integer<std::size_t>(bytes[0]) % kReaders.size()](bytes.subspan(1), wire);
 }
 
+/// What a command does with a bag, which may lack the messages for it.
+void try_contents(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const Error&) {
+  }
+}
+
+void read_clouds(const fs::path& bag) {
+  bags::BagClouds clouds(bag);
+  bags::BagCloud cloud;
+  while (clouds.next(cloud)) {
+  }
+}
+
+void read_packet_topics(const fs::path& bag) {
+  const auto packets = app::open_packets(bag, {});
+  UdpPacket packet;
+  while (packets->next(packet)) {
+  }
+}
+
+/// All messages; then clouds, poses, packets and metadata, as the commands read them.
 void read_bag(const fs::path& file) {
+  try_contents([&] { read_clouds(file); });
+  try_contents([&] { load_trajectory_file(file); });
+  try_contents([&] { read_packet_topics(file); });
+  try_contents([&] { app::ouster_metadata_of(file); });
   const auto bag = bags::open_bag(file);
   bags::BagMessage message;
   while (bag->next(message)) {
@@ -139,8 +173,9 @@ void read_rosbag2(const fs::path& file) {
   read_bag(file.parent_path());
 }
 
-constexpr std::array<FileDecoder, 20> kDecoders = {{
+constexpr std::array<FileDecoder, 21> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
+    {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
     {"beam_csv", "beams.csv", [](const fs::path& file) { load_scan_csv(file); }},
     {"beam_npy", "beams.npy", [](const fs::path& file) { load_ray_npy(file); }},

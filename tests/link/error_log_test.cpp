@@ -36,6 +36,13 @@ TEST_F(ErrorLogTest, LogsAtMostOneLinePerSecondWithTheCount) {
   EXPECT_THAT(said, ElementsAre("short: 0", "short (1001 times): again"));
 }
 
+TEST_F(ErrorLogTest, TextOfPeersDoesNotControlTheTerminal) {
+  log.report("page", "refused '\x1b]0;title\a\xDF'\n" + std::string(5000, 'x'));
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_THAT(said.front(), ::testing::StartsWith("page: refused '?]0;title??'?xxx"));
+  EXPECT_LE(said.front().size(), 1100U);
+}
+
 TEST_F(ErrorLogTest, FlushLogsDelayedErrors) {
   log.report("short", "a");
   log.report("short", "b");

@@ -5,6 +5,7 @@
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/model/model_report.hpp>
 
 #include <fmt/format.h>
@@ -35,8 +36,10 @@ struct InfoFlags {
   bool json = false;
 };
 
+/// Names in models may contain control sequences of terminals.
 void line(std::string_view name, const std::string& value) {
-  fmt::print("{:<14} {}\n", name, value);
+  constexpr std::size_t kMaxLine_bytes = 1000;
+  fmt::print("{:<14} {}\n", name, excerpt(value, kMaxLine_bytes));
 }
 
 std::string vector_text(const Eigen::Vector3d& v, std::string_view separator) {

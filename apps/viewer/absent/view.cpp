@@ -21,4 +21,8 @@ Command add_view(CLI::App& program) {
   };
 }
 
+bool has_viewer() {
+  return false;
+}
+
 }  // namespace glidar::app

@@ -6,8 +6,10 @@
 #include <glidar/io/packets/packet_bytes.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace glidar {
@@ -45,6 +47,14 @@ std::size_t block_bytes(const HesaiModel& model) {
   return 2 + model.channels * model.point_bytes;
 }
 
+/// Whether the name contains that of the model and not a longer one, such as XT32M of XT32.
+bool names_model(std::string_view name, std::string_view model) {
+  const std::size_t begin = name.find(model);
+  if (begin == std::string_view::npos) return false;
+  const std::string_view rest = name.substr(begin + model.size());
+  return rest.empty() || std::isalnum(static_cast<unsigned char>(rest.front())) == 0;
+}
+
 void set_little(Bytes& bytes, std::size_t at, std::uint64_t value, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) bytes[at + i] = static_cast<std::byte>(value >> (8 * i));
 }
@@ -53,7 +63,7 @@ void set_little(Bytes& bytes, std::size_t at, std::uint64_t value, std::size_t c
 
 const HesaiModel* find_hesai_model(const Sensor& sensor) {
   for (const HesaiModel& model : kHesaiModels)
-    if (sensor.name.find(model.name) != std::string::npos) return &model;
+    if (names_model(sensor.name, model.name)) return &model;
   return nullptr;
 }
 

@@ -14,7 +14,9 @@ namespace {
 
 [[noreturn]] void fail_of_maker(const Sensor& sensor) {
   throw Error({"packets of " + sensor.name, "no manufacturer's packets are known for this sensor",
-               "the presets of Velodyne, Ouster, Hesai and Livox sensors", "write clouds"});
+               "VLP-16, Puck Hi-Res, VLP-32C, HDL-32E, HDL-64E S3, VLS-128, sensors of Ouster and "
+               "Livox, Pandar64, PandarQT and XT32",
+               "write clouds"});
 }
 
 std::array<float, 3> scaled(const Eigen::Vector3d& v, double scale) {

@@ -134,6 +134,10 @@ TcpService::TcpService(const TcpServiceOptions& options, ConversationFactory mak
   impl_->thread = std::thread([this] { impl_->run(); });
 }
 
+bool has_tcp_services() {
+  return true;
+}
+
 TcpService::~TcpService() {
   impl_->io.stop();
   impl_->thread.join();

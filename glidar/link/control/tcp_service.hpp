@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/link/control.
+// Private to glidar/link/control, except has_tcp_services().
 
 #include <glidar/link/control/conversation.hpp>
 #include <glidar/link/endpoint.hpp>
@@ -15,6 +15,9 @@
 #include <string>
 
 namespace glidar::control {
+
+/// Whether this build answers drivers over TCP: HTTP of Ouster, PTC of Hesai. That needs Boost.
+bool has_tcp_services();
 
 struct TcpServiceOptions {
   link::Endpoint at;

@@ -7,6 +7,10 @@
 
 namespace glidar::control {
 
+bool has_tcp_services() {
+  return false;
+}
+
 struct TcpService::Impl {};
 
 TcpService::TcpService(const TcpServiceOptions& options, ConversationFactory /*make*/,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/foxglove/http_session.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/link/foxglove/client_session.hpp>
 
 #include <boost/beast/http/error.hpp>
@@ -82,8 +83,8 @@ void HttpSession::upgrade(const Request& request) {
   const std::string_view host = header(request, http::field::host);
   const std::string_view origin = header(request, http::field::origin);
   if (!is_allowed_host(host, rules) || !is_allowed_origin(origin, host, rules)) {
-    hub_.errors().report("Foxglove client", "refused a page of '" + std::string(origin) +
-                                                "' at host '" + std::string(host) + "'");
+    hub_.errors().report("Foxglove client", "refused a page of '" + excerpt(origin) +
+                                                "' at host '" + excerpt(host) + "'");
     return respond(plain_reply(403, "this origin or host is not allowed"));
   }
   const std::string_view protocol =

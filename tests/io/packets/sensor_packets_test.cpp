@@ -33,6 +33,13 @@ std::vector<UdpPacket> two_frames(const Sensor& sensor) {
   return packets;
 }
 
+TEST(HasPackets, IsFalseForModelsWithPacketsOfAnotherFormat) {
+  for (const char* preset : {"XT32", "QT64", "Pandar64", "Livox-Mid-360", "Puck-Hi-Res"})
+    EXPECT_TRUE(has_packets(packet_sensor(preset, false))) << preset;
+  for (const char* preset : {"XT32M", "XT16", "QT128", "Pandar128", "VLP-32A", "D435"})
+    EXPECT_FALSE(has_packets(packet_sensor(preset, false))) << preset;
+}
+
 TEST(HasImuPackets, IsTrueForPresetsOfOusterAndLivoxOnly) {
   for (const char* preset : {"OS1-32", "Livox-Avia"})
     EXPECT_TRUE(has_imu_packets(packet_sensor(preset, false))) << preset;
