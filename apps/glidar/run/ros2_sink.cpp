@@ -34,6 +34,7 @@ void Ros2Sink::write(const MeasuredFrame& measured) {
 }
 
 void Ros2Sink::serve() {
+  topics_.report_other_publishers();
   if (!last_due_ || speed_ <= 0.0) return;
   const std::chrono::duration<double, std::nano> passed =
       std::chrono::steady_clock::now() - *last_due_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/dds/message_sink.hpp>
 
+#include <glidar/core/text.hpp>
 #include <glidar/link/dds/topic_names.hpp>
 
 #include <algorithm>
@@ -17,10 +18,15 @@ namespace {
 /// Topics that all robots share.
 constexpr std::array<std::string_view, 3> kGlobalTopics = {"/tf", "/tf_static", "/clock"};
 
+/// Topics of which each publisher gives a part.
+constexpr std::array<std::string_view, 2> kSharedTopics = {"/tf", "/tf_static"};
+
 }  // namespace
 
 MessageSink::MessageSink(const Participant& participant, MessageSinkOptions options)
-    : participant_(participant), options_(std::move(options)) {
+    : participant_(participant),
+      options_(std::move(options)),
+      others_(participant, publisher_appeared_) {
   (void)full_topic_name("topic", options_.ros_namespace);
 }
 
@@ -61,6 +67,21 @@ void MessageSink::finish() {
         std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     if (writer && left.count() > 0) (void)writer->wait_for_acknowledgements(left);
   }
+}
+
+void MessageSink::report_other_publishers() {
+  if (!publisher_appeared_.clear()) return;
+  std::vector<std::string> contested;
+  for (const std::unique_ptr<TopicWriter>& writer : writers_) {
+    if (!writer || std::ranges::find(kSharedTopics, writer->name()) != kSharedTopics.end())
+      continue;
+    if (!others_.of(writer->name()).empty()) contested.push_back(writer->name());
+  }
+  if (contested.size() > contested_.size())
+    participant_.errors().report(
+        "ROS 2", "another program also publishes " + comma_separated(contested) +
+                     ", so nodes receive both; end it, or use another ROS_DOMAIN_ID");
+  contested_ = std::move(contested);
 }
 
 std::uint64_t MessageSink::count() const {

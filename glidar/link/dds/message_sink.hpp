@@ -4,7 +4,9 @@
 
 #include <glidar/io/ros/message_sink.hpp>
 #include <glidar/link/dds/participant.hpp>
+#include <glidar/link/dds/publications.hpp>
 #include <glidar/link/dds/topic_writer.hpp>
+#include <glidar/link/dds/wake_up.hpp>
 #include <glidar/link/payload.hpp>
 
 #include <cstdint>
@@ -36,6 +38,9 @@ class MessageSink final : public ros::MessageSink {
   void take(std::size_t topic, std::int64_t time_ns, std::vector<std::byte>& message) override;
   /// Waits up to a second until reliable readers have acknowledged the messages.
   void finish() override;
+  /// Logs those of its topics that other programs publish too, whenever there are more of them.
+  /// Transforms have several publishers by design.
+  void report_other_publishers();
   /// Messages published.
   [[nodiscard]] std::uint64_t count() const;
 
@@ -45,6 +50,9 @@ class MessageSink final : public ros::MessageSink {
   std::vector<std::unique_ptr<TopicWriter>> writers_;  ///< per topic; nullptr: omitted
   std::vector<bool> is_kept_;                          ///< per topic: transient local
   link::PayloadPool memory_;
+  WakeUp publisher_appeared_;
+  Publications others_;
+  std::vector<std::string> contested_;  ///< topics that were logged
 };
 
 }  // namespace glidar::dds

@@ -34,6 +34,8 @@ class TopicWriter {
   [[nodiscard]] bool has_readers() const;
   /// Waits until all reliable readers have acknowledged all messages. False after the timeout.
   [[nodiscard]] bool wait_for_acknowledgements(std::chrono::milliseconds timeout) const;
+  /// The full name of the topic.
+  [[nodiscard]] const std::string& name() const { return name_; }
   /// Messages sent.
   [[nodiscard]] std::uint64_t count() const { return count_; }
 

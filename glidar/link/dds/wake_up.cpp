@@ -27,9 +27,9 @@ void WakeUp::signal() const {
   eventfd_write(descriptor_, 1);
 }
 
-void WakeUp::clear() const {
+bool WakeUp::clear() const {
   eventfd_t count = 0;
-  eventfd_read(descriptor_, &count);
+  return eventfd_read(descriptor_, &count) == 0;
 }
 
 }  // namespace glidar::dds

@@ -14,8 +14,8 @@ class WakeUp {
 
   /// From any thread.
   void signal() const;
-  /// Until the next signal() it is not readable.
-  void clear() const;
+  /// Until the next signal() it is not readable. Whether it was.
+  bool clear() const;
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
  private:

@@ -5,6 +5,7 @@
 #include <glidar/link/dds/clock_subscriber.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/dds/pose_subscriber.hpp>
+#include <glidar/link/dds/publications.hpp>
 #include <glidar/link/dds/topic_writer.hpp>
 
 namespace glidar::dds {
@@ -42,6 +43,14 @@ bool TopicWriter::has_readers() const {
 
 bool TopicWriter::wait_for_acknowledgements(std::chrono::milliseconds /*timeout*/) const {
   return true;
+}
+
+Publications::Publications(const Participant& /*participant*/, const WakeUp& /*wake_up*/) {}
+
+Publications::~Publications() = default;
+
+std::vector<Publication> Publications::of(const std::string& /*full_name*/) const {
+  return {};
 }
 
 struct PoseSubscriber::Impl {};

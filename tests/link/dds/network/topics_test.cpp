@@ -3,6 +3,7 @@
 #include "participants.hpp"
 
 #include <glidar/link/dds/local_sockets.hpp>
+#include <glidar/link/dds/message_sink.hpp>
 
 #include <io/ros/sample_messages.hpp>
 
@@ -153,6 +154,31 @@ TEST(DdsTopics, OtherMachinesDoNotReachItsSockets) {
     ASSERT_EQ(getsockopt(descriptor, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions), 0);
     EXPECT_GT(instructions, 4U);
   }
+}
+
+TEST(DdsMessageSink, ReportsTopicsThatOtherProgramsPublishToo) {
+  std::vector<std::string> said;
+  link::ErrorLog errors(
+      {.log = [&](Severity, std::string_view text) { said.emplace_back(text); }, .progress = {}});
+  const testing::FreeDomain domain;
+  const Participant ours({.id = domain.id()}, errors);
+  link::ErrorLog unused({});
+  const Participant others({.id = domain.id()}, unused);
+  const TopicWriter transforms = writer_of<ros::TFMessage>(others, "/tf");
+  MessageSink sink(ours, {});
+  for (const char* name : {"/tf", "/clock", "/points"}) {
+    sink.add_topic(std::string_view(name) == "/tf" ? ros::make_topic<ros::TFMessage>(name)
+                                                   : ros::make_topic<ros::Clock>(name));
+  }
+  const auto has_said = [&](const char* what) {
+    sink.report_other_publishers();
+    return std::ranges::any_of(
+        said, [&](const std::string& text) { return text.find(what) != std::string::npos; });
+  };
+  EXPECT_FALSE(has_said("another program"));
+  const TopicWriter clock = writer_of<ros::Clock>(others, "/clock");
+  EXPECT_TRUE(testing::soon([&] { return has_said("another program also publishes /clock, so"); }));
+  EXPECT_FALSE(has_said("/tf"));
 }
 
 }  // namespace
