@@ -10,9 +10,8 @@ namespace glidar {
 
 inline constexpr std::size_t kMaxExcerpt_bytes = 200;
 
-/// The text as error messages quote it: one line of at most `max_bytes`, valid UTF-8. Control
-/// characters, also U+0080 to U+009F, and bytes that are no UTF-8 are replaced by '?'. A longer
-/// text is cut between two characters and ends with "...".
+/// The text as error messages quote it: one line of at most `max_bytes`, UTF-8, with '?' in place of
+/// control characters and invalid bytes. A longer text is cut between characters, with "...".
 std::string excerpt(std::string_view text, std::size_t max_bytes = kMaxExcerpt_bytes);
 
 }  // namespace glidar
