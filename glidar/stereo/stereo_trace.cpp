@@ -2,29 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/stereo/stereo_trace.hpp>
 
+#include <glidar/core/decimal_text.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/stereo/matcher.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace glidar {
 
 namespace {
 
 using stereo::PixelEvidence;
-
-/// A number with two decimals, independent of the locale.
-std::string decimal(double value) {
-  const auto hundredths = static_cast<std::uint64_t>(std::floor(std::abs(value) * 100.0 + 0.5));
-  std::string text;
-  if (value < 0.0 && hundredths > 0) text += '-';
-  text += std::to_string(hundredths / 100);
-  text += '.';
-  text += static_cast<char>('0' + hundredths / 10 % 10);
-  text += static_cast<char>('0' + hundredths % 10);
-  return text;
-}
 
 /// What makes the edge the cause of a later test's failure.
 std::string border_text(const PixelEvidence& pixel, const StereoOptions& options) {
@@ -43,10 +31,10 @@ std::vector<StereoTest> list_tests(const PixelEvidence& pixel, const StereoOptio
            std::to_string(disparity) + " + window " + std::to_string(window_radius_px(options)) +
            border_text(pixel, options)},
       {StereoStatus::no_texture, has_texture(pixel, options),
-       "mean step of grey levels " + decimal(pixel.step_sum / pixels) +
-           ", needed: " + decimal(options.min_texture)},
+       "mean step of grey levels " + decimal_text(pixel.step_sum / pixels) +
+           ", needed: " + decimal_text(options.min_texture)},
       {StereoStatus::saturated, is_unsaturated(pixel),
-       decimal(100.0 * pixel.saturated_pixels / pixels) +
+       decimal_text(100.0 * pixel.saturated_pixels / pixels) +
            " % of the window is saturated; above 50 % it is the cause of no texture or ambiguity"},
       {StereoStatus::out_of_range, is_in_range(pixel, options),
        "winner " + std::to_string(disparity) +
@@ -132,8 +120,9 @@ std::string format_stereo_trace(const StereoTrace& trace) {
   std::string text = "pixel " + std::to_string(trace.column) + "," + std::to_string(trace.row) +
                      ": " + to_string(trace.status) + "\n";
   text += "disparity " + number_text(trace.disparity_px) + " px: winner " +
-          std::to_string(trace.winner_px) + ", minimum of the curve " + decimal(trace.offset_px) +
-          ", with a-factor " + decimal(trace.corrected_offset_px) + "\n";
+          std::to_string(trace.winner_px) + ", minimum of the curve " +
+          decimal_text(trace.offset_px) + ", with a-factor " +
+          decimal_text(trace.corrected_offset_px) + "\n";
   for (const StereoTest& test : trace.tests) {
     text += std::string(test.has_passed ? "  passed  " : "  failed  ") + to_string(test.failure) +
             ": " + test.finding + "\n";
