@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/align_options.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/config/depth_alignment_file.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kAlignExamples =
+    R"(Moves the depths of depth images (PNG of 16 bits, 0 for none) to the pixels of a colour camera.
+Pixels that only the colour camera sees have no depth.
+Examples:
+  glidar render builtin:asteroid --sensor D435 -o asteroid.depth.png
+  glidar align asteroid.depth.png --cameras examples/d435_cameras.yaml -o aligned.png
+With your own files:
+  glidar align depth_*.png --cameras cameras.yaml --keep-depth -o aligned/
+
+cameras.yaml, with the keys of pinhole optics in sensor files:
+  depth: {width: 848, height: 480, fx: 430, fy: 430, cx: 424, cy: 240}
+  colour: {width: 1280, height: 720, fx: 920, fy: 920, cx: 640, cy: 360}
+  colour_from_depth: {position: [0.015, 0, 0], orientation: {w: 1, x: 0, y: 0, z: 0}}
+Exit codes: 0 done, 2 the images or options are not valid.)";
+
+int run_align(const AlignFlags& flags) {
+  if (flags.cameras.empty()) {
+    throw Error({"--cameras", "there is no file of the cameras", "a YAML file",
+                 "add --cameras cameras.yaml; glidar align --help shows its keys"});
+  }
+  DepthAlignment alignment = load_depth_alignment(flags.cameras);
+  alignment.keeps_depth = alignment.keeps_depth || flags.keeps_depth;
+  DepthImageFiles files = flags.files;
+  files.unit_mm = alignment.unit_m / kMillimetre_m;
+  const DepthAligner aligner(alignment);
+  const DepthImageSummary summary = change_depth_images(
+      files, [&aligner](const DepthImage& image) { return aligner.align(image).image; });
+  if (!flags.quiet) fmt::print("{}", summary_text(summary, "alignment"));
+  return kDone;
+}
+
+}  // namespace
+
+Command add_align(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("align", "Move depth images to the pixels of a colour camera");
+  const auto flags = std::make_shared<AlignFlags>();
+  command.footer(kAlignExamples);
+  add_align_options(command, *flags);
+  return [flags] { return run_align(*flags); };
+}
+
+}  // namespace glidar::app

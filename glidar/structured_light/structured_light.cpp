@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/structured_light/structured_light.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
+#include <glidar/core/pose_keys.hpp>
+#include <glidar/math/constants.hpp>
+#include <glidar/sensor/optics/projection.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace glidar {
+namespace {
+
+constexpr int kMaxSecantSteps = 50;
+/// In pixels of the projector; a hundredth of what float stores of a coordinate of 1000.
+constexpr double kConvergedPlace_px = 1e-7;
+
+/// Along one ray of the camera.
+struct Ray {
+  const PinholeProjection& projection;
+  Eigen::Vector3d origin;     ///< of the camera in the projector's frame
+  Eigen::Vector3d direction;  ///< per metre of depth, in the projector's frame
+  int axis;                   ///< 0: columns, 1: rows
+};
+
+/// Depth at which the ray crosses the plane of this coordinate, without lens distortion.
+double plane_depth_m(const Ray& ray, double plane) {
+  return (plane * ray.origin.z() - ray.origin[ray.axis]) /
+         (ray.direction[ray.axis] - plane * ray.direction.z());
+}
+
+double place_error(const Ray& ray, double depth_m, double coordinate_px) {
+  const auto pixel = ray.projection.pixel_of(ray.origin + depth_m * ray.direction);
+  return pixel ? (*pixel)[ray.axis] - coordinate_px : kNaN;
+}
+
+/// With the projector's distortion, by the secant method from the depth without it.
+double distorted_depth_m(const Ray& ray, double start_m, double coordinate_px) {
+  double last_m = start_m;
+  double last_error = place_error(ray, last_m, coordinate_px);
+  double depth_m = start_m * 1.001;
+  for (int step = 0; step < kMaxSecantSteps; ++step) {
+    const double error = place_error(ray, depth_m, coordinate_px);
+    if (std::abs(error) <= kConvergedPlace_px) return depth_m;
+    const double next_m = depth_m - error * (depth_m - last_m) / (error - last_error);
+    last_m = depth_m;
+    last_error = error;
+    depth_m = next_m;
+    if (!(depth_m > 0.0) || !std::isfinite(depth_m)) break;
+  }
+  return kNaN;
+}
+
+double plane_of(const PinholeIntrinsics& k, int axis, double coordinate_px) {
+  return axis == 0 ? (coordinate_px + k.pixel_centre - k.cx) / k.fx
+                   : (coordinate_px + k.pixel_centre - k.cy) / k.fy;
+}
+
+double ray_depth_m(const Ray& ray, const Pinhole& projector, double coordinate_px) {
+  const double start_m =
+      plane_depth_m(ray, plane_of(projector.intrinsics, ray.axis, coordinate_px));
+  if (!(start_m > 0.0) || std::isinf(start_m)) return kNaN;
+  if (!std::holds_alternative<NoDistortion>(projector.distortion)) {
+    return distorted_depth_m(ray, start_m, coordinate_px);
+  }
+  const bool is_in_front = ray.origin.z() + start_m * ray.direction.z() > 0.0;
+  return is_in_front ? start_m : kNaN;
+}
+
+}  // namespace
+
+void describe(StructuredLight& setup, FieldVisitor& visitor) {
+  visit_object(visitor, {"camera", "as `optics` of a sensor", kNoUnit, kRequired}, setup.camera);
+  visit_object(visitor,
+               {"projector",
+                "as `optics` of a sensor: a camera reversed; its width and height are those of "
+                "the patterns",
+                kNoUnit, kRequired},
+               setup.projector);
+  visit_pose(visitor,
+             {"projector_from_camera", "the camera in the optical frame of the projector", kNoUnit,
+              kRequired},
+             true, setup.projector_from_camera);
+  visit_object(visitor, {"patterns", "the projected images"}, setup.patterns);
+  visit_object(visitor, {"decoding", "thresholds of the decoder"}, setup.decoding);
+}
+
+std::vector<float> triangulate(const DecodedFringes& decoded, const StructuredLight& setup) {
+  const PinholeIntrinsics& k = setup.camera.intrinsics;
+  if (decoded.width != k.width || decoded.height != k.height) {
+    throw Error({"structured light",
+                 "the images have " + std::to_string(decoded.width) + "x" +
+                     std::to_string(decoded.height) + " pixels",
+                 std::to_string(k.width) + "x" + std::to_string(k.height) + ", as the camera", ""});
+  }
+  const Beams beams = make_beams(setup.camera);
+  const PinholeProjection projection(setup.projector);
+  const int axis = setup.patterns.axis == FringeAxis::columns ? 0 : 1;
+  const Eigen::Matrix3d rotation = setup.projector_from_camera.linear();
+  std::vector<float> depth_m(decoded.coordinate_px.size(), kNaNf);
+  for (std::size_t i = 0; i < depth_m.size(); ++i) {
+    const Eigen::Vector3d& direction = beams.directions[i];
+    if (std::isnan(decoded.coordinate_px[i]) || !(direction.z() > 0.0)) continue;
+    const Ray ray = {projection, setup.projector_from_camera.translation(),
+                     rotation * (direction / direction.z()), axis};
+    depth_m[i] = static_cast<float>(ray_depth_m(ray, setup.projector, decoded.coordinate_px[i]));
+  }
+  return depth_m;
+}
+
+}  // namespace glidar
