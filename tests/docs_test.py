@@ -43,8 +43,20 @@ class Pages(unittest.TestCase):
     def test_tutorial_of_the_loop(self):
         self.run_page("docs/tutorial/4-loop.md", ("5600", str(free_ports())))
 
+    def test_doppler(self):
+        self.run_page("docs/doppler.md")
+
     def test_stereo(self):
         self.run_page("docs/stereo.md")
+
+    def test_depth_filters(self):
+        self.run_page("docs/depth-filters.md")
+
+    def test_depth_alignment(self):
+        self.run_page("docs/depth-alignment.md")
+
+    def test_structured_light(self):
+        self.run_page("docs/structured-light.md")
 
     def test_troubleshooting(self):
         self.run_page("docs/troubleshooting.md", ("5555", str(free_ports())))

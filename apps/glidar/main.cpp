@@ -31,7 +31,10 @@ std::vector<Subcommand> all_subcommands() {
           subcommand("campaign", add_campaign),
           subcommand("sensors", add_sensors),
           subcommand("schema", add_schema),
+          subcommand("filter", add_filter),
+          subcommand("align", add_align),
           subcommand("stereo", add_stereo),
+          subcommand("structured-light", add_structured_light),
           subcommand("verify", add_verify)};
 }
 

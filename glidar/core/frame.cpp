@@ -32,6 +32,22 @@ std::string_view name(Status status) {
       return "weather";
     case Status::no_return_of_rank:
       return "no return of that rank";
+    case Status::image_border:
+      return "image border";
+    case Status::no_texture:
+      return "no texture";
+    case Status::outside_search:
+      return "outside the search";
+    case Status::ambiguous_match:
+      return "ambiguous match";
+    case Status::left_right_mismatch:
+      return "left-right mismatch";
+    case Status::projector_shadow:
+      return "projector shadow";
+    case Status::transparent:
+      return "transparent";
+    case Status::filtered_edge:
+      return "filtered edge";
   }
   return "unknown";
 }
@@ -64,6 +80,9 @@ void invalidate_return(Frame& frame, std::size_t entry, Status why) {
   frame.status[entry] = why;
   frame.range_m[entry] = std::numeric_limits<double>::quiet_NaN();
   frame.intensity[entry] = 0.0F;
+  if (!frame.radial_velocity_m_s.empty()) {
+    frame.radial_velocity_m_s[entry] = std::numeric_limits<double>::quiet_NaN();
+  }
   if (!frame.return_source.empty()) frame.return_source[entry] = ReturnSource::none;
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/grey_image.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/object_box.hpp>
 #include <glidar/core/pose.hpp>
+#include <glidar/core/tof_images.hpp>
 #include <glidar/math/random.hpp>
 
 #include <cstdint>
@@ -29,7 +31,17 @@ enum class Status : std::uint8_t {
   saturated = 9,           ///< the echo is too strong to be timed
   weather = 10,            ///< attenuated below the threshold by rain, snow or fog
   no_return_of_rank = 11,  ///< the beam has fewer echoes than the sensor can report
+  // Of depths from raw images:
+  image_border = 12,         ///< the match is beyond the edge of the other image
+  no_texture = 13,           ///< grey levels hardly change around the pixel
+  outside_search = 14,       ///< the best match is the first or last disparity of the search
+  ambiguous_match = 15,      ///< another disparity matches as well
+  left_right_mismatch = 16,  ///< the other image selects another match
+  projector_shadow = 17,     ///< a surface hides the pixel's from the projector
+  transparent = 18,          ///< the surface lets most of the light pass
+  filtered_edge = 19,        ///< at an edge, where the light of two surfaces mixes
 };
+inline constexpr std::size_t kStatusCount = 20;
 
 /// The origin of a return.
 enum class ReturnSource : std::uint8_t {
@@ -47,6 +59,13 @@ enum class ReturnSource : std::uint8_t {
 /// The name in words, as files and pictures spell it, e.g. "too near".
 std::string_view name(Status status);
 std::string_view name(ReturnSource source);
+
+/// An image of the sensor from which its depths are decoded.
+struct RawImage {
+  std::string name;     ///< "ir_left", "ir_right": suffixes of files, see docs/files.md
+  GreyImage grey = {};  ///< as the imager reports it
+  std::vector<float> electrons = {};  ///< one per pixel: the mean without noise and speckle
+};
 
 /// A measurement as one RGBA image, by the method of the 2016 paper (Woods and Christian, J.
 /// Imaging 2016, 2(1), 5): red is the intensity, green and blue are the depth in 65536 steps
@@ -76,6 +95,12 @@ struct Frame {
   std::vector<Status> status;               ///< N
   std::vector<ReturnSource> return_source;  ///< N; empty: `surface` wherever there is a return
   std::vector<float> sigma_m;  ///< N, standard deviation of the random error of range_m; empty: 0
+  /// N, measured rate at which the range grows: positive for what moves away; NaN unless status is
+  /// hit. Empty: the sensor does not measure it (Sensor::doppler).
+  std::vector<double> radial_velocity_m_s;
+  /// N, ground truth of it, with or without a return; NaN for a miss. Empty unless requested
+  /// (HitColumnMask::radial_velocity) or measured.
+  std::vector<double> true_radial_velocity_m_s;
   /// N, unit vectors in the sensor's frame: the directions of the beams as fired, with pointing
   /// noise. Empty: those of the nominal beams.
   std::vector<Eigen::Vector3d> true_directions;
@@ -96,7 +121,15 @@ struct Frame {
   };
   BeamPoses beam_poses;
   Woods2016Framebuffer framebuffer;  ///< range and intensity were decoded from it; empty: not used
-  Hits ground_truth;                 ///< the surfaces, whether reported or not
+  /// From which the ranges were decoded (DepthModel::physical); empty: none.
+  std::vector<RawImage> raw_images;
+  /// N, of stereo cameras: as matched, NaN where there is no match; empty: not matched.
+  std::vector<float> disparity_px;
+  TofImages tof_images;              ///< of time-of-flight cameras, as raw_images; empty: none
+  std::vector<float> tof_amplitude;  ///< N, mean of the frequencies, in levels; empty: none
+  std::vector<float>
+      bounced_share;  ///< N, ground truth: share of the illuminator's light over bounces
+  Hits ground_truth;  ///< the surfaces, whether reported or not
   /// Of the objects that have a class, in the order of the scene's instances. Empty unless
   /// requested (HitColumnMask::boxes).
   std::vector<ObjectBox> boxes;
@@ -105,7 +138,8 @@ struct Frame {
 /// Resizes the measured columns to `size` entries (contents unspecified).
 void resize(Frame& frame, std::size_t size);
 
-/// Removes the return of an entry: range NaN, intensity 0, status `why`, source none.
+/// Removes the return of an entry: range and radial velocity NaN, intensity 0, status `why`, source
+/// none.
 void invalidate_return(Frame& frame, std::size_t entry, Status why);
 
 /// The key of the random numbers of a beam of the frame.

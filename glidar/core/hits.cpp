@@ -34,6 +34,7 @@ HitColumnMask operator|(const HitColumnMask& a, const HitColumnMask& b) {
           .object_point = a.object_point || b.object_point,
           .noise_scale = a.noise_scale || b.noise_scale,
           .poses = a.poses || b.poses,
+          .radial_velocity = a.radial_velocity || b.radial_velocity,
           .boxes = a.boxes || b.boxes};
 }
 

@@ -25,8 +25,9 @@ struct HitColumnMask {
   bool reflectance = false;
   bool object_point = false;
   bool noise_scale = false;
-  bool poses = false;  ///< Frame::beam_poses, which is not a column of Hits
-  bool boxes = false;  ///< Frame::boxes; not in kAllHitColumns
+  bool poses = false;            ///< Frame::beam_poses, which is not a column of Hits
+  bool radial_velocity = false;  ///< Frame::true_radial_velocity_m_s, which is not one either
+  bool boxes = false;            ///< Frame::boxes; not in kAllHitColumns
 };
 
 inline constexpr HitColumnMask kAllHitColumns = {.depth = true,
@@ -40,7 +41,8 @@ inline constexpr HitColumnMask kAllHitColumns = {.depth = true,
                                                  .reflectance = true,
                                                  .object_point = true,
                                                  .noise_scale = true,
-                                                 .poses = true};
+                                                 .poses = true,
+                                                 .radial_velocity = true};
 
 /// The columns of either mask.
 HitColumnMask operator|(const HitColumnMask& a, const HitColumnMask& b);

@@ -37,9 +37,9 @@ struct PointCloud {
 };
 
 /// Names that make_point_cloud() accepts, in the order in which files list them:
-/// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
-/// class primitive barycentrics colour object_point status row col ring time return return_source
-/// azimuth elevation stamp sensor_pose object_pose
+/// xyz true_xyz intensity range true_range sigma radial_velocity true_radial_velocity depth normal
+/// shading_normal incidence instance class primitive barycentrics colour object_point status row
+/// col ring time return return_source azimuth elevation stamp sensor_pose object_pose
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns require. Throws Error for an unknown name.
@@ -54,6 +54,9 @@ HitColumnMask hit_columns_for(std::span<const std::string> column_names);
 ///                which does not affect coordinates
 ///  true_range    f64, metres, ground truth, also with range_offset_m; NaN for a miss
 ///  sigma         f32, metres, standard deviation of the range's random error
+///  radial_velocity  f64, m/s, measured, positive for what moves away; NaN unless a hit, or if the
+///                sensor does not measure it
+///  true_radial_velocity  f64, m/s, ground truth; NaN for a miss
 ///  normal, shading_normal  f32 x3, unit, in `target_frame`
 ///  incidence     f32, radians
 ///  instance, class  u32, the instance's id and class_id; kInvalidId for a miss

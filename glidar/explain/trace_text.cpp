@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <sstream>
 #include <string_view>
 
 namespace glidar {
@@ -48,6 +49,8 @@ std::string measurement_text(const Measurement& measurement) {
   std::string text =
       fmt::format("{:.6f} m, intensity {:.6g}", measurement.range_m, measurement.intensity);
   if (measurement.sigma_m > 0.0F) text += fmt::format(", sigma {:.3g} m", measurement.sigma_m);
+  if (!std::isnan(measurement.radial_velocity_m_s))
+    text += fmt::format(", {:+.6f} m/s", measurement.radial_velocity_m_s);
   if (measurement.return_source != ReturnSource::surface)
     text += fmt::format(", {}", name(measurement.return_source));
   return text;
@@ -115,6 +118,10 @@ void write_hit(TraceWriter& out) {
            hits.depth_m[i], kDegreesPerRadian * std::acos(std::min(1.0F, hits.cos_incidence[i])));
   out.line("", "at {} of the object, normal {} in the sensor's frame",
            triple(hits.object_point_m[i]), triple(hits.normal[i].cast<double>()));
+  if (out.sensor.doppler) {
+    out.line("", "radial velocity {:+.9g} m/s, positive away from the sensor",
+             out.frame.true_radial_velocity_m_s[i]);
+  }
 }
 
 /// Names of the alternatives of Brdf, in their order.
@@ -156,7 +163,47 @@ void write_phong(TraceWriter& out) {
            light.attenuation_linear_per_m, light.attenuation_quadratic_per_m2);
 }
 
+/// The photons of a pixel, and how it was matched.
+void write_stereo(TraceWriter& out, const StereoPixelTrace& stereo) {
+  const PixelReading& reading = stereo.reading;
+  out.line("exposed", "{:.4g} ms, gain {:.4g}", 1e3 * stereo.exposure.time_s, stereo.exposure.gain);
+  out.line("photons", "{:.1f} electrons from the projector, {:.1f} from other light, on average",
+           stereo.light.projector_e, stereo.light.ambient_e);
+  out.line("", "speckle {:.4f}, {:.0f} electrons after shot noise, read noise {:+.1f}: grey {}",
+           reading.speckle, reading.electrons, reading.read_noise_e, reading.level);
+  out.line("", "the same surface in the right image: {:.1f} and {:.1f} electrons",
+           stereo.right_light.projector_e, stereo.right_light.ambient_e);
+  out.line("match", "true disparity {:.4f} px", stereo.true_disparity_px);
+  std::istringstream lines(format_stereo_trace(stereo.match));
+  for (std::string text; std::getline(lines, text);) out.line("", "{}", text);
+}
+
+/// The photons of each phase step, and how they were decoded.
+void write_tof(TraceWriter& out, const TofPixelTrace& tof) {
+  const std::size_t taps = tof.light.size() / tof.decoded.frequencies_hz.size();
+  for (std::size_t f = 0; f < tof.decoded.frequencies_hz.size(); ++f) {
+    std::string correlated;
+    for (std::size_t k = 0; k < taps; ++k) {
+      correlated += fmt::format("{}{:.1f}", k == 0 ? "" : ", ", tof.light[f * taps + k].correlated);
+    }
+    const TofLight& light = tof.light[f * taps];
+    out.line(f == 0 ? "photons" : "",
+             "{:.0f} MHz: {:.1f} electrons of the illuminator in each phase step, {:.1f} of other "
+             "light, on average; correlated {}",
+             tof.decoded.frequencies_hz[f] * 1e-6, light.signal, light.background, correlated);
+  }
+  out.line("", "{:.2f} % of the illuminator's light came over diffuse bounces",
+           100.0 * tof.bounced_share);
+  std::istringstream lines(format_tof_trace(tof.decoded));
+  bool is_first = true;
+  for (std::string text; std::getline(lines, text); is_first = false) {
+    out.line(is_first ? "decoded" : "", "{}", text);
+  }
+}
+
 void write_light(TraceWriter& out) {
+  if (out.trace.tof) return write_tof(out, *out.trace.tof);
+  if (out.trace.stereo) return write_stereo(out, *out.trace.stereo);
   if (!out.has_hit()) return;
   if (out.sensor.lidar_equation) return write_lidar_equation(out, *out.sensor.lidar_equation);
   write_phong(out);
@@ -185,8 +232,10 @@ void write_paths(TraceWriter& out, const WaveformTrace& pulse) {
         light_path.path.source == kInvalidId
             ? std::string("-")
             : fmt::format("{} ({:.1f} %)", light_path.path.source, 100.0 * light_path.share);
-    out.line("", "{:>12}  {:>12.6f} m  signal {:<10.4g} {}", ray, light_path.path.range_m,
-             light_path.path.signal, origin_text(out, light_path));
+    const std::string velocity =
+        out.sensor.doppler ? fmt::format("{:+.6f} m/s  ", light_path.velocity_m_s) : "";
+    out.line("", "{:>12}  {:>12.6f} m  signal {:<10.4g} {}{}", ray, light_path.path.range_m,
+             light_path.path.signal, velocity, origin_text(out, light_path));
   }
   if (pulse.light_paths.size() > kMax)
     out.line("", "... and {} more", pulse.light_paths.size() - kMax);
@@ -222,9 +271,22 @@ void write_echoes(TraceWriter& out, const WaveformTrace& pulse) {
   }
 }
 
+void write_velocity(TraceWriter& out) {
+  if (!out.trace.velocity) return;
+  const VelocityTrace& velocity = *out.trace.velocity;
+  const Doppler& doppler = *out.sensor.doppler;
+  out.line("doppler", "{:+.6f} m/s received, sigma {:.3g} m/s, standard normal {:.6f}",
+           velocity.received_m_s, velocity.sigma_m_s, velocity.normal);
+  if (doppler.step_m_s > 0.0) out.line("", "in steps of {:.6g} m/s", doppler.step_m_s);
+  if (std::isfinite(doppler.max_m_s)) {
+    out.line("", "folded into -{0:.6g} to {0:.6g} m/s", doppler.max_m_s);
+  }
+  out.line("", "result {:+.6f} m/s", out.trace.measured.radial_velocity_m_s);
+}
+
 void write_noise(TraceWriter& out) {
   const std::vector<NoiseStep>& noise = out.sensor.noise;
-  for (std::size_t k = 0; k < noise.size(); ++k) {
+  for (std::size_t k = 0; k < out.trace.noise.size(); ++k) {
     const PointTrace::Step& step = out.trace.noise[k];
     const Measurement& before = k == 0 ? out.trace.measured : out.trace.noise[k - 1].after;
     out.line(fmt::format("noise {}", k + 1), "{}", noise_text(noise[k]));
@@ -259,6 +321,11 @@ void write_result(TraceWriter& out) {
   if (measurement.status == Status::hit && out.has_hit()) {
     out.line("error", "{:+.6f} m relative to the ground truth",
              measurement.range_m - out.frame.ground_truth.range_m[out.trace.entry]);
+    if (out.sensor.doppler) {
+      out.line(
+          "", "{:+.6f} m/s relative to its radial velocity",
+          measurement.radial_velocity_m_s - out.frame.true_radial_velocity_m_s[out.trace.entry]);
+    }
   }
 }
 
@@ -275,6 +342,7 @@ std::string format_trace(const PointTrace& trace, const Simulator& simulator, co
     write_paths(out, *trace.waveform);
     write_echoes(out, *trace.waveform);
   }
+  write_velocity(out);
   out.line("measured", "{}", measurement_text(trace.measured));
   write_noise(out);
   write_result(out);

@@ -19,10 +19,16 @@ enum class Purpose : std::uint8_t {
   detection = 1,
   weather = 3,
   fog = 4,
+  dot_pattern = 5,
+  left_image = 6,
+  right_image = 7,
   imu_constants = 8,
   imu_noise = 9,
   imu_correlated_bias = 10,
   imu_random_walk = 11,
+  tof_exposure = 12,
+  tof_bounces = 13,
+  radial_velocity = 14,
   first_noise_step = 32,  ///< noise step k of a sensor, from 0, uses first_noise_step + k
 };
 

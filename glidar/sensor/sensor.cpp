@@ -4,8 +4,10 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/point_cloud.hpp>
 #include <glidar/math/constants.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace glidar {
@@ -57,6 +59,32 @@ std::size_t channels_of(const RayTable& optics) {
   return optics.rows;
 }
 
+/// Stereo images are rectified.
+void check_pinhole(const ActiveStereo& camera, const Pinhole& pinhole) {
+  if (!std::holds_alternative<NoDistortion>(pinhole.distortion)) {
+    throw Error({.where = "depth_camera",
+                 .found = "the optics have a lens distortion",
+                 .allowed = "optics without distortion: stereo images are rectified",
+                 .remedy = "remove 'distortion', or 'depth_camera'"});
+  }
+  check_image(camera, pinhole.intrinsics);
+}
+
+void check_pinhole(const TofCamera& camera, const Pinhole& pinhole) {
+  validate(camera);
+  constexpr double kMaxRays = 0x1p25;
+  const PinholeIntrinsics& image = pinhole.intrinsics;
+  const double rays =
+      static_cast<double>(image.width) * image.height * camera.sub_rays * camera.sub_rays;
+  if (rays <= kMaxRays) return;
+  throw Error({.where = "depth_camera, sub_rays",
+               .found = "is " + std::to_string(camera.sub_rays) + ", so that " +
+                        std::to_string(image.width) + "x" + std::to_string(image.height) +
+                        " pixels have too many rays",
+               .allowed = "at most " + number_text(kMaxRays) + " rays",
+               .remedy = "use fewer sub_rays or pixels"});
+}
+
 }  // namespace
 
 Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
@@ -67,13 +95,48 @@ Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, 
   return Status::hit;
 }
 
+void set_depth_model(DepthModel model, const std::string& where, Sensor& sensor) {
+  if (model == DepthModel::physical && !sensor.depth_camera) {
+    throw Error({.where = where,
+                 .found = "physical, but the sensor '" + sensor.name + "' has no depth_camera",
+                 .allowed = "law, or a sensor with a depth_camera such as D435",
+                 .remedy = "choose another sensor, or add 'depth_camera' to a sensor file"});
+  }
+  sensor.depth_model = model;
+}
+
+const DepthCamera* physical_camera(const Sensor& sensor) {
+  const bool is_physical = sensor.depth_model == DepthModel::physical && sensor.depth_camera;
+  return is_physical ? &*sensor.depth_camera : nullptr;
+}
+
+void check_depth_camera(const Sensor& sensor) {
+  if (!sensor.depth_camera) return;
+  const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
+  if (pinhole == nullptr) {
+    throw Error({.where = "depth_camera",
+                 .found = "the optics are not a pinhole",
+                 .allowed = "optics of type pinhole",
+                 .remedy = "change 'optics', or remove 'depth_camera'"});
+  }
+  if (!(sensor.wavelength_m > 0.0)) {
+    throw Error({.where = "depth_camera",
+                 .found = "no 'wavelength_nm', on which reflectances and photons depend",
+                 .allowed = "light of a known wavelength",
+                 .remedy = "add 'wavelength_nm: ...'"});
+  }
+  std::visit([&](const auto& camera) { check_pinhole(camera, *pinhole); }, *sensor.depth_camera);
+}
+
 Sensor ground_truth_sensor(Sensor sensor) {
   sensor.lidar_equation.reset();
   sensor.footprint.reset();
   sensor.weather.reset();
   sensor.projector_origin_m.reset();
   sensor.receiver = {};
+  if (sensor.doppler) sensor.doppler = Doppler{};
   sensor.noise.clear();
+  sensor.depth_model = DepthModel::law;
   return sensor;
 }
 
@@ -94,6 +157,28 @@ void check_weather(const Sensor& sensor) {
                  .remedy = "add 'lidar_equation' to a sensor file (docs/files.md)"});
   }
   extinction_per_m(*sensor.weather, sensor.wavelength_m);
+}
+
+void check_doppler(const Sensor& sensor) {
+  if (!sensor.doppler || std::isfinite(sensor.doppler->max_m_s)) return;
+  const bool has_false_alarms =
+      std::any_of(sensor.noise.begin(), sensor.noise.end(),
+                  [](const NoiseStep& step) { return std::holds_alternative<FalseAlarms>(step); });
+  if (!has_false_alarms) return;
+  throw Error({.where = "doppler",
+               .found = "no max_m_s beside the noise step 'false_alarms'",
+               .allowed = "a limit up to which the velocities of false alarms are uniform",
+               .remedy = "add 'max_m_s: ...' to 'doppler'"});
+}
+
+void check_columns(const Sensor& sensor, std::span<const std::string> column_names) {
+  const bool is_named =
+      std::find(column_names.begin(), column_names.end(), "radial_velocity") != column_names.end();
+  if (sensor.doppler || !is_named || column_names.size() == cloud_column_names().size()) return;
+  throw Error({.where = "cloud column 'radial_velocity'",
+               .found = "the sensor '" + sensor.name + "' does not measure it",
+               .allowed = "true_radial_velocity, or a sensor with 'doppler'",
+               .remedy = "add 'doppler: {}' to a sensor file (docs/doppler.md)"});
 }
 
 std::size_t channel_count(const Optics& optics) {

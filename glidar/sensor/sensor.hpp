@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/sensor/depth_camera/depth_camera.hpp>
+#include <glidar/sensor/lidar/doppler.hpp>
 #include <glidar/sensor/lidar/echo.hpp>
 #include <glidar/sensor/lidar/footprint.hpp>
 #include <glidar/sensor/lidar/lidar_equation.hpp>
@@ -17,6 +19,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -50,21 +53,37 @@ struct Sensor {
   std::optional<Footprint> footprint;           ///< of pulses; empty: the beam is a line
   std::optional<Weather> weather;               ///< empty: clear air; affects `lidar_equation`
   Receiver receiver;                            ///< of pulses
+  std::optional<Doppler> doppler;               ///< empty: it measures no radial velocity
   /// Position of the light source in the sensor frame: surfaces that it does not see are occluded.
   /// Empty: the sensor's origin.
   std::optional<Eigen::Vector3d> projector_origin_m;
-  std::vector<NoiseStep> noise;         ///< applied in this order
-  bool cull_back_faces = false;         ///< true: beams pass through the backs of triangles
-  std::vector<std::string> files = {};  ///< the files that define it
-  std::string variant = {};             ///< of a family of sensors in a file; empty: none
-  std::string mode = {};                ///< of the file, such as "1024x10"; empty: none
+  std::vector<NoiseStep> noise;  ///< applied in this order, by DepthModel::law
+  DepthModel depth_model = DepthModel::law;
+  std::optional<DepthCamera> depth_camera;  ///< what DepthModel::physical simulates
+  bool cull_back_faces = false;             ///< true: beams pass through the backs of triangles
+  std::vector<std::string> files = {};      ///< the files that define it
+  std::string variant = {};                 ///< of a family of sensors in a file; empty: none
+  std::string mode = {};                    ///< of the file, such as "1024x10"; empty: none
 };
 
 /// The status of a surface at this true range on a beam: hit, too_near or too_far.
 Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m);
 
+/// Selects how a depth camera is simulated. Throws Error naming `where` for DepthModel::physical
+/// when the sensor has no depth_camera.
+void set_depth_model(DepthModel model, const std::string& where, Sensor& sensor);
+
+/// What is simulated from raw images: the depth_camera of DepthModel::physical, or null.
+const DepthCamera* physical_camera(const Sensor& sensor);
+
+/// Throws Error unless the optics and the wavelength fit the depth camera, or there is none: a
+/// pinhole, light of a known wavelength, for stereo no distortion and an image wider than the
+/// matcher's search, and not too many rays.
+void check_depth_camera(const Sensor& sensor);
+
 /// The sensor without noise, lidar equation, weather, footprint, further returns and projector: it
-/// reports the geometric ground truth with the intensity of the Phong model. Its limits stay.
+/// reports the geometric ground truth with the intensity of the Phong model. Its limits stay, and
+/// it reports true radial velocities if it measures any.
 Sensor ground_truth_sensor(Sensor sensor);
 
 /// Sets the frame rate, and with it the rotation rate of a spinning sensor and the scan rate of a
@@ -73,6 +92,14 @@ void set_rate(Sensor& sensor, double rate_hz);
 
 /// Throws Error for weather without a lidar equation, and for fog without a wavelength.
 void check_weather(const Sensor& sensor);
+
+/// Throws Error if the sensor measures radial velocities without a limit, but has false alarms,
+/// which are uniform up to that limit.
+void check_doppler(const Sensor& sensor);
+
+/// Throws Error if the columns of a cloud contain radial_velocity, which the sensor does not
+/// measure. All columns together are valid for every sensor; this one is NaN then.
+void check_columns(const Sensor& sensor, std::span<const std::string> column_names);
 
 /// The number of channels: rings of clouds are below it.
 std::size_t channel_count(const Optics& optics);

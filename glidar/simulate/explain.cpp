@@ -3,10 +3,14 @@
 #include <glidar/simulate/explain.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/math/gaussian.hpp>
 #include <glidar/sensor/noise/noise.hpp>
+#include <glidar/simulate/depth_from_images.hpp>
 #include <glidar/simulate/simulate.hpp>
 #include <glidar/simulate/waveforms.hpp>
+
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -19,7 +23,9 @@ Measurement measurement_of(const Frame& frame, std::size_t entry) {
           .return_source = is_hit ? source : ReturnSource::none,
           .range_m = frame.range_m[entry],
           .intensity = frame.intensity[entry],
-          .sigma_m = frame.sigma_m.empty() ? 0.0F : frame.sigma_m[entry]};
+          .sigma_m = frame.sigma_m.empty() ? 0.0F : frame.sigma_m[entry],
+          .radial_velocity_m_s =
+              frame.radial_velocity_m_s.empty() ? kNaN : frame.radial_velocity_m_s[entry]};
 }
 
 /// The columns that noise changes.
@@ -28,6 +34,7 @@ struct Columns {
   std::vector<float> intensity;
   std::vector<Status> status;
   std::vector<ReturnSource> return_source;
+  std::vector<double> radial_velocity_m_s;
 };
 
 /// Applies the first noise steps to a frame as it was measured.
@@ -36,8 +43,25 @@ void apply_first(const Simulation& s, std::size_t count, const Columns& measured
   s.frame.intensity = measured.intensity;
   s.frame.status = measured.status;
   s.frame.return_source = measured.return_source;
+  s.frame.radial_velocity_m_s = measured.radial_velocity_m_s;
   apply_noise(s.prepared.noise, s.beams, s.renderer.thread_pool(), s.workspace.noise, s.frame,
               count);
+  const Sensor& sensor = s.prepared.sensor;
+  if (sensor.doppler) complete_radial_velocities(*sensor.doppler, s.frame);
+}
+
+/// Of an entry of a frame before noise steps.
+std::optional<VelocityTrace> trace_velocity(const Simulation& s, const PointTrace& trace) {
+  const Frame& frame = s.frame;
+  const std::size_t i = trace.entry;
+  const std::optional<Doppler>& doppler = s.prepared.sensor.doppler;
+  if (!doppler || frame.status[i] != Status::hit) return {};
+  return VelocityTrace{
+      .received_m_s = trace.waveform ? trace.waveform->velocities_m_s[i / s.beams.firings()]
+                                     : frame.true_radial_velocity_m_s[i],
+      .sigma_m_s = radial_velocity_sigma_m_s(*doppler, double{frame.intensity[i]},
+                                             double{frame.ground_truth.noise_scale[i]}),
+      .normal = radial_velocity_normal(frame, i)};
 }
 
 std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame,
@@ -68,6 +92,11 @@ PointTrace begin_trace(const Simulation& s, std::size_t entry) {
   trace.entry = entry;
   trace.direction = s.fired->directions[entry];
   if (s.prepared.pulse_model) trace.waveform = trace_waveform(s, pulse, frame);
+  if (s.prepared.depth_camera) {
+    DepthTrace depth = trace_depth(s, entry);
+    if (auto* stereo = std::get_if<StereoPixelTrace>(&depth)) trace.stereo = std::move(*stereo);
+    if (auto* tof = std::get_if<TofPixelTrace>(&depth)) trace.tof = std::move(*tof);
+  }
   trace.receiver_noise = receiver_noise(s.prepared.sensor, frame, trace, pulse);
   return trace;
 }
@@ -81,12 +110,14 @@ PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelect
   s.noise_steps = 0;
   simulate({&s, 1});
   if (s.fired != &s.beams) s.workspace.fired.directions = frame.true_directions;
-  const Columns measured{frame.range_m, frame.intensity, frame.status, frame.return_source};
+  const Columns measured{frame.range_m, frame.intensity, frame.status, frame.return_source,
+                         frame.radial_velocity_m_s};
   const NoisePlan& noise = s.prepared.noise;
   apply_first(s, noise.steps.size(), measured);
   PointTrace trace = begin_trace(s, pick(frame));
   apply_first(s, 0, measured);
   trace.measured = measurement_of(frame, trace.entry);
+  trace.velocity = trace_velocity(s, trace);
   auto samples = trace_samples(noise, *beams, s.renderer.thread_pool(), frame, trace.entry);
   for (std::size_t k = 0; k < noise.steps.size(); ++k) {
     apply_first(s, k + 1, measured);

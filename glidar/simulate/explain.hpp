@@ -4,6 +4,8 @@
 
 #include <glidar/sensor/noise/noise_trace.hpp>
 #include <glidar/simulate/simulator.hpp>
+#include <glidar/simulate/stereo_pixel_trace.hpp>
+#include <glidar/simulate/tof_pixel_trace.hpp>
 #include <glidar/simulate/waveform_trace.hpp>
 
 #include <cstddef>
@@ -19,7 +21,15 @@ struct Measurement {
   ReturnSource return_source = ReturnSource::none;
   double range_m = 0.0;  ///< without Beams::range_offset_m; NaN unless hit
   float intensity = 0.0F;
-  float sigma_m = 0.0F;  ///< of the range's random error so far
+  float sigma_m = 0.0F;              ///< of the range's random error so far
+  double radial_velocity_m_s = 0.0;  ///< NaN unless hit and measured
+};
+
+/// How the radial velocity of a return was measured.
+struct VelocityTrace {
+  double received_m_s = 0.0;  ///< without errors
+  double sigma_m_s = 0.0;     ///< of its random error
+  double normal = 0.0;        ///< the standard normal number of the error
 };
 
 /// How an entry of a frame was measured, as far as the frame's own columns do not state it.
@@ -28,9 +38,14 @@ struct PointTrace {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< with pointing errors, sensor's frame
   Measurement measured;                                 ///< before noise
   std::optional<WaveformTrace> waveform = {};           ///< where beams are more than a ray
+  std::optional<StereoPixelTrace> stereo = {};  ///< of stereo cameras by DepthModel::physical
+  std::optional<TofPixelTrace> tof = {};        ///< of time-of-flight cameras by the same
   /// Of pulsed sensors: the normal numbers that the receiver's noise_sigma multiplies, one for each
   /// echo; one for beams that are a single ray.
   std::vector<double> receiver_noise = {};
+
+  /// Before noise steps; empty: no return, or not measured.
+  std::optional<VelocityTrace> velocity = {};
 
   /// One noise step.
   struct Step {

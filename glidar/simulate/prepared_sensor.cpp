@@ -37,9 +37,26 @@ HitColumnMask required_hit_columns(const Sensor& sensor) {
   hit_columns.shading = true;
   hit_columns.diffuse = sensor.lidar_equation.has_value();
   hit_columns.reflectance = !sensor.lidar_equation;
-  hit_columns.normal = sensor.projector_origin_m.has_value();
-  add_required_hit_columns(sensor.noise, hit_columns);
+  const bool is_physical = physical_camera(sensor) != nullptr;
+  hit_columns.normal = sensor.projector_origin_m.has_value() || is_physical;
+  hit_columns.radial_velocity = sensor.doppler.has_value();
+  hit_columns.noise_scale = sensor.doppler.has_value();
+  if (!is_physical) add_required_hit_columns(sensor.noise, hit_columns);
   return hit_columns;
+}
+
+PreparedDepthCamera prepare(const ActiveStereo& camera, const Sensor& sensor) {
+  return prepare_active_stereo(camera, std::get<Pinhole>(sensor.optics).intrinsics,
+                               sensor.wavelength_m);
+}
+
+PreparedDepthCamera prepare(const TofCamera& camera, const Sensor& sensor) {
+  return prepare_tof(camera, sensor);
+}
+
+/// Images have noise of their own.
+std::vector<NoiseStep> noise_steps(const Sensor& sensor) {
+  return physical_camera(sensor) != nullptr ? std::vector<NoiseStep>{} : sensor.noise;
 }
 
 }  // namespace
@@ -57,11 +74,18 @@ bool needs_waveform(const Sensor& sensor, const Scene& scene) {
 
 PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
   check_channel_ranges(sensor);
+  check_doppler(sensor);
+  if (physical_camera(sensor) != nullptr) check_depth_camera(sensor);
   PreparedSensor prepared{.sensor = sensor,
-                          .noise = plan_noise(sensor.noise, 1.0 / sensor.rate_hz),
+                          .noise = plan_noise(noise_steps(sensor), 1.0 / sensor.rate_hz),
                           .required_hit_columns = required_hit_columns(sensor),
-                          .pulse_model = {}};
+                          .pulse_model = {},
+                          .depth_camera = {}};
   if (needs_waveform(sensor, scene)) prepared.pulse_model = pulse_model(sensor, scene);
+  if (const DepthCamera* depth_camera = physical_camera(sensor)) {
+    std::visit([&](const auto& camera) { prepared.depth_camera.emplace(prepare(camera, sensor)); },
+               *depth_camera);
+  }
   return prepared;
 }
 

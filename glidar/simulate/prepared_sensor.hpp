@@ -6,8 +6,11 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/sensor/lidar/weather_echoes.hpp>
 #include <glidar/sensor/sensor.hpp>
+#include <glidar/simulate/prepared_active_stereo.hpp>
+#include <glidar/simulate/prepared_tof.hpp>
 
 #include <optional>
+#include <variant>
 #include <vector>
 
 namespace glidar {
@@ -25,16 +28,20 @@ struct PulseModel {
   bool has_mirrors = false;                ///< whether the scene has mirrors
 };
 
+/// A depth camera that is simulated from its raw images.
+using PreparedDepthCamera = std::variant<PreparedActiveStereo, PreparedTof>;
+
 /// A sensor with everything about it that is the same for all frames of a scene.
 struct PreparedSensor {
   const Sensor& sensor;
-  NoisePlan noise;
+  NoisePlan noise;                        ///< without steps for a depth camera
   HitColumnMask required_hit_columns;     ///< ground truth that signal, occlusion and noise read
   std::optional<PulseModel> pulse_model;  ///< set when needs_waveform()
+  std::optional<PreparedDepthCamera> depth_camera;  ///< set for DepthModel::physical
 };
 
-/// Throws Error when the sensor's weather needs what the sensor lacks, see check_weather(). Refers
-/// to the sensor.
+/// Throws Error when the sensor's weather, radial velocities or depth camera need what the sensor
+/// lacks, see check_weather(), check_doppler() and check_depth_camera(). Refers to the sensor.
 PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene);
 
 }  // namespace glidar

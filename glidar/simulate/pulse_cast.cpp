@@ -53,12 +53,19 @@ void cast_block(const Simulation& s, BeamRange block) {
   memory.mirrored_from.clear();
   if (model.has_mirrors) cast_mirrored(s);
   memory.signals.resize(memory.beams.size());
+  memory.velocities_m_s.resize(s.hit_columns.radial_velocity ? memory.beams.size() : 0);
 }
 
 }  // namespace
 
 std::size_t first_sub_ray(const Simulation& s, std::size_t pulse) {
   return (pulse - s.workspace.sub_rays.first_pulse) * s.prepared.pulse_model->sub_rays.size();
+}
+
+std::size_t mirrored_beam(const SubRayWorkspace& memory, std::size_t sub_ray) {
+  const std::vector<std::uint32_t>& from = memory.mirrored_from;
+  return static_cast<std::size_t>(std::lower_bound(from.begin(), from.end(), sub_ray) -
+                                  from.begin());
 }
 
 void cast_pulses(const Simulation& s, BeamRange pulses, FunctionRef<void(BeamRange)> on_tile_done) {

@@ -19,4 +19,7 @@ void cast_pulses(const Simulation& s, BeamRange pulses, FunctionRef<void(BeamRan
 /// Index of a pulse's first sub-ray in the workspace.
 std::size_t first_sub_ray(const Simulation& s, std::size_t pulse);
 
+/// Index of the first mirrored beam in the workspace that comes from this sub-ray or a later one.
+std::size_t mirrored_beam(const SubRayWorkspace& memory, std::size_t sub_ray);
+
 }  // namespace glidar

@@ -7,6 +7,8 @@
 #include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/motion/beam_poses.hpp>
+#include <glidar/motion/radial_velocity.hpp>
+#include <glidar/simulate/depth_from_images.hpp>
 #include <glidar/simulate/object_boxes.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
 #include <glidar/simulate/pulse_cast.hpp>
@@ -27,6 +29,8 @@ void reset_frame(const Simulation& s) {
   frame.frame_id = s.beams.frame_id;
   sample_poses(s.motion, frame);
   resize(frame, s.beams.size());
+  frame.radial_velocity_m_s.resize(s.prepared.sensor.doppler ? s.beams.size() : 0);
+  frame.true_radial_velocity_m_s.resize(s.hit_columns.radial_velocity ? s.beams.size() : 0);
   frame.return_source.clear();
   frame.sigma_m.clear();
   frame.true_directions.clear();
@@ -35,6 +39,11 @@ void reset_frame(const Simulation& s) {
   frame.deskewed.origins_m.clear();
   frame.deskewed.start_from_sensor.clear();
   frame.framebuffer.rgba.clear();
+  frame.raw_images.clear();
+  frame.tof_images = {};
+  frame.tof_amplitude.clear();
+  frame.bounced_share.clear();
+  frame.disparity_px.clear();
   frame.boxes.clear();
 }
 
@@ -134,6 +143,20 @@ void check_limits(const Limits& limits, const Beams& beams, BeamRange tile, Fram
   }
 }
 
+/// Radial velocities: of the ground truth if they are wanted, and with errors if the sensor
+/// measures them. Those of pulses are known from their echoes.
+void measure_velocities(const Simulation& s) {
+  Frame& frame = s.frame;
+  ThreadPool& threads = s.renderer.thread_pool();
+  if (!s.prepared.pulse_model) {
+    record_radial_velocities(s.motion, *s.fired, s.hit_columns.radial_velocity, threads, frame);
+    if (s.prepared.sensor.doppler) frame.radial_velocity_m_s = frame.true_radial_velocity_m_s;
+  }
+  if (s.prepared.sensor.doppler) {
+    measure_radial_velocities(*s.prepared.sensor.doppler, threads, frame);
+  }
+}
+
 }  // namespace
 
 void simulate(std::span<Simulation> frames) {
@@ -147,10 +170,16 @@ void simulate(std::span<Simulation> frames) {
     const Sensor& sensor = s.prepared.sensor;
     ThreadPool& threads = s.renderer.thread_pool();
     if (s.replace_returns) s.replace_returns({sensor, s.beams, *s.fired, threads}, s.frame);
-    if (sensor.projector_origin_m) occlude_from_projector(s, *sensor.projector_origin_m);
+    if (s.prepared.depth_camera) {
+      measure_depth(s);
+    } else if (sensor.projector_origin_m) {
+      occlude_from_projector(s, *sensor.projector_origin_m);
+    }
     if (s.is_moving) deskew(timed_scene(s), s.beams, *s.fired, s.frame.deskewed);
     record_beam_poses(s.motion, s.beams, s.hit_columns.poses, threads, s.frame);
+    measure_velocities(s);
     apply_noise(s.prepared.noise, s.beams, threads, s.workspace.noise, s.frame, s.noise_steps);
+    if (sensor.doppler) complete_radial_velocities(*sensor.doppler, s.frame);
     if (s.fired != &s.beams) s.frame.true_directions.swap(s.workspace.fired.directions);
     if (s.hit_columns.boxes) find_boxes(s, BoxSelection::with_class, s.frame.boxes);
   }
@@ -169,7 +198,7 @@ void measure_tile(const Simulation& s, BeamRange tile) {
 }
 
 bool takes_one_cast(const Simulation& s) {
-  return !s.prepared.pulse_model && !s.is_moving;
+  return !s.prepared.pulse_model && !s.prepared.depth_camera && !s.is_moving;
 }
 
 }  // namespace glidar

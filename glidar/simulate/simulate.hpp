@@ -8,7 +8,8 @@
 
 namespace glidar {
 
-/// The method: pointing noise; cast; limits and received signal of every tile; occlusion; noise.
+/// The method: pointing noise; cast; limits and received signal of every tile; occlusion; radial
+/// velocities; noise.
 /// Each frame states its stamp_ns, seed, sensor_id and number. Frames for which takes_one_cast() is
 /// true may be simulated together, others one at a time.
 void simulate(std::span<Simulation> frames);

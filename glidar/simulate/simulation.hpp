@@ -7,6 +7,7 @@
 #include <glidar/simulate/prepared_sensor.hpp>
 #include <glidar/simulate/return_replacement.hpp>
 #include <glidar/simulate/waveform_trace.hpp>
+#include <glidar/stereo/stereo_match.hpp>
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -20,10 +21,56 @@ struct SubRayWorkspace {
   std::size_t first_pulse = 0;  ///< whose sub-rays come first
   Beams beams;
   Hits hits;                                 ///< of `beams`
+  std::vector<std::uint8_t> hidden;          ///< per beam of the sensor, see find_hidden()
   std::vector<double> signals;               ///< per sub-ray: its signal alone
+  std::vector<double> velocities_m_s;        ///< per sub-ray: radial velocity; empty: not wanted
   Beams mirrored;                            ///< beams reflected by mirrors
   Hits mirrored_hits;                        ///< of `mirrored`
   std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-ray
+};
+
+/// A way of light from a pixel's surface over bounces.
+struct TofPath {
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< its end, just before a surface
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();   ///< of the surface
+  double length_m = 0.0;                              ///< from the camera to the end
+  double electrons =
+      0.0;  ///< of an illuminator that lights the end from 1 m; 0: the path has ended
+};
+
+/// Light of a time-of-flight camera. P = number of pixels.
+struct TofWorkspace {
+  Beams rays;                       ///< of all pixels, at the time of a phase step
+  Hits hits;                        ///< of the rays of all pixels
+  std::vector<TofLight> light;      ///< P x phase steps of all frequencies
+  std::vector<double> reflectance;  ///< P, mean of the rays of the pixel
+  std::vector<TofLight>
+      bounced_light;           ///< as `light`, over bounces, before the average over pixels
+  std::vector<float> bounced;  ///< P, electrons that came over bounces
+  std::vector<TofPath> paths;  ///< of a block of pixels
+  Beams bounce_rays;           ///< one per path
+  Hits bounce_hits;
+  Beams illuminator_rays;  ///< one per path
+  Hits illuminator_hits;
+};
+
+/// Images of an active stereo camera. R = number of rays of an image, P = of its pixels.
+struct InfraredWorkspace {
+  Hits hits;                             ///< of the rays
+  std::vector<float> projector;          ///< R, radiance by the projector's light, W / (m^2 sr)
+  std::vector<float> sun;                ///< R, by the sun's; empty: no sun
+  std::vector<float> ambient;            ///< R, by all other light
+  Beams shadow_rays;                     ///< from a light source
+  Hits shadow_hits;                      ///< of these
+  std::vector<std::uint8_t> shades;      ///< P
+  std::vector<std::uint8_t> edges;       ///< P, whether all rays of the pixel are tested
+  std::vector<std::size_t> tested_rays;  ///< of such pixels
+  std::vector<std::uint8_t> unseen;      ///< P, surfaces that the second camera does not see
+  std::vector<std::uint8_t> unlit;       ///< P, those that the projector does not see
+  ElectronRates left;
+  ElectronRates right;
+  Exposure exposure;
+  std::optional<StereoMatcher> matcher;
 };
 
 /// What boxes of objects are found with.
@@ -51,6 +98,8 @@ struct Workspace {
   NoiseWorkspace noise;
   MovingCastWorkspace moving_cast;
   SubRayWorkspace sub_rays;
+  InfraredWorkspace infrared;
+  TofWorkspace tof;
   BoxWorkspace boxes;
 };
 

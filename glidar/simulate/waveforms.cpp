@@ -4,8 +4,10 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/math/gaussian.hpp>
+#include <glidar/motion/radial_velocity.hpp>
 #include <glidar/sensor/lidar/beam_surfaces.hpp>
 #include <glidar/sensor/lidar/weather_echoes.hpp>
+#include <glidar/simulate/echo_velocity.hpp>
 #include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/pulse_cast.hpp>
 
@@ -45,11 +47,10 @@ void collect_paths(const Simulation& s, std::size_t pulse, BeamSurfaces& surface
                   is_spread ? surfaces.of_ray(k) : std::uint16_t{0}});
   }
   const std::vector<std::uint32_t>& from = memory.mirrored_from;
-  auto at = std::lower_bound(from.begin(), from.end(), first);
-  for (; at != from.end() && *at < first + rays.size(); ++at) {
-    const auto mirrored = static_cast<std::size_t>(at - from.begin());
+  std::size_t mirrored = mirrored_beam(memory, first);
+  for (; mirrored < from.size() && from[mirrored] < first + rays.size(); ++mirrored) {
     if (memory.mirrored_hits.instance[mirrored] == kInvalidId) continue;
-    waveform.add(ghost_path(s, mirrored, rays[*at - first].share));
+    waveform.add(ghost_path(s, mirrored, rays[from[mirrored] - first].share));
   }
 }
 
@@ -103,6 +104,12 @@ void report_echo(const Simulation& s, const PulseEcho& echo, const EchoContribut
   frame.return_source[entry] = is_mixed ? ReturnSource::mixed_pixel : path.return_source;
 }
 
+void report_velocity(const Simulation& s, std::size_t pulse, const WaveformBuffer& waveform,
+                     const PulseEcho& echo, std::size_t entry) {
+  if (s.frame.status[entry] != Status::hit) return;
+  s.frame.radial_velocity_m_s[entry] = echo_velocity_m_s(s, pulse, waveform, echo);
+}
+
 /// The strongest path, whose ground truth a pulse without a return gets.
 EchoContribution strongest_surface(const WaveformBuffer& waveform) {
   if (waveform.paths == 0) return {kNaN, 0.0, kInvalidId, ReturnSource::none};
@@ -123,6 +130,10 @@ Status missing_return_status(const Simulation& s, const EchoContribution& surfac
 
 /// Writes what a sub-ray hit, or a miss.
 void write_ground_truth(const Simulation& s, std::uint32_t source, std::size_t entry) {
+  if (s.hit_columns.radial_velocity) {
+    s.frame.true_radial_velocity_m_s[entry] =
+        source == kInvalidId ? kNaN : s.workspace.sub_rays.velocities_m_s[source];
+  }
   if (source == kInvalidId) {
     write_misses(s.hit_columns, entry, 1, s.frame.ground_truth);
     return;
@@ -150,13 +161,6 @@ struct PulseMemory {
   BeamSurfaces surfaces;
 };
 
-/// The instance that a ghost shows.
-std::uint32_t reflected_by(const SubRayWorkspace& memory, std::uint32_t sub_ray) {
-  const auto at =
-      std::lower_bound(memory.mirrored_from.begin(), memory.mirrored_from.end(), sub_ray);
-  return memory.mirrored_hits.instance[static_cast<std::size_t>(at - memory.mirrored_from.begin())];
-}
-
 bool traces(const Simulation& s, std::size_t pulse) {
   return s.trace != nullptr && s.trace->pulse == pulse;
 }
@@ -165,15 +169,20 @@ void trace_echoes(const Simulation& s, std::size_t pulse, const WaveformBuffer& 
   WaveformTrace& trace = *s.trace;
   const std::vector<SubRay>& rays = s.prepared.pulse_model->sub_rays;
   const std::size_t first = first_sub_ray(s, pulse);
+  RadialVelocities velocities(s.motion);
   trace.sub_rays = rays.size();
   trace.light_paths.clear();
   for (std::size_t k = 0; k < waveform.paths; ++k) {
     WaveformTrace::LightPath light_path{.path = waveform.path[k]};
+    if (s.prepared.sensor.doppler) {
+      light_path.velocity_m_s = path_velocity_m_s(s, pulse, waveform.path[k], velocities);
+    }
     if (light_path.path.source != kInvalidId) {
       const SubRayWorkspace& memory = s.workspace.sub_rays;
       light_path.instance = memory.hits.instance[light_path.path.source];
       if (light_path.path.return_source == ReturnSource::ghost)
-        light_path.reflected = reflected_by(memory, light_path.path.source);
+        light_path.reflected =
+            memory.mirrored_hits.instance[mirrored_beam(memory, light_path.path.source)];
       light_path.path.source -= static_cast<std::uint32_t>(first);
       light_path.share = rays[light_path.path.source].share;
     }
@@ -229,6 +238,7 @@ void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) 
       const EchoContribution& path = waveform.path[echo.strongest];
       write_ground_truth(s, path.source == kInvalidId ? surface.source : path.source, entry);
       report_echo(s, echo, path, entry);
+      if (s.prepared.sensor.doppler) report_velocity(s, pulse, waveform, echo, entry);
     } else {
       const bool has_reason = (r == 0 && waveform.echoes == 0) || missing == Status::invalid_pixel;
       write_ground_truth(s, surface.source, entry);
@@ -237,10 +247,14 @@ void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) 
   }
 }
 
-/// The signal of each sub-ray of a run of pulses alone.
+/// The signal of each sub-ray of a run of pulses alone, and its radial velocity if it is wanted.
 void find_signals(const Simulation& s, BeamRange range) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
   const BeamRange sub_rays{first_sub_ray(s, range.begin), first_sub_ray(s, range.end)};
+  if (s.hit_columns.radial_velocity) {
+    find_radial_velocities(s.motion, memory.beams, s.frame.stamp_ns, memory.hits, sub_rays,
+                           memory.velocities_m_s);
+  }
   received_signals(s.prepared.pulse_model->lidar_equation, s.scene, s.prepared.sensor.wavelength_m,
                    memory.hits, sub_rays, std::span(memory.signals).subspan(sub_rays.begin));
 }
@@ -265,7 +279,7 @@ WaveformTrace trace_waveform(const Simulation& s, std::size_t pulse, Frame frame
                          .renderer = s.renderer,
                          .beams = s.beams,
                          .motion = s.motion,
-                         .hit_columns = {},
+                         .hit_columns = {.radial_velocity = s.hit_columns.radial_velocity},
                          .workspace = s.workspace,
                          .frame = frame,
                          .progress = s.progress,
@@ -276,6 +290,9 @@ WaveformTrace trace_waveform(const Simulation& s, std::size_t pulse, Frame frame
   const std::size_t last = std::min(first + kPulsesPerTask, s.fired->firings());
   const auto measure = [&](BeamRange tile) { measure_waveforms(again, tile); };
   cast_pulses(again, {first, last}, FunctionRef<void(BeamRange)>(measure));
+  for (std::size_t i = pulse; i < frame.radial_velocity_m_s.size(); i += s.fired->firings()) {
+    trace.velocities_m_s.push_back(frame.radial_velocity_m_s[i]);
+  }
   return trace;
 }
 

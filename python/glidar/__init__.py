@@ -14,9 +14,11 @@ from . import _core
 from ._bag import save_bag
 from ._cloud import Cloud
 from ._errors import Error
+from ._depth_images import RawImage
 from ._frame import Frame
 from ._fisher_information import EigenDirection, FisherInformation
 from ._imu import Imu, ImuSamples, RigImu, imu_names, load_imu, rig_imus, simulate_imu, simulate_imus
+from ._depth import AlignedDepth, DepthAligner, DepthFilters, recommended_depth_filters
 from ._mesh import Mesh, from_open3d, from_trimesh
 from ._object import SceneObject
 from ._object_box import ObjectBox
@@ -30,6 +32,9 @@ from ._simulate import simulate, simulate_batch, simulate_iter, simulate_rig
 from ._simulator import Simulator
 from ._stereo import (StereoMatch, StereoOptions, StereoStatus, StereoTest, StereoTrace, explain_stereo, match_stereo,
                       sample_stereo_pair)
+from ._tof import (TofCandidate, TofEdgeTest, TofFilter, TofFrame, TofMeasurement, TofMisfitTest, TofOptions, TofStatus, TofTest,
+                   TofTrace, decode_tof, explain_tof, sample_tof_images)
+from ._structured_light import DecodedFringes, FringeStatus, StructuredLight
 from ._status import ReturnSource, Status
 from ._point_trace import RandomSample, Echo, Measurement, NoiseStep, PointTrace
 from ._trajectory import Trajectory
@@ -41,11 +46,15 @@ __version__: str = _core.version()
 __all__ = [
     "ReturnSource",
     "Cloud",
+    "AlignedDepth",
+    "DepthAligner",
+    "DepthFilters",
     "EigenDirection",
     "RandomSample",
     "Echo",
     "Error",
     "Frame",
+    "RawImage",
     "FisherInformation",
     "Imu",
     "ImuSamples",
@@ -67,6 +76,19 @@ __all__ = [
     "StereoStatus",
     "StereoTest",
     "StereoTrace",
+    "TofCandidate",
+    "TofEdgeTest",
+    "TofFilter",
+    "TofFrame",
+    "TofMeasurement",
+    "TofMisfitTest",
+    "TofOptions",
+    "TofStatus",
+    "TofTest",
+    "TofTrace",
+    "DecodedFringes",
+    "FringeStatus",
+    "StructuredLight",
     "NoiseStep",
     "PointTrace",
     "Trajectory",
@@ -74,7 +96,9 @@ __all__ = [
     "AccuracyReport",
     "AccuracyCase",
     "camera",
+    "decode_tof",
     "explain_stereo",
+    "explain_tof",
     "from_open3d",
     "from_trimesh",
     "imu_names",
@@ -85,8 +109,10 @@ __all__ = [
     "match_stereo",
     "pose",
     "quaternion",
+    "recommended_depth_filters",
     "rig_imus",
     "sample_stereo_pair",
+    "sample_tof_images",
     "save_bag",
     "sensor",
     "sensor_file",

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from . import _core
-from ._errors import Error
+from ._file_options import require_one
 from ._inputs import column_list
 
 
@@ -15,8 +15,6 @@ def bag_writer(
     path: str, columns: str | Iterable[str] | None, layout: str | None, deskew: bool
 ) -> _core.BagWriter:
     """A bag with these points; without columns and layout, those that suit the sensor."""
-    if layout is not None and columns is not None:
-        remedy = "a layout has its own columns: leave columns out"
-        raise Error("layout and columns", "both are given", "one of the two", remedy)
+    require_one(columns, layout)
     names = [] if columns is None or columns == "default" else column_list(columns)
     return _core.BagWriter(path, layout or "", names, deskew)

@@ -15,27 +15,26 @@ import numpy.typing as npt
 from . import _core
 from ._bag_writer import bag_writer
 from ._cloud import Cloud
-from ._errors import Error, shown
+from ._depth_images import DepthImages
+from ._errors import Error
 from ._fisher_information import FisherInformation, fisher_information_of
-from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole
+from ._inputs import FloatArray, column_list, log, path_of
 from ._object_box import ObjectBox, boxes_of
 from ._origin import Origin
-from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, set_picture, show_images
+from ._file_options import file_options, set_columns
+from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_cloud, set_picture, show_images
 from ._state import Immutable, key_of, part, restoring, make_state
 from ._status import ReturnSource, Status
 from ._point_trace import PointTrace, entry_of, trace_of
 from ._ground_truth import GroundTruth
 
-_PCD = ("ascii", "binary", "binary_compressed")
 
+class Frame(DepthImages, Immutable):
+    """One measurement: what the sensor reports per beam, with the ground truth. Arrays are (rows, cols), read-only
+    views of the frame's memory, which they keep alive.
 
-class Frame(Immutable):
-    """One measurement: what the sensor reports per beam, with the ground truth. Arrays are
-    (rows, cols), read-only views of the frame's memory, which they keep alive.
-
-    Two frames are equal when their poses, numbers and all kept columns are bit-identical. Frames can be hashed,
-    copied and pickled. A pickle contains the columns, the sensor and the scene. The unpickled scene reads its
-    files when ``cloud``, ``save`` or ``explain`` first need them.
+    Two frames are equal when their poses, numbers and all kept columns are bit-identical. Frames can be hashed, copied
+    and pickled. A pickle contains the columns, the sensor and the scene, whose files are read when they are needed.
     """
 
     __slots__ = ("_core", "_has_renderer", "_has_scene", "_origin")
@@ -121,6 +120,19 @@ class Frame(Immutable):
         """Standard deviation of the random error of range_m, m."""
         found = self._core.measured("sigma_m")
         return np.broadcast_to(np.float32(0.0), (self.rows, self.cols)) if found is None else found
+
+    @property
+    def radial_velocity_m_s(self) -> FloatArray:
+        """Measured rate at which the range grows, m/s: positive for what moves away; NaN unless status is hit.
+
+        Raises:
+            Error: the sensor measures none: it has no ``doppler``.
+        """
+        found = self._core.measured("radial_velocity_m_s")
+        if found is not None:
+            return found
+        remedy = "use a sensor with doppler, or ground_truth.radial_velocity_m_s"
+        raise Error("radial_velocity_m_s", "the sensor does not measure it", "", remedy)
 
     def _measured(self, name: str) -> npt.NDArray[Any]:
         found = self._core.measured(name)
@@ -215,10 +227,10 @@ class Frame(Immutable):
         view_eye: npt.ArrayLike | None = None,
         view_target: npt.ArrayLike | None = None,
     ) -> None:
-        """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv
-        .las .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .exr .png
-        .bev.png .view.png .transform .mcap .bag .rosbag2. The last three are ROS bags, to which only columns, layout and deskew
-        apply; ``save_bag`` writes several frames to one.
+        """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv .las .bin
+        .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .ir.png .ir_left.png
+        .ir_right.png .exr .png .bev.png .view.png .transform .mcap .bag .rosbag2. The last three are ROS bags, to which
+        only columns, layout and deskew apply; ``save_bag`` writes several frames to one.
 
         Args:
             columns, frame, drop_invalid, deskew: as for ``cloud``.
@@ -227,39 +239,27 @@ class Frame(Immutable):
             ply_ascii: whether PLY files are text.
             depth_units_per_m: scale of 16-bit depth images; 1000 stores millimetres.
             sidecar: whether to write PATH.json beside a cloud or image.
-            colour_by: of .bev.png and .view.png: "height", "range", "intensity", "ring", "class" or
-                "instance".
+            colour_by: of .bev.png and .view.png: "height", "range", "intensity", "ring", "class", "instance" or
+                "radial_velocity".
             picture_size: width and height of .bev.png and .view.png, pixels.
-            view_eye, view_target: eye and target of .view.png, (3,), m, in the cloud's coordinate frame;
-                None: a view of most points.
+            view_eye, view_target: of .view.png, (3,), m, in the cloud's coordinate frame; None: a view of most points.
 
         Raises:
             Error: an unknown suffix or layout, a missing folder, a column that was not kept, or an input file
             of the scene or sensor as the output. An existing file stays unchanged.
         """
-        scale = float(floats(depth_units_per_m, "depth_units_per_m", ()))
-        if scale <= 0.0:
-            raise Error("depth_units_per_m", f"{scale}", "a finite number above 0")
-        encoding = _PCD.index(one_of(pcd, "pcd", _PCD))
-        if layout is not None and columns is not None:
-            remedy = "a layout has its own columns: leave columns out"
-            raise Error("layout and columns", "both are given", "one of the two", remedy)
+        options = file_options(pcd, ply_ascii, depth_units_per_m)
+        set_columns(options, columns, layout)
         target = path_of(path, "path")
         if _core.is_bag_name(target):
             bag = bag_writer(target, columns, layout, deskew)
             self.write_to(bag)
             bag.finish()
             return
-        options = _core.SaveOptions()
-        options.columns = column_list(columns)
         options.frame = frame
         options.deskew = deskew
-        options.set_pcd(encoding)
-        options.set_ply_ascii(ply_ascii)
         options.set_drop_invalid(drop_invalid)
         options.set_sidecar(sidecar)
-        options.set_layout(layout or "")
-        options.set_depth_units_per_m(scale)
         set_picture(options, colour_by, picture_size, view_eye, view_target)
         core = self._with_scene()
         if core.needs_boxes(target, options):
@@ -274,10 +274,7 @@ class Frame(Immutable):
     def boxes(self, *, frame: str = "sensor", unlabelled: bool = False) -> list[ObjectBox]:
         """3D bounding boxes of the objects that have a class, when the frame starts, in the order of ``Scene.objects``,
         with the number of points and the occlusion (docs/boxes.md). The first call casts beams into each object alone.
-
-        Args:
-            frame: coordinate frame, as for ``cloud``.
-            unlabelled: whether objects without a class have boxes too.
+        ``unlabelled``: objects without a class have boxes too. ``frame`` as for ``cloud``.
 
         Raises:
             Error: an unknown coordinate frame.
@@ -321,16 +318,13 @@ class Frame(Immutable):
         """
 
         def write(path: Path) -> None:
-            self.save(
-                path, colour_by=colour_by, picture_size=size, frame=frame, view_eye=eye, view_target=target
-            )
+            self.save(path, colour_by=colour_by, picture_size=size, frame=frame, view_eye=eye, view_target=target)
 
         return picture_of(write, "picture.view.png")
 
     def show(self) -> Any:
-        """A matplotlib figure of depth (for LiDARs: range) and intensity as images. Images of LiDARs have axes of
-        azimuth and elevation, or x and y from above. Jupyter displays it; elsewhere call
-        ``matplotlib.pyplot.show()``."""
+        """A matplotlib figure of depth (for LiDARs: range) and intensity as images. Images of LiDARs have axes of azimuth
+        and elevation, or x and y from above. Jupyter displays it; elsewhere call ``matplotlib.pyplot.show()``."""
         layouts = [self._core.picture(number) for number in range(self._core.returns)]
         is_camera = layouts[0].kind == IMAGE
         name, distance = ("depth, m", self.cloud(["depth"])["depth"]) if is_camera else (
@@ -349,13 +343,7 @@ class Frame(Immutable):
         Raises:
             Error: an unknown column, or one that has several numbers per point.
         """
-        cloud = self.cloud(["xyz", colour], frame=frame, drop_invalid=True)
-        if cloud[colour].ndim != 1:
-            raise Error("colour", shown(colour), "a column with one number per point, such as range")
-        if whole(max_points, "max_points", MAX_UINT32) == 0:
-            raise Error("max_points", "0", "a whole number from 1")
-        step = max(1, -(-cloud.points // max_points))
-        return plot_points(cloud["xyz"][::step], cloud[colour][::step], colour, cloud.frame_id)
+        return plot_cloud(self.cloud(["xyz", colour], frame=frame, drop_invalid=True), colour, max_points)
 
     def _repr_html_(self) -> str:
         rows = {"beams": f"{self.rows} x {self.cols}", "hits": self.hits, "seed": self.seed, "frame": self.number}
@@ -368,8 +356,7 @@ class Frame(Immutable):
         its random numbers. For this the frame is measured again.
 
         Args:
-            index: index of a point of a cloud of the frame, from 0; with ``drop_invalid``, of a cloud of hits
-                only. Or:
+            index: index of a point of a cloud of the frame, from 0; with ``drop_invalid``, of a cloud of hits. Or:
             row, col: row and column of the frame's arrays.
 
         Raises:

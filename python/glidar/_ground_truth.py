@@ -90,3 +90,8 @@ class GroundTruth:
     def object_point_m(self) -> FloatArray:
         """The hit point in the object's coordinate frame before scale, m, (rows, cols, 3)."""
         return self._kept("object_point_m")
+
+    @property
+    def radial_velocity_m_s(self) -> FloatArray:
+        """Rate at which the distance from the beam's origin to the hit point of the object grows, m/s."""
+        return self._kept("radial_velocity_m_s")

@@ -66,6 +66,13 @@ def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray
     return result
 
 
+def number_of(value: object, where: str) -> float:
+    """A real number, which may be infinite or NaN."""
+    if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
+        return float(value)
+    raise Error(where, shown(value), "a number")
+
+
 def whole(value: object, where: str, maximum: int) -> int:
     """A whole number from 0 to `maximum`."""
     try:

@@ -16,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import Error
-from ._inputs import floats, one_of, path_of, whole_numbers
+from ._cloud import Cloud
+from ._errors import Error, shown
+from ._inputs import MAX_UINT32, floats, one_of, path_of, whole, whole_numbers
 
 IMAGE, GRID, _ANGLES, TOP = range(4)  # values of _core.BeamPicture.kind
 NO_BEAM = 0xFFFFFFFF
@@ -105,6 +106,16 @@ def plot_points(xyz: npt.NDArray[Any], values: npt.NDArray[Any], label: str, tit
         axis.set_aspect("equal")
         figure.colorbar(drawn, ax=axis, label=label, shrink=0.7, extend=_extend(scale))
     return figure
+
+
+def plot_cloud(cloud: Cloud, colour: str, max_points: int) -> Any:
+    """A 3D scatter plot of an even selection of a cloud's points, coloured by one of its columns."""
+    if cloud[colour].ndim != 1:
+        raise Error("colour", shown(colour), "a column with one number per point, such as range")
+    if whole(max_points, "max_points", MAX_UINT32) == 0:
+        raise Error("max_points", "0", "a whole number from 1")
+    step = max(1, -(-cloud.points // max_points))
+    return plot_points(cloud["xyz"][::step], cloud[colour][::step], colour, cloud.frame_id)
 
 
 class Picture:

@@ -28,6 +28,8 @@ class Measurement(SameContent):
     intensity: float
     sigma_m: float
     """Standard deviation of the range, m."""
+    radial_velocity_m_s: float
+    """Measured radial velocity, m/s; NaN unless status is hit and the sensor measures it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +91,14 @@ class PointTrace(SameContent):
 
 
 def _measurement(core: _core.Measurement) -> Measurement:
-    return Measurement(Status(core.status), ReturnSource(core.return_source), core.range_m, core.intensity, core.sigma_m)
+    return Measurement(
+        Status(core.status),
+        ReturnSource(core.return_source),
+        core.range_m,
+        core.intensity,
+        core.sigma_m,
+        core.radial_velocity_m_s,
+    )
 
 
 def _sample(core: _core.RandomSample) -> RandomSample:

@@ -101,6 +101,7 @@ class Sensor(Immutable):
         visibility_m: float | None = None,
         rain_mm_per_h: float | None = None,
         snow_mm_per_h: float | None = None,
+        depth_model: str | None = None,
     ) -> Sensor:
         """The same sensor with other settings, like the command-line options of the same names.
 
@@ -112,13 +113,14 @@ class Sensor(Immutable):
             visibility_m: visibility in fog, 1 to 1e6 m; 0: no fog. For pulsed sensors only.
             rain_mm_per_h: rain rate, 0 to 1000 mm/h. For pulsed sensors only.
             snow_mm_per_h: snowfall rate as melted water, 0 to 1000 mm/h. For pulsed sensors only.
+            depth_model: "law" (noise steps) or "physical" (raw images). For sensors with a ``depth_camera`` only.
 
         None keeps the sensor's setting.
 
         Raises:
             Error: a number is out of range, or the sensor has no such property.
         """
-        settings = (returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h)
+        settings = (returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h, depth_model)
         if all(setting is None for setting in settings):
             return self
         options = _core.SensorOptions()
@@ -133,6 +135,8 @@ class Sensor(Immutable):
                 setattr(options, name, _number(value, name))
         if columns_per_turn is not None:
             options.columns_per_turn = _columns(columns_per_turn)
+        if depth_model is not None:
+            options.set_depth_model(text_of(depth_model, "depth_model"))
         if returns is not None:
             options.set_returns(_return_names(returns))
         return Sensor(self._core.changed(options))

@@ -20,6 +20,14 @@ class Status(enum.IntEnum):
     saturated = 9
     weather = 10
     no_return_of_rank = 11
+    image_border = 12
+    no_texture = 13
+    outside_search = 14
+    ambiguous_match = 15
+    left_right_mismatch = 16
+    projector_shadow = 17
+    transparent = 18
+    filtered_edge = 19
 
 
 class ReturnSource(enum.IntEnum):

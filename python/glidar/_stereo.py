@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error, shown
-from ._inputs import MAX_UINT32, numbers, one_of, whole
+from ._inputs import MAX_UINT32, number_of, numbers, one_of, whole
 
 _CENSUS = ("9x9", "7x7", "7x7-symmetric")
 _SUBPIXEL = ("v", "parabola", "none")
@@ -97,7 +97,7 @@ class StereoMatch:
         """
         numbers_given = (("focal_length_px", focal_length_px), ("baseline_m", baseline_m),
                          ("column_offset_px", column_offset_px), ("depth_unit_m", depth_unit_m))
-        values = [_number(value, name) for name, value in numbers_given]
+        values = [number_of(value, name) for name, value in numbers_given]
         result: FloatImage = _core.stereo_depth(np.ascontiguousarray(self.disparity_px), *values)
         return result
 
@@ -139,12 +139,6 @@ class StereoTrace:
         return self.text
 
 
-def _number(value: object, where: str) -> float:
-    if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
-        return float(value)
-    raise Error(where, shown(value), "a number")
-
-
 def _core_options(options: StereoOptions) -> _core.StereoOptions:
     if not isinstance(options, StereoOptions):
         raise Error("options", shown(options), "glidar.StereoOptions")
@@ -160,7 +154,7 @@ def _core_options(options: StereoOptions) -> _core.StereoOptions:
         elif isinstance(field.default, int):
             value = whole(value, where, MAX_UINT32)
         else:
-            value = _number(value, where)
+            value = number_of(value, where)
         setattr(result, field.name, value)
     return result
 

@@ -34,6 +34,7 @@ BagWriter::BagWriter(std::filesystem::path path, FrameBagOptions options)
     : path_(std::move(path)), options_(std::move(options)) {}
 
 void BagWriter::add(Measured& measured) {
+  check_columns(measured.sensor->sensor(), options_.columns);
   if (lacks_boxes(measured)) ensure_boxes(measured);
   if (!bag_) {
     refuse_inputs(measured, path_);

@@ -22,7 +22,10 @@ void bind_boxes(nb::module_& module);
 void bind_frame_state(nb::module_& module);
 void bind_simulator(nb::module_& module);
 void bind_point_trace(nb::module_& module);
+void bind_depth(nb::module_& module);
 void bind_stereo(nb::module_& module);
+void bind_tof(nb::module_& module);
+void bind_structured_light(nb::module_& module);
 void bind_tools(nb::module_& module);
 
 }  // namespace glidar::python

@@ -9,10 +9,12 @@
 #include <nanobind/ndarray.h>
 
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glidar::python {
@@ -36,6 +38,25 @@ inline Matrix4 matrix_of(const Pose& pose) {
 template <class T, class Shape>
 nb::ndarray<nb::numpy, T> array_at(T* data, const Shape& shape, nb::handle owner) {
   return nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner);
+}
+
+/// An array of the values of a vector, which moves into it.
+template <class T, std::size_t kDimensions>
+nb::object array_from(std::vector<T> values, const std::array<std::size_t, kDimensions>& shape) {
+  auto kept = std::make_unique<std::vector<T>>(std::move(values));
+  T* const data = kept->data();
+  const nb::capsule owner(
+      kept.release(), [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
+  return nb::cast(array_at(data, shape, owner));
+}
+
+/// Enumerators as bytes.
+template <class Status>
+std::vector<std::uint8_t> status_bytes(const std::vector<Status>& status) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(status.size());
+  for (const Status one : status) bytes.push_back(static_cast<std::uint8_t>(one));
+  return bytes;
 }
 
 /// Copies of the rows of an array as Vectors; empty without an array.

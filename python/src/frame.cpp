@@ -49,11 +49,27 @@ nb::object measured_column(nb::handle self, const std::string& name) {
   if (name == "status") return column<std::uint8_t>(m, self, m.frame.status);
   if (name == "return_source") return column<std::uint8_t>(m, self, m.frame.return_source);
   if (name == "sigma_m") return column<float>(m, self, m.frame.sigma_m);
+  if (name == "radial_velocity_m_s") return column<double>(m, self, m.frame.radial_velocity_m_s);
+  if (name == "tof_amplitude") return column<float>(m, self, m.frame.tof_amplitude);
+  if (name == "bounced_share") return column<float>(m, self, m.frame.bounced_share);
+  if (name == "disparity_px") return column<float>(m, self, m.frame.disparity_px);
   if (name == "sensor_pose")
     return column<double, 7>(m, self, m.frame.beam_poses.world_from_sensor);
   if (name == "object_pose")
     return column<double, 7>(m, self, m.frame.beam_poses.world_from_object);
   throw nb::attribute_error(name.c_str());
+}
+
+/// Name, greatest level, levels and electrons of each raw image.
+nb::list raw_images(nb::handle self) {
+  const auto& m = nb::cast<const Measured&>(self);
+  nb::list images;
+  for (const RawImage& image : m.frame.raw_images) {
+    images.append(nb::make_tuple(image.name, image.grey.max_level,
+                                 column<std::uint16_t>(m, self, image.grey.level),
+                                 column<float>(m, self, image.electrons)));
+  }
+  return images;
 }
 
 nb::object true_column(nb::handle self, const std::string& name) {
@@ -73,6 +89,8 @@ nb::object true_column(nb::handle self, const std::string& name) {
   if (name == "reflectance") return column<float, 4>(m, self, truth.reflectance);
   if (name == "object_point_m") return column<double, 3>(m, self, truth.object_point_m);
   if (name == "noise_scale") return column<float>(m, self, truth.noise_scale);
+  if (name == "radial_velocity_m_s")
+    return column<double>(m, self, m.frame.true_radial_velocity_m_s);
   throw nb::attribute_error(name.c_str());
 }
 
@@ -100,6 +118,7 @@ PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns
 CloudHandle cloud_of(const Measured& measured, const std::vector<std::string>& columns,
                      const std::string& frame, bool deskew, bool drop_invalid) {
   const nb::gil_scoped_release release;
+  check_columns(measured.sensor->sensor(), columns);
   CloudHandle handle{make_cloud(measured, columns, frame, deskew)};
   if (drop_invalid) {
     PointCloud hits;
@@ -145,6 +164,7 @@ void save_to(Measured& m, const std::filesystem::path& path, const SaveOptions& 
   refuse_overwrite_of_inputs(inputs, path);
   const FileFormat& format = format_for(path);
   std::vector<std::string> columns = format.takes_more ? options.columns : format.columns;
+  if (format.takes_more) check_columns(m.sensor->sensor(), columns);
   if (!options.sink.layout.empty() && format.takes_more) {
     columns = find_layout(options.sink.layout).columns;
   }
@@ -339,6 +359,9 @@ void bind_frame(nb::module_& module) {
       .def_prop_ro("world_from_objects", object_poses)
       .def("measured", measured_column, nb::arg("name"),
            nb::sig("def measured(self, name: str) -> numpy.ndarray | None"))
+      .def("raw_images", raw_images,
+           nb::sig("def raw_images(self) -> list[tuple[str, int, numpy.ndarray, numpy.ndarray | "
+                   "None]]"))
       .def("ground_truth", true_column, nb::arg("name"),
            nb::sig("def ground_truth(self, name: str) -> numpy.ndarray | None"))
       .def_prop_ro("returns", [](const Measured& self) { return self.beams->returns; })

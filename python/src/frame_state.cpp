@@ -50,6 +50,13 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("status", frame.status);
   visit("return_source", frame.return_source);
   visit("sigma_m", frame.sigma_m);
+  visit("radial_velocity_m_s", frame.radial_velocity_m_s);
+  visit("true_radial_velocity_m_s", frame.true_radial_velocity_m_s);
+  visit("disparity_px", frame.disparity_px);
+  for (auto& image : frame.raw_images) {
+    visit((image.name + ".level").c_str(), image.grey.level);
+    visit((image.name + ".electrons").c_str(), image.electrons);
+  }
   visit("true_directions", frame.true_directions);
   visit("deskewed.directions", frame.deskewed.directions);
   visit("deskewed.true_directions", frame.deskewed.true_directions);
@@ -57,6 +64,8 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("deskewed.start_from_sensor", frame.deskewed.start_from_sensor);
   visit("beam_poses.world_from_sensor", frame.beam_poses.world_from_sensor);
   visit("beam_poses.world_from_object", frame.beam_poses.world_from_object);
+  visit("tof_amplitude", frame.tof_amplitude);
+  visit("bounced_share", frame.bounced_share);
   auto& truth = frame.ground_truth;
   visit("ground_truth.range_m", truth.range_m);
   visit("ground_truth.instance", truth.instance);
@@ -99,6 +108,17 @@ nb::dict frame_state(const Measured& measured) {
   nb::list objects;
   for (const Pose& pose : frame.world_from_instance) objects.append(matrix_of(pose));
   state["world_from_objects"] = objects;
+  const TofImages& tof = frame.tof_images;
+  if (!tof.level.empty()) {
+    state["tof_images"] = nb::make_tuple(tof.frequencies, tof.taps,
+                                         nb::bytes(reinterpret_cast<const char*>(tof.level.data()),
+                                                   tof.level.size() * sizeof(float)));
+  }
+  nb::list images;
+  for (const RawImage& image : frame.raw_images) {
+    images.append(nb::make_tuple(image.name, image.grey.max_level));
+  }
+  state["raw_images"] = images;
   state["sensor_motion"] = states_of({measured.motion->world_from_sensor});
   state["object_motion"] = states_of(measured.motion->world_from_instance);
   return state;
@@ -123,18 +143,55 @@ void load_column(const nb::dict& arrays, const char* name, std::size_t size,
 /// Checks that required columns exist and codes are valid.
 void check_columns(const Frame& frame, std::size_t size) {
   const Hits& truth = frame.ground_truth;
+  for (const RawImage& image : frame.raw_images) {
+    if (image.grey.level.size() == size) continue;
+    throw Error({"frame", "a raw image without its grey levels"});
+  }
   for (const std::size_t found :
        {frame.range_m.size(), frame.intensity.size(), frame.status.size(), truth.range_m.size(),
         truth.instance.size(), truth.primitive.size()}) {
     if (found != size) throw Error({"frame", "a column that every frame has is missing"});
   }
   const auto too_large = [](auto last) { return [last](auto code) { return code > last; }; };
-  if (std::any_of(frame.status.begin(), frame.status.end(), too_large(Status::no_return_of_rank)) ||
+  if (std::any_of(frame.status.begin(), frame.status.end(),
+                  too_large(static_cast<Status>(kStatusCount - 1))) ||
       std::any_of(frame.return_source.begin(), frame.return_source.end(),
                   too_large(ReturnSource::crosstalk))) {
     throw Error({"frame", "a status or return source that is not known",
                  "those of glidar.Status, glidar.ReturnSource"});
   }
+}
+
+/// The raw images of a time-of-flight camera, if there are any.
+void load_tof_images(const nb::dict& state, Frame& frame) {
+  const auto stored = entry<nb::tuple>(state, "tof_images");
+  if (!stored) return;
+  TofImages& images = frame.tof_images;
+  images.width = frame.cols;
+  images.height = frame.rows;
+  images.frequencies = nb::cast<std::uint32_t>((*stored)[0]);
+  images.taps = nb::cast<std::uint32_t>((*stored)[1]);
+  const auto bytes = nb::cast<nb::bytes>((*stored)[2]);
+  const std::size_t count = pixel_count(images) * images.frequencies * std::size_t{images.taps};
+  if (bytes.size() != count * sizeof(float)) {
+    throw Error({"frame, tof_images", "raw images of another size",
+                 std::to_string(count) + " values: frequencies x phase steps x pixels"});
+  }
+  images.level.resize(count);
+  std::memcpy(images.level.data(), bytes.c_str(), bytes.size());
+}
+
+/// Raw images without their pixels.
+std::vector<RawImage> restore_images(const nb::list& states, const Frame& frame) {
+  std::vector<RawImage> images;
+  for (const nb::handle state : states) {
+    const auto tuple = nb::cast<nb::tuple>(state);
+    RawImage& image = images.emplace_back();
+    image.name = nb::cast<std::string>(tuple[0]);
+    image.grey = {
+        .width = frame.cols, .height = frame.rows, .max_level = nb::cast<std::uint32_t>(tuple[1])};
+  }
+  return images;
 }
 
 std::unique_ptr<Measured> restore_frame(const nb::dict& state, const nb::dict& arrays,
@@ -157,9 +214,11 @@ std::unique_ptr<Measured> restore_frame(const nb::dict& state, const nb::dict& a
   frame.cols = measured->beams->cols;
   frame.frame_id = measured->beams->frame_id;
   const std::size_t size = measured->beams->size();
+  frame.raw_images = restore_images(nb::cast<nb::list>(state["raw_images"]), frame);
   each_column(frame,
               [&](const char* name, auto& values) { load_column(arrays, name, size, values); });
   check_columns(frame, size);
+  load_tof_images(state, frame);
   std::vector<Trajectory> moves = trajectories_from(nb::cast<nb::list>(state["sensor_motion"]));
   if (moves.size() != 1) throw Error({"frame", "no motion of the sensor", "one trajectory"});
   measured->motion = std::make_shared<const Motion>(
@@ -176,6 +235,7 @@ bool has_same_columns(const Measured& a, const Measured& b) {
   each_column(a.frame, collect);
   const std::size_t count = columns.size();
   each_column(b.frame, collect);
+  if (columns.size() != 2 * count) return false;
   for (std::size_t k = 0; k < count; ++k) {
     if (!std::ranges::equal(columns[k], columns[count + k])) return false;
   }

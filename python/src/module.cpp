@@ -20,6 +20,9 @@ NB_MODULE(_core, module) {
   glidar::python::bind_simulator(module);
   glidar::python::bind_frame_state(module);
   glidar::python::bind_point_trace(module);
+  glidar::python::bind_depth(module);
   glidar::python::bind_stereo(module);
+  glidar::python::bind_tof(module);
+  glidar::python::bind_structured_light(module);
   glidar::python::bind_tools(module);
 }

@@ -54,7 +54,8 @@ void bind_parts(nb::module_& module) {
                    [](const Measurement& self) { return static_cast<int>(self.return_source); })
       .def_ro("range_m", &Measurement::range_m)
       .def_ro("intensity", &Measurement::intensity)
-      .def_ro("sigma_m", &Measurement::sigma_m);
+      .def_ro("sigma_m", &Measurement::sigma_m)
+      .def_ro("radial_velocity_m_s", &Measurement::radial_velocity_m_s);
   nb::class_<RandomSample>(module, "RandomSample")
       .def_prop_ro("is_normal",
                    [](const RandomSample& self) {

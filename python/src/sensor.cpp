@@ -89,6 +89,7 @@ Shared changed(const SensorHandle& handle, const SensorOptions& options) {
   const SensorOptionNames names;
   Sensor sensor = handle.sensor();
   apply_scan(options, names, sensor);
+  apply_depth_model(options, names, sensor);
   apply_weather(options, names, sensor);
   apply_returns(options, names, sensor);
   return make(std::move(sensor));
@@ -170,6 +171,12 @@ void bind_options(nb::module_& module) {
       .def_rw("visibility_m", &SensorOptions::visibility_m)
       .def_rw("rain_mm_per_h", &SensorOptions::rain_mm_per_h)
       .def_rw("snow_mm_per_h", &SensorOptions::snow_mm_per_h)
+      .def(
+          "set_depth_model",
+          [](SensorOptions& self, const std::string& name) {
+            self.depth_model = depth_model_named("depth_model", name);
+          },
+          nb::arg("name"))
       .def(
           "set_returns",
           [](SensorOptions& self, const std::vector<std::string>& words) {

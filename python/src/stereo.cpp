@@ -21,16 +21,6 @@ GreyImage grey_image(const Levels& levels, std::uint32_t max_level) {
   return image;
 }
 
-/// An array of the values of a vector, which moves into it.
-template <class T, std::size_t kDimensions>
-nb::object array_from(std::vector<T> values, const std::array<std::size_t, kDimensions>& shape) {
-  auto kept = std::make_unique<std::vector<T>>(std::move(values));
-  T* const data = kept->data();
-  const nb::capsule owner(
-      kept.release(), [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
-  return nb::cast(array_at(data, shape, owner));
-}
-
 /// Disparities, statuses, and costs or None.
 nb::tuple match(const Levels& left, const Levels& right, std::uint32_t max_level,
                 const StereoOptions& options, bool keeps_costs, unsigned threads) {
@@ -40,15 +30,13 @@ nb::tuple match(const Levels& left, const Levels& right, std::uint32_t max_level
                         {.pool = &pool, .keeps_costs = keeps_costs, .progress = watch.progress()});
   });
   const std::array<std::size_t, 2> shape = {result.height, result.width};
-  std::vector<std::uint8_t> status;
-  for (const StereoStatus one : result.status) status.push_back(static_cast<std::uint8_t>(one));
   nb::object cost = nb::none();
   if (keeps_costs) {
     const std::array<std::size_t, 3> cells = {result.height, result.width, result.disparities};
     cost = array_from(std::move(result.cost), cells);
   }
   return nb::make_tuple(array_from(std::move(result.disparity_px), shape),
-                        array_from(std::move(status), shape), cost);
+                        array_from(status_bytes(result.status), shape), cost);
 }
 
 nb::object depth(const nb::ndarray<const float, nb::shape<-1, -1>, nb::c_contig>& disparity_px,

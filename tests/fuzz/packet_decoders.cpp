@@ -90,8 +90,7 @@ Sensor sensor_of(const PacketSensor& from) {
   if (from.is_dual)
     sensor.receiver.returns = {{Return::Order::strongest, 0}, {Return::Order::farthest, 0}};
   if (is_named(from, "Livox")) {
-    sensor.optics =
-        Prism{.prisms = {}, .incidence_tangent = std::vector<double>(from.lasers, 0.01)};
+    sensor.optics = Prism{.prisms = {}, .incidence_rad = std::vector<double>(from.lasers, 0.01)};
   } else {
     sensor.optics = spinning_of(sensor, from);
   }

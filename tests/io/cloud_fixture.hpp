@@ -91,6 +91,8 @@ inline void add_image_columns(PointCloud& cloud) {
   add_column<std::uint32_t>(cloud, "class", {"class"}, [](std::size_t i, std::size_t) {
     return is_miss(i) ? kInvalidId : static_cast<std::uint32_t>(i % 3);
   });
+  add_column<double>(cloud, "radial_velocity", {"radial_velocity"},
+                     [](std::size_t, std::size_t) { return kNaN; });
 }
 
 /// Additional columns of scanners, which layouts need.
@@ -132,6 +134,20 @@ inline void set_frame(CloudFixture& made) {
       .rows = made.rows, .cols = made.cols, .near_m = 1.25, .far_m = 3.1, .rgba = {}};
   for (std::size_t k = 0; k < 4 * count; ++k)
     frame.framebuffer.rgba.push_back(static_cast<std::uint8_t>(k * 37));
+  for (const char* name : {"ir_left", "ir_right", "ir_reference"}) {
+    RawImage& image = frame.raw_images.emplace_back();
+    image.name = name;
+    image.grey = {.width = made.cols, .height = made.rows};
+    for (std::size_t i = 0; i < count; ++i) {
+      image.grey.level.push_back(
+          static_cast<std::uint16_t>((i * 31 + frame.raw_images.size()) % 256));
+    }
+  }
+  frame.tof_images = {
+      .width = made.cols, .height = made.rows, .frequencies = 1, .taps = 4, .level = {}};
+  for (std::size_t i = 0; i < 4 * count; ++i)
+    frame.tof_images.level.push_back(static_cast<float>(i % 50) - 25.0F);
+  frame.tof_amplitude.assign(count, 12.5F);
 }
 
 }  // namespace fixture

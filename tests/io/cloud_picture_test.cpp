@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
 #include <fstream>
 
 namespace glidar {
@@ -60,6 +61,7 @@ Made make(bool is_camera = false) {
   add<std::uint16_t>(made.cloud, "ring", {0, 0, 1, 1});
   add<std::uint32_t>(made.cloud, "class", {1, 0, kInvalidId, kInvalidId});
   add<std::uint32_t>(made.cloud, "instance", {7, 7, kInvalidId, kInvalidId});
+  add<double>(made.cloud, "radial_velocity", {kNaN, kNaN, kNaN, kNaN});
   return made;
 }
 
@@ -107,6 +109,24 @@ TEST(PointColours, HaveAColourBarWithTheirRange) {
   EXPECT_EQ(height.bar->unit, "m");
   const PointColours range = colours_by(make(), ColourBy::range);
   EXPECT_GT(range.colours[0].r, range.colours[2].r) << "near is bright";
+}
+
+TEST(PointColours, OfRadialVelocitiesAreBlueWhiteAndRedOnAScaleAroundZero) {
+  Made made = make();
+  made.sensor.doppler = Doppler{};
+  made.cloud.columns.pop_back();
+  add<double>(made.cloud, "radial_velocity", {-4.0, 0.0, kNaN, 2.0});
+  const PointColours colours = colours_by(made, ColourBy::radial_velocity);
+  EXPECT_EQ(colours.bar->scale.low, -4.0);
+  EXPECT_EQ(colours.bar->scale.high, 4.0);
+  EXPECT_EQ(colours.bar->unit, "m/s");
+  EXPECT_GT(colours.colours[0].b, colours.colours[0].r + 100) << "it comes nearer";
+  EXPECT_LT(std::abs(int{colours.colours[1].b} - int{colours.colours[1].r}), 10)
+      << "it does not move";
+  EXPECT_GT(colours.colours[2].r, colours.colours[2].b + 50) << "it moves away";
+  made.sensor.doppler.reset();
+  EXPECT_THAT(error_text([&] { colours_by(made, ColourBy::radial_velocity); }),
+              HasSubstr("the sensor does not measure it"));
 }
 
 TEST(PointColours, NameClassesAndInstances) {

@@ -13,7 +13,9 @@ from doc_blocks import ROOT, link_inputs, run_page
 import glidar
 
 NAME = "tests/python/pages_test.py"
-PAGES = ["docs/tutorial/3-data-set.md", "docs/cookbook.md", "docs/boxes.md", "docs/stereo.md", "docs/files/kitti.md", "docs/files/nuscenes.md"]
+PAGES = ["docs/tutorial/3-data-set.md", "docs/cookbook.md", "docs/boxes.md", "docs/doppler.md", "docs/stereo.md",
+         "docs/time-of-flight.md", "docs/depth-filters.md", "docs/depth-alignment.md", "docs/structured-light.md",
+         "docs/files/kitti.md", "docs/files/nuscenes.md"]
 
 
 @pytest.mark.parametrize("page", PAGES)

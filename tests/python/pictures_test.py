@@ -119,6 +119,7 @@ def test_clouds_can_be_drawn_from_above_and_in_perspective(colour_by, tmp_path):
 def test_pictures_of_clouds_reject_invalid_options(frame):
     for action, words in (
         (lambda: frame.bird_eye(colour_by="ring"), "a camera has no rings"),
+        (lambda: frame.bird_eye(colour_by="radial_velocity"), "the sensor does not measure it"),
         (lambda: frame.bird_eye(colour_by="heat"), "colour_by: 'heat'; allowed: height, range"),
         (lambda: frame.bird_eye(size=(10, 1000)), "picture size: 10 x 1000 pixels"),
         (lambda: frame.perspective(eye=[1, 2, 3], target=[1, 2, 3]), "view_eye: it equals"),

@@ -24,7 +24,10 @@ Command add_stream(CLI::App& program, const std::vector<std::string>& arguments)
 Command add_replay(CLI::App& program);
 Command add_sensors(CLI::App& program);
 Command add_schema(CLI::App& program);
+Command add_align(CLI::App& program);
+Command add_filter(CLI::App& program);
 Command add_stereo(CLI::App& program);
+Command add_structured_light(CLI::App& program);
 Command add_verify(CLI::App& program);
 
 }  // namespace glidar::app

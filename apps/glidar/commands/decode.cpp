@@ -146,6 +146,8 @@ void decode_packets(const DecodeFlags& flags, Console& console, Written& written
     throw Error({"--frame world and --deskew", "given for packets", "the axes of the sensor",
                  "leave them out: packets have no poses"});
   }
+  sender.sensor.doppler.reset();  // packets have no velocities
+  check_columns(sender.sensor, flags.output.columns);
   const Scene nothing;
   DecodedFrame decoded;
   while (!written.is_enough() && frames.next(decoded)) {

@@ -29,6 +29,7 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --eye 4,-6,3 --target 0,0,0 --width 640 --height 480 --fov 40 -o box.ply
   glidar render builtin:torus --fx 500 --cx 300 --cy 250 -w 640 --height 480 -o torus.depth.png
   glidar render builtin:sphere --columns all -o sphere.npz
+  glidar render builtin:torus --sensor D435 --depth-model physical -o d.png -o torus.ir_left.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --columns all -o room.pcd -o room.png
   glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
@@ -36,10 +37,12 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --duration 1 -o scans.mcap -o scans.pcap
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --duration 0.2 -o drive.kitti
   glidar render builtin:box -o - --format csv
+  glidar render builtin:box --object-rate 0,0,2 --columns xyz,true_radial_velocity -o spin.ply
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --legacy-output view
 With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
   glidar render scene.yaml --sensor camera.yaml --frame ros -o cloud.npz
+  glidar render traffic.yaml --sensor fmcw.yaml --colour-by radial_velocity -o traffic.view.png
   glidar render builtin:box --sensor VLP-16 --imu BMI088 --trajectory walk.tum
       --trajectory-interpolation spline --duration 5 -o scan.pcd -o walk.imu.csv
 

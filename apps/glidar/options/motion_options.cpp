@@ -18,8 +18,8 @@ Eigen::Vector3d parse_angular_rate(const std::string& text) {
 }
 
 std::int64_t parse_start_ns(const std::string& text) {
-  constexpr double kMax_s = 9.2e9;
-  return std::llround(number(-kMax_s, kMax_s, "seconds up to 9.2e9")(text) * 1e9);
+  constexpr double kMaxStart_s = 9.2e9;
+  return std::llround(number(-kMaxStart_s, kMaxStart_s, "seconds up to 9.2e9")(text) * 1e9);
 }
 
 }  // namespace

@@ -111,8 +111,9 @@ void add_picture_options(const OptionGroup& group, CloudPictureOptions& picture)
   for (const std::string& name : colour_by_names()) {
     colours.emplace_back(name, static_cast<ColourBy>(colours.size()));
   }
-  group.add("--colour-by", "NAME", "Colour: height range intensity ring class instance [height]",
-            picture.colour_by, one_of(colours));
+  group.add("--colour-by", "NAME",
+            "By range intensity ring class instance radial_velocity [height]", picture.colour_by,
+            one_of(colours));
   group.add("--picture-size", "WxH", "Size of .bev.png and .view.png in pixels [1400x1000]",
             [&picture](const std::string& text) {
               const auto size = image_size(kMinPictureSide, kMaxPictureSide)(text);

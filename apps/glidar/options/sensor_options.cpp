@@ -51,6 +51,9 @@ void add_scan_options(const OptionGroup& group, SensorFlags& flags) {
             [](const std::string& text) { return parse_returns("--returns", parse_list(text)); });
   group.add_flag("--cull-back-faces", "Beams pass triangles seen from behind [they are hit]",
                  flags.cull_back_faces);
+  group.add("--depth-model", "NAME", "law (noise steps) or physical (raw images) [its own]",
+            flags.depth_model,
+            one_of<DepthModel>({{"law", DepthModel::law}, {"physical", DepthModel::physical}}));
   group.add_flag("--ground-truth", "No noise, pulsed light or footprint: the exact geometry",
                  flags.ground_truth);
 }

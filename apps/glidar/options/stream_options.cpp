@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::uint16_t kMaxPort = 65534;  // the next port is for handshakes
 constexpr int kMaxQueue = 1'000'000;
-constexpr double kMax_s = 3.2e9;  // a century
+constexpr double kCentury_s = 3.2e9;
 constexpr const char* kTimingHeading = "Timing";
 
 /// Seconds of a limit that is above 0.
 std::function<double(const std::string&)> positive_seconds() {
-  return number(kAboveZero, kMax_s, "seconds above 0, up to 3.2e9");
+  return number(kAboveZero, kCentury_s, "seconds above 0, up to 3.2e9");
 }
 
 /// "max" is 0: no limit.
@@ -86,7 +86,7 @@ void add_publishing_options(CLI::App& command, StreamFlags& flags) {
   group.add("--subscribers", "N", "Wait for N subscribers that shake hands [1]", flags.subscribers,
             whole<std::uint64_t>(0, kMaxQueue));
   group.add("--subscription-timeout", "S", "Wait up to S seconds for their subscriptions [10]",
-            flags.subscription_timeout_s, number(0.0, kMax_s, "seconds from 0 up to 3.2e9"));
+            flags.subscription_timeout_s, number(0.0, kCentury_s, "seconds from 0 up to 3.2e9"));
   group.add("--publish-every", "K", "Publish every K-th frame [1; the original GLIDAR: 15]",
             flags.publish_every, whole<std::uint32_t>(1, kMaxQueue));
   group.add("--publish-latest", "0|1", "1: slow subscribers get the newest cloud only [0]",

@@ -310,6 +310,14 @@ std::string placement_advice(const Scene& scene, const Pose& world_from_sensor) 
       (at - bounds(scene).center()).norm(), at.x(), at.y(), at.z());
 }
 
+std::vector<std::string> velocity_advice(const Sensor& sensor) {
+  if (!sensor.doppler) return {};
+  return {fmt::format(
+      "'{}' measures radial velocities, but the poses of a simulator or of ROS 2 have none: they "
+      "are those of a sensor at rest; clients in lock-step can state velocities",
+      sensor.name)};
+}
+
 std::vector<std::string> view_advice(const View& view) {
   std::vector<std::string> advice;
   const FrameSummary summary = summarise(view.frame);

@@ -43,6 +43,9 @@ std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box)
 /// The default position of a LiDAR.
 std::string placement_advice(const Scene& scene, const Pose& world_from_sensor);
 
+/// A warning if the sensor measures radial velocities: poses that come one at a time have none.
+std::vector<std::string> velocity_advice(const Sensor& sensor);
+
 /// Advice about the sensor's pose: inside a model whose back faces it sees, too near or too far for
 /// the model's size, or why there are no hits.
 std::vector<std::string> view_advice(const View& view);

@@ -209,6 +209,7 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
   if (measure.drop_invalid && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
     refuse_request("flags", "drop_invalid, without the column xyz", "xyz among the columns");
   }
+  check_columns(prepared_.sensors[measure.sensor].sensor, columns);
   const std::size_t points = prepared_.sensors[measure.sensor].beams.size();
   const std::int64_t bytes = reply_bytes(columns, points, measure.moments.size());
   const link::Limits& limits = flags_.limits;

@@ -24,6 +24,8 @@ constexpr std::array kSizes = {
     ColumnSize{"range", 8},
     ColumnSize{"true_range", 8},
     ColumnSize{"sigma", 4},
+    ColumnSize{"radial_velocity", 8},
+    ColumnSize{"true_radial_velocity", 8},
     ColumnSize{"depth", 8},
     ColumnSize{"normal", 12},
     ColumnSize{"shading_normal", 12},

@@ -69,6 +69,7 @@ Pinhole make_pinhole(const SensorFlags& flags) {
 const SensorOptionNames& option_names() {
   static const SensorOptionNames kNames = {.rate = "--rate",
                                            .columns_per_turn = "--columns-per-turn",
+                                           .depth_model = "--depth-model",
                                            .returns = "--returns",
                                            .visibility = "--visibility",
                                            .rain = "--rain",
@@ -136,6 +137,7 @@ Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file) {
   }
   apply_scan(flags, option_names(), sensor);
   apply_limits(flags, sensor.limits);
+  apply_depth_model(flags, option_names(), sensor);
   if (flags.ground_truth) sensor = ground_truth_sensor(std::move(sensor));
   apply_light(flags, sensor);
   apply_weather(flags, option_names(), sensor);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/pictures/picture.hpp>
 #include <glidar/stereo/stereo_depth.hpp>
 #include <glidar/stereo/stereo_match.hpp>
 
@@ -16,9 +15,6 @@ enum class StereoQuantity { depth, disparity, status };
 
 /// "wall_depth.png" is depth. Throws Error for other names.
 StereoQuantity stereo_quantity(const std::string& path);
-
-/// The colour of each status in pictures.
-Colour status_colour(StereoStatus status);
 
 /// Writes all files, which appear together. `read` are files that must not be overwritten. Depth
 /// needs a geometry. Throws Error.

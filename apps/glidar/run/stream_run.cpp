@@ -123,6 +123,7 @@ void StreamRun::open_scene() {
   const std::vector<std::string> reserved = reserved_files(flags_, prepared_.files);
   for (const ActiveSensor& active : prepared_.sensors) {
     motions_.push_back(std::make_shared<const Motion>(active.motion));
+    if (has_pose_source(flags_)) print_advice(velocity_advice(active.sensor), console_);
   }
   if (publisher_) publisher_->set_topics(topics());
   open_sinks(std::move(files), reserved);

@@ -69,6 +69,10 @@ void refuse_unused_output_options(const OutputFlags& flags, const PreparedScene&
                                   const LiveOutputs& live) {
   const bool has_messages = has_bag(flags) || live.topics;
   const bool sends_packets = has_capture(flags) || live.packets;
+  const auto is_doppler = [](const Sensor& sensor) { return sensor.doppler.has_value(); };
+  if (!any_sensor(prepared, is_doppler)) {
+    check_columns(prepared.sensors.front().sensor, flags.columns);
+  }
   if (flags.packet_topics && !has_messages)
     refuse_without_output("--packet-topics", "ROS messages", "a bag, or --ros2", "-o run.mcap");
   if (flags.images != ros::ImageTransport::raw) {

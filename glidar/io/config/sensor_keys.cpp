@@ -3,6 +3,7 @@
 #include <glidar/io/config/sensor_keys.hpp>
 
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/io/formats/grey_image_file.hpp>
 
 namespace glidar {
 namespace {
@@ -72,14 +73,17 @@ void visit_light(Sensor& sensor, FieldVisitor& visitor) {
   visitor.object({"receiver", "echoes of pulses"}, is_pulsed, FieldVisitor::Describe(receiver));
 }
 
-/// Where the file has them, with the place in the file.
-void check_ranges(const Sensor& sensor, const FieldVisitor& visitor) {
+/// Runs a check of the sensor. Its error gets the place of a key in the file, and `in` after what
+/// was found.
+template <class Check>
+void check_in_file(const FieldVisitor& visitor, const char* key, const char* in,
+                   const Check& check) {
+  if (!visitor.is_reading()) return;
   try {
-    check_channel_ranges(sensor);
+    check();
   } catch (const Error& error) {
     const ErrorParts& parts = error.parts();
-    visitor.reject("lidar_equation", parts.found + " in channel_range_m", parts.allowed,
-                   parts.remedy);
+    visitor.reject(key, parts.found + in, parts.allowed, parts.remedy);
   }
 }
 
@@ -96,6 +100,15 @@ void visit_weather(Sensor& sensor, FieldVisitor& visitor) {
   }
 }
 
+void visit_doppler(Sensor& sensor, FieldVisitor& visitor) {
+  visit_object(visitor,
+               {"doppler",
+                "radial velocity of every return, see [Doppler](../doppler.md); `{}`: without "
+                "errors",
+                kNoUnit, false, "it is not measured"},
+               sensor.doppler);
+}
+
 void visit_projector(Sensor& sensor, FieldVisitor& visitor) {
   visitor.at_most_one(
       {{"lidar_equation", "projector_origin_m"}, "a projector of continuous light"});
@@ -106,6 +119,35 @@ void visit_projector(Sensor& sensor, FieldVisitor& visitor) {
                      {-1e3, 1e3, false, "metres from -1000 to 1000"},
                      sensor.projector_origin_m.has_value(), origin_m);
   if (visitor.is_reading() && is_present) sensor.projector_origin_m = origin_m;
+}
+
+/// Loads the picture of a projector.
+void load_pattern(Sensor& sensor) {
+  auto* stereo = std::get_if<ActiveStereo>(&*sensor.depth_camera);
+  if (stereo == nullptr || stereo->projector.picture.empty()) return;
+  stereo->projector.pattern = load_grey_image(stereo->projector.picture);
+  sensor.files.push_back(stereo->projector.picture);
+}
+
+void visit_depth_camera(Sensor& sensor, FieldVisitor& visitor) {
+  DepthModel model = sensor.depth_model;
+  visit_depth_model(model, visitor);
+  visit_object(visitor,
+               {"depth_camera",
+                "how raw images are measured and depths decoded from them, see "
+                "[depth cameras](depth-cameras.md)",
+                kNoUnit, false, "none"},
+               sensor.depth_camera);
+  if (!visitor.is_reading()) return;
+  try {
+    set_depth_model(model, "depth_model", sensor);
+    check_depth_camera(sensor);
+  } catch (const Error& error) {
+    const ErrorParts& parts = error.parts();
+    visitor.reject(visitor.has("depth_camera") ? "depth_camera" : "depth_model", parts.found,
+                   parts.allowed, parts.remedy);
+  }
+  if (sensor.depth_camera) load_pattern(sensor);
 }
 
 /// Readers of files merge these keys before; only a map inside another file still has them.
@@ -149,15 +191,19 @@ void describe(SensorKeys& keys, FieldVisitor& visitor) {
   }
   visit_scan(sensor, visitor);
   visit_light(sensor, visitor);
-  if (visitor.is_reading()) check_ranges(sensor, visitor);
+  check_in_file(visitor, "lidar_equation", " in channel_range_m",
+                [&] { check_channel_ranges(sensor); });
   visit_weather(sensor, visitor);
   visit_projector(sensor, visitor);
+  visit_doppler(sensor, visitor);
   visit_list(visitor,
              {"noise",
               "noise steps in the order in which the sensor applies them, see "
               "[noise](../noise.md)",
               kNoUnit, false, "none"},
              {0, kMaxNoiseSteps}, "at most 224 steps", sensor.noise);
+  check_in_file(visitor, "doppler", "", [&] { check_doppler(sensor); });
+  visit_depth_camera(sensor, visitor);
   visitor.boolean(
       {"cull_back_faces", "`true`: beams pass through triangles that are seen from behind"},
       sensor.cull_back_faces);

@@ -66,6 +66,15 @@ std::vector<Return> parse_returns(const std::string& option,
   return returns;
 }
 
+DepthModel depth_model_named(const std::string& option, const std::string& name) {
+  if (name == "law") return DepthModel::law;
+  if (name == "physical") return DepthModel::physical;
+  throw Error({.where = option,
+               .found = "'" + excerpt(name) + "'",
+               .allowed = "law, physical",
+               .remedy = ""});
+}
+
 void apply_scan(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor) {
   if (options.rate_hz) {
     require(*options.rate_hz > 0.0 && std::isfinite(*options.rate_hz), names.rate, *options.rate_hz,
@@ -89,6 +98,11 @@ void apply_scan(const SensorOptions& options, const SensorOptionNames& names, Se
   }
   spinning->columns_per_turn = static_cast<std::uint32_t>(columns);
   spinning->firing_period_ns = 0.0;  // the columns decide the time between firing sequences
+}
+
+void apply_depth_model(const SensorOptions& options, const SensorOptionNames& names,
+                       Sensor& sensor) {
+  if (options.depth_model) set_depth_model(*options.depth_model, names.depth_model, sensor);
 }
 
 void apply_weather(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor) {

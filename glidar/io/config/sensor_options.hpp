@@ -15,6 +15,7 @@ namespace glidar {
 struct SensorOptions {
   std::optional<double> rate_hz;                 ///< see set_rate()
   std::optional<std::int64_t> columns_per_turn;  ///< of a spinning sensor, 1 to 1048576
+  std::optional<DepthModel> depth_model;         ///< of a sensor with a depth_camera
   std::vector<Return> returns;                   ///< of a sensor with pulsed light, 1 to 16
   std::optional<double> visibility_m;            ///< 0: no fog, up to 1e6; for pulsed light
   std::optional<double> rain_mm_per_h;           ///< 0 to 1000; for pulsed light
@@ -25,6 +26,7 @@ struct SensorOptions {
 struct SensorOptionNames {
   std::string rate = "rate_hz";
   std::string columns_per_turn = "columns_per_turn";
+  std::string depth_model = "depth_model";
   std::string returns = "returns";
   std::string visibility = "visibility_m";
   std::string rain = "rain_mm_per_h";
@@ -35,9 +37,14 @@ struct SensorOptionNames {
 /// Throws Error naming `option`: an unknown name, with the nearest known one, or too many.
 std::vector<Return> parse_returns(const std::string& option, const std::vector<std::string>& words);
 
+/// "law" or "physical". Throws Error naming `option`.
+DepthModel depth_model_named(const std::string& option, const std::string& name);
+
 /// Each throws Error naming the option when a value is out of range or the sensor has no such
 /// property.
 void apply_scan(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor);
+void apply_depth_model(const SensorOptions& options, const SensorOptionNames& names,
+                       Sensor& sensor);
 void apply_weather(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor);
 void apply_returns(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor);
 

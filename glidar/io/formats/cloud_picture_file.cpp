@@ -257,7 +257,7 @@ Picture draw_view(const CloudFile& job) {
 
 /// The columns that write_bird_eye and write_perspective need.
 std::vector<std::string> cloud_picture_columns() {
-  return {"xyz", "range", "intensity", "ring", "class", "instance"};
+  return {"xyz", "range", "intensity", "ring", "class", "instance", "radial_velocity"};
 }
 
 /// Writes a picture of the cloud from above, x to the right and y up, with axes, coloured by
@@ -275,6 +275,10 @@ void write_perspective(const CloudFile& job, AtomicFile& file) {
 
 Misfit cloud_picture_misfit(const CloudPictureOptions& picture, const Sensor& sensor,
                             const Beams& /*beams*/) {
+  if (picture.colour_by == ColourBy::radial_velocity && !sensor.doppler) {
+    return {"the sensor measures no radial velocity to colour by",
+            "choose another --colour-by, or add 'doppler: {}' to a sensor file"};
+  }
   const bool is_camera = std::holds_alternative<Pinhole>(sensor.optics);
   if (!is_camera || picture.colour_by != ColourBy::ring) return {};
   return {"a camera has no rings to colour by", "choose another --colour-by"};

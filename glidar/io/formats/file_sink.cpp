@@ -235,8 +235,8 @@ void check(const FileSinkOptions& options) {
 }  // namespace
 
 std::span<const std::string> colour_by_names() {
-  static const std::vector<std::string> kSinkNames = {"height", "range", "intensity",
-                                                      "ring",   "class", "instance"};
+  static const std::vector<std::string> kSinkNames = {
+      "height", "range", "intensity", "ring", "class", "instance", "radial_velocity"};
   return kSinkNames;
 }
 

@@ -20,7 +20,15 @@ namespace glidar {
 enum class PcdEncoding : std::uint8_t { ascii, binary, binary_compressed };
 
 /// The value that determines the colours of points in .bev.png and .view.png.
-enum class ColourBy : std::uint8_t { height, range, intensity, ring, object_class, instance };
+enum class ColourBy : std::uint8_t {
+  height,
+  range,
+  intensity,
+  ring,
+  object_class,
+  instance,
+  radial_velocity
+};
 
 inline constexpr std::uint32_t kMinPictureSide =
     200;  ///< pixels; smaller pictures have no room for labels and a plot
@@ -35,7 +43,7 @@ struct CloudPictureOptions {
   std::optional<Eigen::Vector3d> target_m = {};  ///< empty: a view of most points
 };
 
-/// The names of ColourBy, in its order: height range intensity ring class instance.
+/// The names of ColourBy, in its order: height range intensity ring class instance radial_velocity.
 std::span<const std::string> colour_by_names();
 
 struct FileSinkOptions {

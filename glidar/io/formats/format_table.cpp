@@ -18,6 +18,8 @@
 #include <glidar/io/formats/pcd_file.hpp>
 #include <glidar/io/formats/ply_file.hpp>
 #include <glidar/io/formats/preview_file.hpp>
+#include <glidar/io/formats/raw_image_file.hpp>
+#include <glidar/io/formats/tof_image_file.hpp>
 #include <glidar/io/formats/transform_file.hpp>
 #include <glidar/io/formats/truth_images.hpp>
 #include <glidar/io/formats/woods2016_png_file.hpp>
@@ -52,6 +54,11 @@ const std::vector<Format>& formats() {
       instance_png_format(),
       class_png_format(),
       exr_format(),
+      ir_left_png_format(),
+      ir_right_png_format(),
+      ir_reference_png_format(),
+      ir_png_format(),
+      tof_npy_format(),
   };
   // clang-format on
   return kFormats;

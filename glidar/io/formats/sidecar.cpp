@@ -74,11 +74,14 @@ std::string frame_hash(const Frame& frame) {
   };
   add(frame.status);
   add(frame.intensity);
-  std::vector<double> ranges_m = frame.range_m;
-  for (double& range_m : ranges_m) {
-    if (std::isnan(range_m)) range_m = 0.0;  // NaN has several representations
-  }
-  add(ranges_m);
+  const auto add_numbers = [&](std::vector<double> numbers) {
+    for (double& number : numbers) {
+      if (std::isnan(number)) number = 0.0;  // NaN has several representations
+    }
+    add(numbers);
+  };
+  add_numbers(frame.range_m);
+  add_numbers(frame.radial_velocity_m_s);
   return hex(hash.value());
 }
 

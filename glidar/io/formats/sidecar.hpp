@@ -24,7 +24,8 @@ struct Sidecar {
   std::vector<std::string> model_hashes;  ///< one per instance; empty for built-in models
 };
 
-/// A hexadecimal hash of the measurement: status, range and intensity of every beam.
+/// A hexadecimal hash of the measurement: status, range and intensity of every beam, and radial
+/// velocities if they are measured.
 std::string frame_hash(const Frame& frame);
 
 /// All numbers of a sensor with these beams, as JSON, as in a sidecar.

@@ -150,9 +150,8 @@ Json status_json(const Frame& frame) {
   std::array<std::array<std::size_t, 256>, kLanes> counts{};
   for (std::size_t i = 0; i < frame.status.size(); ++i)
     ++counts[i % kLanes][static_cast<std::size_t>(frame.status[i])];
-  constexpr auto kLast = static_cast<std::size_t>(Status::no_return_of_rank);
   Json by_name = Json::object();
-  for (std::size_t s = 0; s <= kLast; ++s) {
+  for (std::size_t s = 0; s < kStatusCount; ++s) {
     by_name[std::string(name(static_cast<Status>(s)))] =
         counts[0][s] + counts[1][s] + counts[2][s] + counts[3][s];
   }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -41,6 +42,7 @@ const std::vector<T>& column_of(const PointCloud& cloud, std::string_view name) 
 struct Detections {
   const std::vector<double>& xyz_m;
   const std::vector<float>& sigma_m;
+  const std::vector<double>& radial_velocities_m_s;
   const std::vector<std::uint32_t>& instances;
   const std::vector<std::uint8_t>& sources;
   const std::vector<std::uint16_t>& rings;
@@ -49,6 +51,7 @@ struct Detections {
   Detections(const PointCloud& cloud, const Sensor& sensor, const Beams& beams)
       : xyz_m(column_of<double>(cloud, "xyz")),
         sigma_m(column_of<float>(cloud, "sigma")),
+        radial_velocities_m_s(column_of<double>(cloud, "radial_velocity")),
         instances(column_of<std::uint32_t>(cloud, "instance")),
         sources(column_of<std::uint8_t>(cloud, "return_source")),
         rings(column_of<std::uint16_t>(cloud, "ring")),
@@ -76,11 +79,14 @@ ProtobufMessage detection(const Detections& all, std::size_t i) {
                                                                           : kNoObject))
       .message(3, spherical(Eigen::Map<const Eigen::Vector3d>(&all.xyz_m[3 * i])));
   if (sigma_m > 0.0) made.message(4, ProtobufMessage().real(1, sigma_m));
-  return made.real(7, kPercent * double{all.intensities[i]})
+  made.real(7, kPercent * double{all.intensities[i]})
       .integer(9, is_ghost                ? kInvalid
                   : is_of_surface(source) ? kOther
-                                          : kClutter)
-      .message(13, identifier(all.rings[i]));
+                                          : kClutter);
+  // OSI's is positive towards the sensor.
+  const double approach_m_s = 0.0 - all.radial_velocities_m_s[i];
+  if (!std::isnan(approach_m_s)) made.real(12, approach_m_s);
+  return made.message(13, identifier(all.rings[i]));
 }
 
 /// SensorDetectionHeader
@@ -155,7 +161,7 @@ OsiTraceWriter::OsiTraceWriter(const std::filesystem::path& path, OsiRig rig)
 
 const std::vector<std::string>& OsiTraceWriter::columns() {
   static const std::vector<std::string> kOsiColumns = {
-      "xyz", "intensity", "range", "sigma", "instance", "return_source", "ring"};
+      "xyz", "intensity", "range", "sigma", "radial_velocity", "instance", "return_source", "ring"};
   return kOsiColumns;
 }
 

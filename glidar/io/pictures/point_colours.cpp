@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -23,6 +24,20 @@ Colour bright_ramp(double t) {
 
 Colour near_bright_ramp(double t) {
   return bright_ramp(1.0 - t);
+}
+
+/// Blue, white at the middle, red; all are bright enough for the background.
+Colour diverging_ramp(double t) {
+  constexpr std::array<Colour, 3> kColours = {{{64, 140, 255}, {232, 232, 236}, {255, 84, 56}}};
+  const double place = 2.0 * std::clamp(t, 0.0, 1.0);
+  const std::size_t below = place < 1.0 ? 0 : 1;
+  const double part = place - static_cast<double>(below);
+  const auto mix = [part](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround(a + (b - a) * part));
+  };
+  const Colour& a = kColours.at(below);
+  const Colour& b = kColours.at(below + 1);
+  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 
 /// The value of a column for each shown point.
@@ -46,6 +61,23 @@ PointColours colour_by_bar(const std::vector<double>& values, ColourBar bar) {
   }
   result.bar = std::move(bar);
   return result;
+}
+
+/// The scale has 0 in its middle.
+PointColours colour_by_velocity(const CloudFile& job, const ShownPoints& shown) {
+  if (!job.context.sensor.doppler) {
+    throw Error({"colour_by", "radial_velocity: the sensor does not measure it",
+                 "height, range, intensity, ring, class or instance",
+                 "add 'doppler: {}' to a sensor file (docs/doppler.md)"});
+  }
+  const std::vector<double> values = field_values(job, shown, "radial_velocity");
+  ColourScale scale = make_colour_scale(values);
+  const double end = std::max(std::abs(scale.low), std::abs(scale.high));
+  scale.clips_low = std::any_of(values.begin(), values.end(), [end](double v) { return v < -end; });
+  scale.clips_high = std::any_of(values.begin(), values.end(), [end](double v) { return v > end; });
+  scale.low = -end;
+  scale.high = end;
+  return colour_by_bar(values, {"radial velocity", "m/s", scale, diverging_ramp});
 }
 
 PointColours colour_by_ring(const CloudFile& job, const ShownPoints& shown) {
@@ -125,6 +157,8 @@ PointColours colour_points(const CloudFile& job, const ShownPoints& shown) {
       return colour_by_number(job, shown, true);
     case ColourBy::instance:
       return colour_by_number(job, shown, false);
+    case ColourBy::radial_velocity:
+      return colour_by_velocity(job, shown);
     case ColourBy::height:
       break;
   }

@@ -26,8 +26,9 @@ struct PointColours {
   std::vector<LegendEntry> legend;  ///< the most frequent first
 };
 
-/// Colours points as options.picture specifies. Throws Error when a camera is to be coloured by
-/// ring.
+/// Colours points as options.picture specifies: radial velocities blue towards the sensor, white at
+/// 0 and red away from it. Throws Error when a camera is to be coloured by ring, or by radial
+/// velocities that the sensor does not measure.
 PointColours colour_points(const CloudFile& job, const ShownPoints& shown);
 
 }  // namespace glidar

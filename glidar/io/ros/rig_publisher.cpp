@@ -137,6 +137,7 @@ std::vector<std::string> RigPublisher::cloud_columns(std::size_t sensor) const {
   if (!is_at_once) columns.insert(columns.end(), {"ring", "time"});
   if (!is_at_once || options_.for_viewers) columns.emplace_back("range");
   if (options_.for_viewers) columns.emplace_back("true_range");
+  if (rig_.sensors[sensor].sensor.doppler) columns.emplace_back("radial_velocity");
   columns.insert(columns.end(), {"instance", "class"});
   return columns;
 }

@@ -150,6 +150,8 @@ PulseEcho echo_of(const WaveformBuffer& work, const Group& group, double sigma_m
           .signal = signal,
           .sigma_m = std::sqrt(sigma_m * sigma_m + (sum > 0.0 ? variance_m2 / sum : 0.0)),
           .strongest = static_cast<std::uint32_t>(strongest),
+          .begin = static_cast<std::uint16_t>(group.begin),
+          .end = static_cast<std::uint16_t>(group.end),
           .is_mixed = surface_bits != 0 && is_mixed(work, group)};
 }
 

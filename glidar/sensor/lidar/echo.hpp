@@ -63,7 +63,9 @@ struct PulseEcho {
   double signal;            ///< height of the peak
   double sigma_m;           ///< of the pulse and of the spread of the contributions
   std::uint32_t strongest;  ///< index of its strongest contribution
-  bool is_mixed;            ///< of several surfaces with a gap between them
+  std::uint16_t begin = 0;  ///< its contributions are [begin, end)
+  std::uint16_t end = 0;
+  bool is_mixed;  ///< of several surfaces with a gap between them
 };
 
 /// The contributions and echoes of one beam, on the stack.

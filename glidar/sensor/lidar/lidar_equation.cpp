@@ -7,6 +7,7 @@
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
+#include <glidar/sensor/lidar/surface_reflectance.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -53,53 +54,20 @@ double relative(const Glossy& s, double cosine) {
   return s.diffuse_fraction * cosine + s.lobe_gain * portable_exp(-0.5 * x * x);
 }
 
-/// The backscatter of a material at one wavelength.
-class Surface {
- public:
-  Surface() = default;
-  Surface(const Material& material, double wavelength_m)
-      : material_(&material),
-        plain_(luminance(material.diffuse)),
-        reflectance_(reflectance_at(material, wavelength_m)) {}
-
-  [[nodiscard]] double backscatter_at(const Hits& hits, std::size_t beam) const {
-    const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
-    return backscatter(material_->backscatter, reflectance(hits.diffuse[beam]), cosine);
-  }
-
- private:
-  /// The material's reflectance, scaled as the texture and the vertex colours scale the diffuse
-  /// colour.
-  [[nodiscard]] double reflectance(float diffuse) const {
-    if (material_->spectrum.empty()) return diffuse;
-    return reflectance_ * (plain_ > 0.0F ? std::min(1.0F, diffuse / plain_) : 1.0);
-  }
-
-  const Material* material_ = nullptr;
-  float plain_ = 0.0F;  ///< luminance of the diffuse colour
-  double reflectance_ = 0.0;
-};
-
-const Material& material_at(const Scene& scene, const Hits& hits, std::size_t beam) {
-  return material_of(scene, scene.instances[hits.instance[beam]], hits.primitive[beam]);
+/// Backscatter of a hit.
+double backscatter_of(SurfaceReflectance& surfaces, const Hits& hits, std::size_t beam) {
+  const HitSurface surface = surfaces.at(hits, beam);
+  const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
+  return backscatter(*surface.brdf, surface.reflectance, cosine);
 }
 
-/// Backscatter of the hits [range.begin, range.end), 0 for a miss. Neighbours mostly hit the same
-/// instance, whose material is looked up once.
+/// Backscatter of the hits [range.begin, range.end), 0 for a miss.
 void collect_sent(const Scene& scene, double wavelength_m, const Hits& hits, BeamRange range,
                   std::span<double> sent) {
-  Surface surface;
-  std::uint32_t known = kInvalidId;  // the instance of `surface`, if it has one material
+  SurfaceReflectance surfaces(scene, wavelength_m);
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    double& to = sent[i - range.begin];
-    to = 0.0;
-    if (hits.instance[i] == kInvalidId) continue;
-    if (hits.instance[i] != known) {
-      surface = Surface(material_at(scene, hits, i), wavelength_m);
-      const Instance& instance = scene.instances[hits.instance[i]];
-      known = scene.meshes[instance.mesh].material_slots.empty() ? hits.instance[i] : kInvalidId;
-    }
-    to = surface.backscatter_at(hits, i);
+    const bool is_miss = hits.instance[i] == kInvalidId;
+    sent[i - range.begin] = is_miss ? 0.0 : backscatter_of(surfaces, hits, i);
   }
 }
 
@@ -235,7 +203,8 @@ double received_signal(const LidarEquation& light, double backscatter, double ra
 }
 
 double backscatter_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam) {
-  return Surface(material_at(scene, hits, beam), wavelength_m).backscatter_at(hits, beam);
+  SurfaceReflectance surfaces(scene, wavelength_m);
+  return backscatter_of(surfaces, hits, beam);
 }
 
 void received_signals(const LidarEquation& light, const Scene& scene, double wavelength_m,

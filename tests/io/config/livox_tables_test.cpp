@@ -78,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(Prisms, LivoxTables,
                                            LivoxTable{"Livox-Avia", 144, 0},
                                            LivoxTable{"Livox-Horizon", 144, 1},
                                            LivoxTable{"Livox-Tele-15", 144, 1}),
-                         [](const auto& info) {
-                           std::string name = info.param.sensor;
+                         [](const auto& table) {
+                           std::string name = table.param.sensor;
                            std::erase(name, '-');
                            return name;
                          });

@@ -45,7 +45,7 @@ inline constexpr std::array kPublished = std::to_array<PublishedValues>({
     {"Livox-Mid-40", 1, 10'000, 100'000, 38.4, 38.4},
     {"Livox-Mid-70", 1, 10'000, 100'000, 70.4, 70.4},
     {"Livox-Avia", 6, 4000, 240'000, 70.4, 77.2},
-    {"Livox-Horizon", 6, 4000, 240'000, 81.7, 28.2},  // 25.1 in the middle, says the sheet
+    {"Livox-Horizon", 6, 4000, 240'000, 81.7, 28.2},  // data sheet: 25.1, in the middle
     {"Livox-Tele-15", 6, 4000, 240'000, 14.5, 16.2},
     {"TiM781", 1, 811, 12'165, 270, 0},
     {"UTM-30LX", 1, 1081, 43'240, 270, 0},

@@ -237,6 +237,7 @@ TEST(RoundTrip, LidarPartsWithAllKeysReadBackTheSameBits) {
   expect_round_trip<LidarEquation>();
   expect_round_trip<Footprint>();
   expect_round_trip<Weather>();
+  expect_round_trip<Doppler>();
   expect_round_trip<PhongHeadlight>();
   expect_round_trip<Limits>();
   expect_round_trip<Receiver>(0);  // returns by name

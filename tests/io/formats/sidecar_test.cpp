@@ -60,6 +60,12 @@ TEST(FrameHash, DependsOnTheMeasurementOnly) {
   EXPECT_NE(other_range, before);
   frame.intensity[0] += 1.0F;
   EXPECT_NE(frame_hash(frame), other_range);
+  const std::string without_velocity = frame_hash(frame);
+  frame.radial_velocity_m_s = {3.0, std::nan("")};
+  const std::string with_velocity = frame_hash(frame);
+  EXPECT_NE(with_velocity, without_velocity);
+  frame.radial_velocity_m_s[0] = -3.0;
+  EXPECT_NE(frame_hash(frame), with_velocity);
 }
 
 std::string sidecar_error(const TestFolder& folder, const std::string& sidecar) {

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/formats/npy_file.hpp>
+#include <glidar/io/pictures/picture.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace glidar::app {
+
+/// Size of an image.
+struct ImageSize {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
+/// Writes a NumPy array rows x columns; `type` is NumPy's, such as "<f4".
+template <class T>
+void write_image_npy(std::span<const T> values, const char* type, ImageSize size,
+                     AtomicFile& file) {
+  const std::array<std::size_t, 2> shape = {size.height, size.width};
+  file.write(npy_header(type, shape));
+  file.write(std::as_bytes(values));
+}
+
+/// Writes a 16-bit PNG of multiples of `unit`, 0 for NaN and for those beyond 16 bits.
+void write_multiples_png(std::span<const float> values, double unit, const std::string& description,
+                         ImageSize size, AtomicFile& file);
+
+/// Writes numbers, such as statuses, as colours: colours[number].
+void write_colours_png(std::span<const std::uint8_t> numbers, std::span<const Colour> colours,
+                       const std::string& description, ImageSize size, AtomicFile& file);
+
+}  // namespace glidar::app

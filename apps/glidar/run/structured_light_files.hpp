@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/structured_light/structured_light.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glidar::app {
+
+/// Decoded images and their depths.
+struct MeasuredFringes {
+  DecodedFringes decoded;
+  std::vector<float> depth_m;
+};
+
+/// Throws Error unless every name states its content: depth, coordinate, phase, modulation or
+/// status, and .npy, or .png of depth and status.
+void check_fringe_outputs(std::span<const std::string> paths);
+
+/// Writes all files, which appear together. `read` are files that must not be overwritten. Throws
+/// Error.
+void write_fringe_files(std::span<const std::string> paths, std::span<const std::string> read,
+                        const MeasuredFringes& measured, double depth_unit_m);
+
+/// Writes pattern_00.png ... to a folder, which is created. Returns their names.
+std::vector<std::string> write_patterns(const std::string& folder, const FringePatterns& patterns);
+
+}  // namespace glidar::app

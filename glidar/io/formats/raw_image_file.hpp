@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/formats/format.hpp>
+
+namespace glidar {
+
+/// Frame::raw_images of the names "ir_left", "ir_right" and "ir_reference".
+Format ir_left_png_format();
+Format ir_right_png_format();
+Format ir_reference_png_format();
+
+}  // namespace glidar

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/depth_camera/imager.hpp>
+
+#include <glidar/core/field_visitor.hpp>
+#include <glidar/math/constants.hpp>
+#include <glidar/math/gamma.hpp>
+#include <glidar/math/gaussian.hpp>
+#include <glidar/math/light_speed.hpp>
+#include <glidar/math/poisson.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+constexpr double kPlanckConstant = 6.62607015e-34;  // in J s, exact
+constexpr FieldUnit kUnitMillisecond = {"ms", 1e-3};
+
+double greatest_level(const Imager& imager) {
+  return static_cast<double>((1U << imager.bits) - 1U);
+}
+
+/// The mean of min(1, light x share) over all pixels, in a fixed order.
+double mean_level(const ElectronRates& rates, double share_per_electron) {
+  double sum = 0.0;
+  for (std::size_t row = 0; row < rates.height; ++row) {
+    double row_sum = 0.0;
+    for (std::size_t i = row * rates.width; i < (row + 1) * rates.width; ++i) {
+      const double electrons = double{rates.projector[i]} + double{rates.ambient[i]};
+      row_sum += std::min(1.0, electrons * share_per_electron);
+    }
+    sum += row_sum;
+  }
+  return sum / (static_cast<double>(rates.width) * static_cast<double>(rates.height));
+}
+
+}  // namespace
+
+void describe(AutoExposure& exposure, FieldVisitor& visitor) {
+  visitor.number({"target", "mean grey level as a share of the greatest"},
+                 {0.0, 1.0, true, "a number above 0 and below 1"}, exposure.target);
+  visitor.number({"max_time_ms", "longest exposure", kUnitMillisecond}, kAboveZero,
+                 exposure.max_time_s);
+  visitor.number({"max_gain", "greatest gain, once the exposure is the longest"},
+                 {1.0, 1e6, false, "a number from 1 to 1e6"}, exposure.max_gain);
+}
+
+void describe(Imager& imager, FieldVisitor& visitor) {
+  visitor.number(
+      {"focal_length_mm", "of the lens; a pixel's side is this over `fx`", kUnitMillimetre},
+      kAboveZero, imager.focal_length_m);
+  visitor.number({"f_number", "of the lens"}, {0.5, 100.0, false, "a number from 0.5 to 100"},
+                 imager.f_number);
+  visitor.number({"quantum_efficiency", "electrons per photon that enters the lens"}, kZeroToOne,
+                 imager.quantum_efficiency);
+  visitor.number({"blur_px", "standard deviation of the point spread", kUnitPixel},
+                 {0.0, 20.0, false, "pixels from 0 to 20"}, imager.blur_px);
+  visitor.number({"full_well_e", "electrons that saturate a pixel; the greatest level at gain 1"},
+                 kAboveZero, imager.full_well_e);
+  visitor.number({"read_noise_e", "standard deviation of the read noise, electrons"}, kFromZero,
+                 imager.read_noise_e);
+  visitor.whole_number({"bits", "of grey levels"}, {8, 16}, imager.bits);
+  visitor.number({"exposure_ms", "exposure time; 0: automatic", kUnitMillisecond}, kFromZero,
+                 imager.exposure_s);
+  visitor.number({"gain", "with a fixed exposure"}, {1.0, 1e6, false, "a number from 1 to 1e6"},
+                 imager.gain);
+  visit_object(visitor, {"auto_exposure", "with `exposure_ms: 0`"}, imager.auto_exposure);
+}
+
+double electron_rate_per_radiance(const Imager& imager, double focal_length_px,
+                                  double wavelength_m) {
+  const double side_m = imager.focal_length_m / focal_length_px;
+  const double power_w =
+      std::numbers::pi / (4.0 * imager.f_number * imager.f_number) * side_m * side_m;
+  return power_w * imager.quantum_efficiency * wavelength_m / (kPlanckConstant * kLight_m_per_s);
+}
+
+Exposure find_exposure(const Imager& imager, const ElectronRates& rates) {
+  if (imager.exposure_s > 0.0) return {imager.exposure_s, imager.gain};
+  const AutoExposure& automatic = imager.auto_exposure;
+  double low = 0.0;
+  double high = automatic.max_time_s * automatic.max_gain;  // time times gain
+  if (mean_level(rates, high / imager.full_well_e) > automatic.target) {
+    constexpr int kHalvings = 24;  // to 6e-8 of the longest
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      const bool is_too_bright = mean_level(rates, middle / imager.full_well_e) > automatic.target;
+      (is_too_bright ? high : low) = middle;
+    }
+  }
+  if (high <= automatic.max_time_s) return {high, 1.0};
+  return {automatic.max_time_s, high / automatic.max_time_s};
+}
+
+double levels_per_electron(const Imager& imager, const Exposure& exposure) {
+  return exposure.gain * greatest_level(imager) / imager.full_well_e;
+}
+
+PixelReading read_pixel(const Imager& imager, double levels_per_electron, double speckle_contrast,
+                        const PixelLight& light, RngKey key) {
+  PixelReading reading;
+  const RandomWords words = random_words(key);
+  const std::array<double, 4> normal = normals(words);
+  ++key.block;
+  const double poisson_uniform = uniform(random_words(key)[0]);
+  ++key.block;
+  if (light.projector_e > 0.0) reading.speckle = sample_gamma(speckle_contrast, key);
+  const double mean_e = light.projector_e * reading.speckle + light.ambient_e;
+  reading.electrons =
+      std::min(sample_poisson(mean_e, poisson_uniform, normal[0]), imager.full_well_e);
+  reading.read_noise_e = imager.read_noise_e * normal[2];
+  const double level = levels_per_electron * (reading.electrons + reading.read_noise_e);
+  reading.level =
+      static_cast<std::uint16_t>(std::clamp(std::floor(level + 0.5), 0.0, greatest_level(imager)));
+  return reading;
+}
+
+}  // namespace glidar
