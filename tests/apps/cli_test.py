@@ -57,7 +57,7 @@ class Help(CliTest):
         self.succeed(*arguments, "--frames", "1")
 
     def test_help_has_one_line_of_at_most_100_characters_per_option(self):
-        for level in ("render", "view", "stream", "replay", "decode", "info", "filter", "align", "stereo", "verify"):
+        for level in ("render", "view", "stream", "replay", "decode", "info", "filter", "stereo", "verify"):
             text = self.succeed(level, "--help").stdout
             self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
             self.assertLessEqual(max(len(line) for line in text.split("\n")), 100)
