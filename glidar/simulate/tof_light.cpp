@@ -44,28 +44,28 @@ double add_ray(const PreparedTof& prepared, const TofExposure& exposure,
   return reflected;
 }
 
-/// The terms 0 to count - 1, added in this order.
-double sum_of(std::size_t count, const auto& term) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) sum += term(i);
-  return sum;
+/// Adds the light of a pixel's sub-rays to its steps. Returns the reflectance seen, from 0 to 1.
+double add_pixel(const Simulation& s, const PreparedTof& prepared, const TofExposure& exposure,
+                 SurfaceReflectance& surfaces, std::size_t pixel) {
+  TofWorkspace& memory = s.workspace.tof;
+  const std::size_t n = prepared.camera.sub_rays;
+  const std::size_t steps = step_count(prepared);
+  const std::span<TofLight> of_steps(&memory.light[pixel * steps], steps);
+  double reflectance = 0.0;
+  for (std::size_t i = 0; i < n * n; ++i) {
+    const std::size_t ray = ray_of_pixel(s.beams.cols, n, pixel, i);
+    reflectance += add_ray(prepared, exposure, surfaces, memory.hits, ray, of_steps);
+  }
+  return reflectance;
 }
 
 void add_direct_light(const Simulation& s, const PreparedTof& prepared,
                       const TofExposure& exposure) {
-  TofWorkspace& memory = s.workspace.tof;
-  const std::size_t n = prepared.camera.sub_rays;
-  const std::size_t steps = step_count(prepared);
   const std::size_t columns = s.beams.cols;
   const auto add_rows = [&](std::size_t begin, std::size_t end) {
     SurfaceReflectance surfaces(s.scene, prepared.wavelength_m);
     for (std::size_t pixel = begin * columns; pixel < end * columns; ++pixel) {
-      const std::span<TofLight> of_steps(&memory.light[pixel * steps], steps);
-      const auto add = [&](std::size_t i) {
-        return add_ray(prepared, exposure, surfaces, memory.hits,
-                       ray_of_pixel(columns, n, pixel, i), of_steps);
-      };
-      memory.reflectance[pixel] = sum_of(n * n, add);
+      s.workspace.tof.reflectance[pixel] = add_pixel(s, prepared, exposure, surfaces, pixel);
     }
   };
   s.renderer.thread_pool().parallel_for(s.beams.rows, 1, add_rows);
