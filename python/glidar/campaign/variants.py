@@ -20,7 +20,8 @@ PATH = re.compile(r"(scene|sensor)((?:\.[A-Za-z_]\w*|\[[^\[\]]+\])+)")
 STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([^\[\]]+)\]")
 ANCHOR = re.compile(r"(?:[&!]\S*\s+)*")
 MAX_DIGITS = 9  # of an element's index
-FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "noise_texture"}  # keys whose values may be paths
+# keys whose values may be paths
+FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "noise_texture", "picture"}
 
 
 @dataclass(frozen=True)
