@@ -53,6 +53,19 @@ void find_white_rates(const Simulation& s, const PreparedStructuredLight& prepar
   find_electron_rates(s, prepared.imager, memory.ambient, memory.left.ambient);
 }
 
+/// The pixels that the projector lights; all of them where there are none.
+ElectronRates lit_pixels(const ElectronRates& rates) {
+  ElectronRates lit;
+  lit.height = 1;
+  for (std::size_t i = 0; i < rates.projector.size(); ++i) {
+    if (!(rates.projector[i] > 0.0F)) continue;
+    lit.projector.push_back(rates.projector[i]);
+    lit.ambient.push_back(rates.ambient[i]);
+  }
+  lit.width = static_cast<std::uint32_t>(lit.projector.size());
+  return lit.width > 0 ? lit : rates;
+}
+
 /// Replaces the rates of the projector's light by those of a pattern.
 void find_pattern_rates(const Simulation& s, const PreparedStructuredLight& prepared,
                         std::size_t number) {
@@ -86,7 +99,7 @@ std::vector<RawImage> take_pattern_images(const Simulation& s,
       light_scene(timed, prepared, exposure_time_ns(i, camera.image_interval_s));
       find_white_rates(timed, prepared);
     }
-    if (i == 0) memory.exposure = find_exposure(camera.imager, memory.left);
+    if (i == 0) memory.exposure = find_exposure(camera.imager, lit_pixels(memory.left));
     find_pattern_rates(timed, prepared, i);
     images.push_back(read_image(timed, memory.left,
                                 {.imager = camera.imager,

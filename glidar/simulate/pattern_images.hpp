@@ -10,7 +10,8 @@ namespace glidar {
 
 /// The raw images of all patterns, "pattern_00", "pattern_01" ...: the surfaces and shadows are
 /// cast once, and again for each image only where something moves between the images. The exposure
-/// is that of an image of the projector's greatest light, at the time of the first pattern.
+/// is that of the pixels that the projector lights, in its greatest light and at the time of the
+/// first pattern.
 std::vector<RawImage> take_pattern_images(const Simulation& s,
                                           const PreparedStructuredLight& prepared);
 

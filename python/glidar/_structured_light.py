@@ -55,7 +55,8 @@ class StructuredLight:
 
     Args:
         setup: a setup file, or a dict with its keys: ``camera`` and ``projector`` with the keys of pinhole optics in
-            sensor files, ``projector_from_camera`` with those of a pose, ``patterns``, ``decoding``.
+            sensor files, ``projector_from_camera`` with those of a pose, ``patterns``, ``decoding``. Or a sensor file or
+            ``sensor.to_dict()`` with a ``depth_camera`` of type "structured_light".
 
     Raises:
         Error: an unknown or missing key, or a value out of range.

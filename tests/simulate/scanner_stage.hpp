@@ -19,7 +19,7 @@ inline constexpr double kScannerBaseline_m = 0.2;
 
 /// A structured-light camera at a pose, whose projector is beside it along x with parallel axes.
 /// The projector's image is shifted so that its middle is on the camera's axis at 0.8 m. Without
-/// ambient light and, but for the rounding of levels, without noise.
+/// ambient light, and without noise except for the rounding of levels.
 struct ScannerStage {
   PanelScene panels;
   Sensor sensor;

@@ -88,7 +88,6 @@ TEST(StructuredLightCameras, WithoutNoiseFindTheDepthOfASphere) {
   ScannerStage stage(160, 120);
   stage.panels.scene = testing::scene_of(make_builtin_model("sphere:radius=0.1"));
   stage.world_from_sensor.translation() = Eigen::Vector3d(0.0, 0.0, -0.9);
-  stage.camera().imager.auto_exposure.target = 0.1;  // a fifth of the image is lit
   const Frame frame = stage.shoot();
   const Beams beams = make_beams(stage.sensor);
   std::size_t compared = 0;
@@ -251,7 +250,6 @@ TEST(StructuredLightCameras, GiveEveryHoleItsCause) {
       .add_panel({-0.1, -1.0, 0.8}, {0.1, 0.0, 0.0}, {0.0, 2.0, 0.0})  // 18 to 79
       .diffuse.setConstant(1e-5F);
   stage.panels.add_panel({0.0, -1.0, 0.8}, {0.064, 0.0, 0.0}, {0.0, 2.0, 0.0});  // 80 to 119
-  stage.camera().imager.auto_exposure.target = 0.15;
   const Frame frame = stage.shoot();
   EXPECT_EQ(frame.status[8], Status::hit);
   EXPECT_EQ(frame.status[50], Status::low_modulation);
@@ -268,7 +266,7 @@ TEST(StructuredLightCameras, GiveEveryHoleItsCause) {
   stage.camera().imager.auto_exposure.target = 0.9;
   EXPECT_EQ(stage.shoot().status[100], Status::saturated);
   stage.camera().projector.intrinsics.cx += 300.0;  // the image ends before the last panel does
-  stage.camera().imager.auto_exposure.target = 0.2;
+  stage.camera().imager.auto_exposure.target = 0.3;
   EXPECT_EQ(stage.shoot().status[118], Status::outside_projector);
 }
 
@@ -302,6 +300,24 @@ TEST(StructuredLightCameras, AreTheSameForAnyThreadsAndRenderers) {
   EXPECT_NE(stage.shoot(2).raw_images[0].grey.level, expected.raw_images[0].grey.level);
   stage.renderer.kind = "raster";  // light of the projector is no image
   EXPECT_THAT(refusal_of(stage), ::testing::HasSubstr("use --renderer rays"));
+}
+
+// The automatic exposure looks at lit pixels alone: a panel that covers a quarter of the image.
+TEST(StructuredLightCameras, ExposeWhatTheProjectorLights) {
+  ScannerStage stage;
+  stage.camera().imager.blur_px = 0.0;
+  stage.panels.add_panel({0.0, -1.0, 0.8}, {0.064, 0.0, 0.0}, {0.0, 2.0, 0.0});
+  const Frame frame = stage.shoot();
+  double sum = 0.0;
+  std::size_t lit = 0;
+  for (std::size_t i = 0; i < frame.status.size(); ++i) {
+    if (frame.ground_truth.instance[i] == kInvalidId) continue;
+    // a code image and its inverse make up the greatest light
+    sum += double{frame.raw_images[4].electrons[i]} + double{frame.raw_images[5].electrons[i]};
+    ++lit;
+  }
+  EXPECT_EQ(lit, 24U * 40U);
+  EXPECT_NEAR(sum / static_cast<double>(lit) / 1e14, 0.4, 1e-4);
 }
 
 TEST(StructuredLightCameras, HaveIndependentNoiseInEachImage) {

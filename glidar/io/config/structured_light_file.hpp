@@ -9,8 +9,8 @@
 
 namespace glidar {
 
-/// The camera, projector and patterns of a YAML file (docs/structured-light.md). Throws Error with
-/// the place in the file.
+/// The camera, projector and patterns of a YAML file (docs/structured-light.md): a setup, or a
+/// sensor with a depth_camera of type structured_light. Throws Error with the place in the file.
 StructuredLight load_structured_light(const std::filesystem::path& path);
 
 /// The same of a text in YAML or JSON.
