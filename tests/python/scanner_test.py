@@ -29,10 +29,14 @@ def changed(**keys):
     return glidar.Sensor.from_dict({**KEYS, "depth_camera": {**KEYS["depth_camera"], **keys}})
 
 
+@pytest.fixture(scope="module", name="sensor")
+def sensor_fixture():
+    return glidar.Sensor.from_dict(KEYS)
+
+
 @pytest.fixture(scope="module", name="frame")
-def frame_fixture():
-    scene = glidar.Scene("builtin:sphere:radius=0.1")
-    return glidar.simulate(scene, glidar.Sensor.from_dict(KEYS), glidar.pose((0.0, 0.0, -0.8)))
+def frame_fixture(sensor):
+    return glidar.simulate(glidar.Scene("builtin:sphere:radius=0.1"), sensor, glidar.pose((0.0, 0.0, -0.8)))
 
 
 def test_a_frame_has_an_image_of_each_pattern(frame):
@@ -51,13 +55,13 @@ def test_the_electrons_of_a_code_and_its_inverse_add_up_to_white(frame):
     assert np.allclose(sums, sums[0], rtol=1e-5)  # blur is linear, and sums are float
 
 
-def test_decoding_the_images_gives_the_frame(frame):
+def test_decoding_the_images_gives_the_frame(frame, sensor):
     images = np.array([image.grey for image in frame.raw_images.values()])
-    for setup in (frame.sensor.to_dict(), KEYS):
+    for setup in (sensor.to_dict(), KEYS):
         found = glidar.StructuredLight(setup).decode(images)
         assert np.array_equal(found.coordinate_px, frame.projector_px, equal_nan=True)
         hit = frame.status == glidar.Status.hit
-        depth = frame.range_m * frame.sensor.ray_directions[..., 2]
+        depth = frame.range_m * sensor.ray_directions[..., 2]
         assert np.allclose(found.depth_m[hit], depth[hit], rtol=1e-6)
 
 
@@ -81,13 +85,12 @@ def test_causes_of_holes_are_named(frame):
     assert strict.status[24, 32] == glidar.Status.low_modulation
 
 
-def test_frames_and_sensors_are_restored_from_pickles(frame):
+def test_frames_and_sensors_are_restored_from_pickles(frame, sensor):
     copy = pickle.loads(pickle.dumps(frame))
     assert copy == frame
     assert list(copy.raw_images) == list(frame.raw_images)
     assert np.array_equal(copy.raw_images["pattern_07"].grey, frame.raw_images["pattern_07"].grey)
     assert np.array_equal(copy.projector_px, frame.projector_px, equal_nan=True)
-    sensor = frame.sensor
     assert pickle.loads(pickle.dumps(sensor)) == sensor
     assert glidar.Sensor.from_dict(sensor.to_dict()).to_dict() == sensor.to_dict()
 
@@ -118,6 +121,6 @@ def test_errors_name_what_is_wrong(frame, tmp_path):
         changed(projector_from_camera={"position": [0, 0, 0]})
     with pytest.raises(glidar.Error, match="0, or 3 to 64"):
         changed(patterns={"steps": 1})
-    with pytest.raises(glidar.Error, match="not simulated from infrared images"):
+    with pytest.raises(glidar.Error, match="without the raw image 'ir_left'"):
         frame.save(tmp_path / "a.ir_left.png")
     assert list(tmp_path.iterdir()) == []
