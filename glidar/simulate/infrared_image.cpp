@@ -78,8 +78,7 @@ void add_sun(InfraredWorkspace& memory, ThreadPool& threads) {
   });
 }
 
-}  // namespace
-
+/// Radiance towards the camera of the surface that each ray meets.
 void find_radiance(const Simulation& s, const InfraredView& view) {
   InfraredWorkspace& memory = s.workspace.infrared;
   const Pose world_from_eye = s.frame.world_from_sensor * Eigen::Translation3d(view.eye_m);
@@ -91,6 +90,8 @@ void find_radiance(const Simulation& s, const InfraredView& view) {
   remove_shadows(s, shadow_view, {.sun_direction = lights.sun_direction}, memory.sun);
   add_sun(memory, s.renderer.thread_pool());
 }
+
+}  // namespace
 
 void find_electron_rates(const Simulation& s, const PreparedImager& imager,
                          std::span<const float> radiance, std::vector<float>& per_s) {

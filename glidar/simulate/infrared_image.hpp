@@ -20,16 +20,14 @@ struct InfraredView {
   std::uint32_t time_ns = 0;                        ///< since the start of the frame
 };
 
-/// Radiance towards the camera of the surface that each ray meets, in Simulation::workspace: by
-/// the projector's light, with its shadows, and by all other light.
-void find_radiance(const Simulation& s, const InfraredView& view);
+/// Casts the rays of an image and their shadows. Electrons per second of each pixel by the
+/// projector's light and by all other light; the radiances of the rays are in
+/// Simulation::workspace.
+void render_infrared(const Simulation& s, const InfraredView& view, ElectronRates& rates);
 
 /// Electrons per second of each pixel for a radiance of each ray: point spread, and the fall of the
 /// light with cos^4 of the angle from the axis. 0 for pixels without a ray.
 void find_electron_rates(const Simulation& s, const PreparedImager& imager,
                          std::span<const float> radiance, std::vector<float>& per_s);
-
-/// Both, for all light.
-void render_infrared(const Simulation& s, const InfraredView& view, ElectronRates& rates);
 
 }  // namespace glidar

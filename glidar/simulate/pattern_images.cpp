@@ -22,17 +22,19 @@ void for_rays(const Simulation& s, const Body& body) {
                                         });
 }
 
-/// Radiance of all rays in the projector's greatest light, and the coordinate that lights them.
+/// Rates of all pixels in the projector's greatest light, and the coordinate that lights each ray.
 void light_scene(const Simulation& s, const PreparedStructuredLight& prepared,
                  std::uint32_t time_ns) {
   const auto white = [&](const Eigen::Vector3d& path) {
     return projector_pixel(prepared, path) ? prepared.white_w_per_sr : 0.0;
   };
-  find_radiance(s, {.imager = prepared.imager,
-                    .projector = ProjectorIntensity(white),
-                    .projector_m = prepared.projector_m,
-                    .time_ns = time_ns});
   InfraredWorkspace& memory = s.workspace.infrared;
+  render_infrared(s,
+                  {.imager = prepared.imager,
+                   .projector = ProjectorIntensity(white),
+                   .projector_m = prepared.projector_m,
+                   .time_ns = time_ns},
+                  memory.left);
   memory.projector_px.resize(memory.projector.size());
   const int axis = prepared.camera.patterns.axis == FringeAxis::columns ? 0 : 1;
   for_rays(s, [&](std::size_t ray) {
@@ -42,15 +44,6 @@ void light_scene(const Simulation& s, const PreparedStructuredLight& prepared,
     const auto pixel = projector_pixel(prepared, point - prepared.projector_m);
     if (pixel) memory.projector_px[ray] = static_cast<float>((*pixel)[axis]);
   });
-}
-
-/// Rates of all pixels in the projector's greatest light, from light_scene().
-void find_white_rates(const Simulation& s, const PreparedStructuredLight& prepared) {
-  InfraredWorkspace& memory = s.workspace.infrared;
-  memory.left.width = prepared.imager.size.width;
-  memory.left.height = prepared.imager.size.height;
-  find_electron_rates(s, prepared.imager, memory.projector, memory.left.projector);
-  find_electron_rates(s, prepared.imager, memory.ambient, memory.left.ambient);
 }
 
 /// The pixels that the projector lights; all of them where there are none.
@@ -97,7 +90,6 @@ std::vector<RawImage> take_pattern_images(const Simulation& s,
   for (std::size_t i = 0; i < prepared.lines.size(); ++i) {
     if (i == 0 || timed.is_moving) {
       light_scene(timed, prepared, exposure_time_ns(i, camera.image_interval_s));
-      find_white_rates(timed, prepared);
     }
     if (i == 0) memory.exposure = find_exposure(camera.imager, lit_pixels(memory.left));
     find_pattern_rates(timed, prepared, i);
