@@ -48,6 +48,14 @@ std::string_view name(Status status) {
       return "transparent";
     case Status::filtered_edge:
       return "filtered edge";
+    case Status::low_modulation:
+      return "low modulation";
+    case Status::weak_code:
+      return "weak code";
+    case Status::inconsistent_code:
+      return "inconsistent code";
+    case Status::outside_projector:
+      return "outside projector";
   }
   return "unknown";
 }

@@ -40,8 +40,12 @@ enum class Status : std::uint8_t {
   projector_shadow = 17,     ///< a surface hides the pixel's from the projector
   transparent = 18,          ///< the surface lets most of the light pass
   filtered_edge = 19,        ///< at an edge, where the light of two surfaces mixes
+  low_modulation = 20,       ///< fringes hardly change: dark or far surface, strong other light
+  weak_code = 21,            ///< bits of the Gray code are not certain
+  inconsistent_code = 22,    ///< phase and Gray code contradict each other: edges, motion, noise
+  outside_projector = 23,    ///< the projector's image does not reach the surface
 };
-inline constexpr std::size_t kStatusCount = 20;
+inline constexpr std::size_t kStatusCount = 24;
 
 /// The origin of a return.
 enum class ReturnSource : std::uint8_t {
@@ -62,7 +66,7 @@ std::string_view name(ReturnSource source);
 
 /// An image of the sensor from which its depths are decoded.
 struct RawImage {
-  std::string name;     ///< "ir_left", "ir_right": suffixes of files, see docs/files.md
+  std::string name;     ///< "ir_left", "ir_right", "pattern_00" ...: see docs/files/clouds.md
   GreyImage grey = {};  ///< as the imager reports it
   std::vector<float> electrons = {};  ///< one per pixel: the mean without noise and speckle
 };
@@ -125,6 +129,9 @@ struct Frame {
   std::vector<RawImage> raw_images;
   /// N, of stereo cameras: as matched, NaN where there is no match; empty: not matched.
   std::vector<float> disparity_px;
+  /// N, of structured-light cameras: column (or row) of the projector, whole numbers are centres of
+  /// pixels; NaN where it is not decoded. Empty: not decoded.
+  std::vector<float> projector_px;
   TofImages tof_images;              ///< of time-of-flight cameras, as raw_images; empty: none
   std::vector<float> tof_amplitude;  ///< N, mean of the frequencies, in levels; empty: none
   std::vector<float>

@@ -163,10 +163,20 @@ void write_phong(TraceWriter& out) {
            light.attenuation_linear_per_m, light.attenuation_quadratic_per_m2);
 }
 
+void write_exposure(TraceWriter& out, const Exposure& exposure) {
+  out.line("exposed", "{:.4g} ms, gain {:.4g}", 1e3 * exposure.time_s, exposure.gain);
+}
+
+/// Several lines under one head.
+void write_lines(TraceWriter& out, std::string_view head, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line); head = "") out.line(head, "{}", line);
+}
+
 /// The photons of a pixel, and how it was matched.
-void write_stereo(TraceWriter& out, const StereoPixelTrace& stereo) {
+void write_depth(TraceWriter& out, const StereoPixelTrace& stereo) {
   const PixelReading& reading = stereo.reading;
-  out.line("exposed", "{:.4g} ms, gain {:.4g}", 1e3 * stereo.exposure.time_s, stereo.exposure.gain);
+  write_exposure(out, stereo.exposure);
   out.line("photons", "{:.1f} electrons from the projector, {:.1f} from other light, on average",
            stereo.light.projector_e, stereo.light.ambient_e);
   out.line("", "speckle {:.4f}, {:.0f} electrons after shot noise, read noise {:+.1f}: grey {}",
@@ -174,12 +184,11 @@ void write_stereo(TraceWriter& out, const StereoPixelTrace& stereo) {
   out.line("", "the same surface in the right image: {:.1f} and {:.1f} electrons",
            stereo.right_light.projector_e, stereo.right_light.ambient_e);
   out.line("match", "true disparity {:.4f} px", stereo.true_disparity_px);
-  std::istringstream lines(format_stereo_trace(stereo.match));
-  for (std::string text; std::getline(lines, text);) out.line("", "{}", text);
+  write_lines(out, "", format_stereo_trace(stereo.match));
 }
 
 /// The photons of each phase step, and how they were decoded.
-void write_tof(TraceWriter& out, const TofPixelTrace& tof) {
+void write_depth(TraceWriter& out, const TofPixelTrace& tof) {
   const std::size_t taps = tof.light.size() / tof.decoded.frequencies_hz.size();
   for (std::size_t f = 0; f < tof.decoded.frequencies_hz.size(); ++f) {
     std::string correlated;
@@ -194,16 +203,29 @@ void write_tof(TraceWriter& out, const TofPixelTrace& tof) {
   }
   out.line("", "{:.2f} % of the illuminator's light came over diffuse bounces",
            100.0 * tof.bounced_share);
-  std::istringstream lines(format_tof_trace(tof.decoded));
-  bool is_first = true;
-  for (std::string text; std::getline(lines, text); is_first = false) {
-    out.line(is_first ? "decoded" : "", "{}", text);
+  write_lines(out, "decoded", format_tof_trace(tof.decoded));
+}
+
+/// The electrons of each image of a pixel, and how they were decoded.
+void write_depth(TraceWriter& out, const StructuredLightPixelTrace& pixel) {
+  write_exposure(out, pixel.exposure);
+  std::string electrons;
+  for (const double one : pixel.electrons) {
+    electrons += fmt::format("{}{:.1f}", electrons.empty() ? "" : ", ", one);
   }
+  out.line("photons", "electrons of each image, on average: {}", electrons);
+  if (std::isnan(pixel.true_projector_px)) {
+    out.line("projector", "no pixel of its image lights the surface");
+  } else {
+    out.line("projector", "true coordinate {:.4f} px", pixel.true_projector_px);
+  }
+  write_lines(out, "decoded", format_fringe_trace(pixel.decoded));
 }
 
 void write_light(TraceWriter& out) {
-  if (out.trace.tof) return write_tof(out, *out.trace.tof);
-  if (out.trace.stereo) return write_stereo(out, *out.trace.stereo);
+  if (out.trace.depth) {
+    return std::visit([&](const auto& pixel) { write_depth(out, pixel); }, *out.trace.depth);
+  }
   if (!out.has_hit()) return;
   if (out.sensor.lidar_equation) return write_lidar_equation(out, *out.sensor.lidar_equation);
   write_phong(out);

@@ -29,6 +29,7 @@ enum class Purpose : std::uint8_t {
   tof_exposure = 12,
   tof_bounces = 13,
   radial_velocity = 14,
+  pattern_image = 15,
   first_noise_step = 32,  ///< noise step k of a sensor, from 0, uses first_noise_step + k
 };
 

@@ -70,19 +70,27 @@ void check_pinhole(const ActiveStereo& camera, const Pinhole& pinhole) {
   check_image(camera, pinhole.intrinsics);
 }
 
-void check_pinhole(const TofCamera& camera, const Pinhole& pinhole) {
-  validate(camera);
+void check_ray_count(const PinholeIntrinsics& image, std::uint32_t sub_rays) {
   constexpr double kMaxRays = 0x1p25;
-  const PinholeIntrinsics& image = pinhole.intrinsics;
-  const double rays =
-      static_cast<double>(image.width) * image.height * camera.sub_rays * camera.sub_rays;
+  const double rays = static_cast<double>(image.width) * image.height * sub_rays * sub_rays;
   if (rays <= kMaxRays) return;
   throw Error({.where = "depth_camera, sub_rays",
-               .found = "is " + std::to_string(camera.sub_rays) + ", so that " +
+               .found = "is " + std::to_string(sub_rays) + ", so that " +
                         std::to_string(image.width) + "x" + std::to_string(image.height) +
                         " pixels have too many rays",
                .allowed = "at most " + number_text(kMaxRays) + " rays",
                .remedy = "use fewer sub_rays or pixels"});
+}
+
+void check_pinhole(const TofCamera& camera, const Pinhole& pinhole) {
+  validate(camera);
+  check_ray_count(pinhole.intrinsics, camera.sub_rays);
+}
+
+void check_pinhole(const StructuredLightCamera& camera, const Pinhole& pinhole) {
+  validate(camera);
+  check_ray_count(pinhole.intrinsics, camera.sub_rays);
+  check_image(camera, pinhole.intrinsics);
 }
 
 }  // namespace

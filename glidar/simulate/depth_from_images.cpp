@@ -3,6 +3,7 @@
 #include <glidar/simulate/depth_from_images.hpp>
 
 #include <glidar/simulate/stereo_measurement.hpp>
+#include <glidar/simulate/structured_light_measurement.hpp>
 #include <glidar/simulate/tof_measurement.hpp>
 
 #include <variant>

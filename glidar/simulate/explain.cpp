@@ -92,11 +92,7 @@ PointTrace begin_trace(const Simulation& s, std::size_t entry) {
   trace.entry = entry;
   trace.direction = s.fired->directions[entry];
   if (s.prepared.pulse_model) trace.waveform = trace_waveform(s, pulse, frame);
-  if (s.prepared.depth_camera) {
-    DepthTrace depth = trace_depth(s, entry);
-    if (auto* stereo = std::get_if<StereoPixelTrace>(&depth)) trace.stereo = std::move(*stereo);
-    if (auto* tof = std::get_if<TofPixelTrace>(&depth)) trace.tof = std::move(*tof);
-  }
+  if (s.prepared.depth_camera) trace.depth = trace_depth(s, entry);
   trace.receiver_noise = receiver_noise(s.prepared.sensor, frame, trace, pulse);
   return trace;
 }

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <glidar/sensor/noise/noise_trace.hpp>
+#include <glidar/simulate/depth_trace.hpp>
 #include <glidar/simulate/simulator.hpp>
-#include <glidar/simulate/stereo_pixel_trace.hpp>
-#include <glidar/simulate/tof_pixel_trace.hpp>
 #include <glidar/simulate/waveform_trace.hpp>
 
 #include <cstddef>
@@ -38,8 +37,7 @@ struct PointTrace {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< with pointing errors, sensor's frame
   Measurement measured;                                 ///< before noise
   std::optional<WaveformTrace> waveform = {};           ///< where beams are more than a ray
-  std::optional<StereoPixelTrace> stereo = {};  ///< of stereo cameras by DepthModel::physical
-  std::optional<TofPixelTrace> tof = {};        ///< of time-of-flight cameras by the same
+  std::optional<DepthTrace> depth = {};                 ///< of cameras by DepthModel::physical
   /// Of pulsed sensors: the normal numbers that the receiver's noise_sigma multiplies, one for each
   /// echo; one for beams that are a single ray.
   std::vector<double> receiver_noise = {};

@@ -36,8 +36,7 @@ double reflection(const SurfacePoint& point, const Eigen::Vector3d& to_light,
 double projector_radiance(const InfraredLights& lights, const SurfacePoint& point,
                           const Eigen::Vector3d& to_camera) {
   const Eigen::Vector3d path = point.position_m - lights.projector_m;
-  if (!(path.z() > 0.0)) return 0.0;  // behind the projector
-  const double intensity = intensity_at(lights.pattern, path.x() / path.z(), path.y() / path.z());
+  const double intensity = lights.projector(path);
   if (intensity == 0.0) return 0.0;
   const double square = path.squaredNorm();
   const Eigen::Vector3d to_light = -path / std::sqrt(square);

@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/sensor/depth_camera/active_stereo.hpp>
+#include <glidar/core/function_ref.hpp>
 #include <glidar/sensor/lidar/surface_reflectance.hpp>
 
 #include <Eigen/Core>
 
 namespace glidar {
 
+/// Radiant intensity of a projector along a path from it, in the frame of the camera, W/sr.
+using ProjectorIntensity = FunctionRef<double(const Eigen::Vector3d& path)>;
+
 /// The light sources of a scene in the frame of a camera.
 struct InfraredLights {
-  const IntensityMap& pattern;
+  ProjectorIntensity projector;
   Eigen::Vector3d projector_m;    ///< its origin
   Eigen::Vector3d sun_direction;  ///< towards the sun, of length 1
   double sun_w_per_m2 = 0.0;

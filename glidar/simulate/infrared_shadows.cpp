@@ -24,10 +24,8 @@ struct RayGrid {
   std::size_t height;
   std::size_t n;  ///< rays along a side of a pixel
 
-  explicit RayGrid(const PreparedActiveStereo& prepared)
-      : width(prepared.intrinsics.width),
-        height(prepared.intrinsics.height),
-        n(prepared.camera.sub_rays) {}
+  explicit RayGrid(const PreparedImager& imager)
+      : width(imager.size.width), height(imager.size.height), n(imager.setup.sub_rays) {}
 
   [[nodiscard]] std::size_t pixels() const { return width * height; }
   /// Ray k of a pixel, in rows.
@@ -42,7 +40,7 @@ class ShadowTest {
  public:
   ShadowTest(const Simulation& s, const ShadowView& view, const ShadowLight& light,
              std::span<float> radiance)
-      : s_(s), view_(view), light_(light), radiance_(radiance), grid_(view.prepared) {}
+      : s_(s), view_(view), light_(light), radiance_(radiance), grid_(view.imager) {}
 
   void run() {
     test_middles();
@@ -57,7 +55,7 @@ class ShadowTest {
     return point(ray) - light_.origin_m;
   }
   [[nodiscard]] Eigen::Vector3d point(std::size_t ray) const {
-    return s_.workspace.infrared.hits.range_m[ray] * view_.prepared.rays.directions[ray];
+    return s_.workspace.infrared.hits.range_m[ray] * view_.imager.rays.directions[ray];
   }
 
   [[nodiscard]] bool faces_light(std::size_t ray) const {
@@ -86,6 +84,7 @@ class ShadowTest {
     beams.cols = static_cast<std::uint32_t>(count);
     beams.origins_m.resize(count);
     beams.directions.resize(count);
+    beams.times_ns.assign(s_.is_moving ? count : 0, view_.time_ns);
   }
 
   void cast_beams() {

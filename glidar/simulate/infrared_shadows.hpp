@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/simulate/infrared_image.hpp>
+#include <glidar/simulate/simulation.hpp>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -12,8 +13,9 @@ namespace glidar {
 
 /// The camera whose rays are in the workspace's hits.
 struct ShadowView {
-  const PreparedActiveStereo& prepared;
+  const PreparedImager& imager;
   const Pose& world_from_eye;
+  std::uint32_t time_ns = 0;  ///< of the image, since the start of the frame
 };
 
 /// A source of light in the frame of that camera: a point, or the sun.

@@ -286,11 +286,14 @@ void cast_bodies(const MovingCast& cast) {
 
 }  // namespace
 
-bool moves_during_frame(const Motion& motion, const Beams& beams) {
-  if (beams.times_ns.empty()) return false;
+bool moves(const Motion& motion) {
   return !is_static(motion.world_from_sensor) ||
          !std::all_of(motion.world_from_instance.begin(), motion.world_from_instance.end(),
                       is_static);
+}
+
+bool moves_during_frame(const Motion& motion, const Beams& beams) {
+  return !beams.times_ns.empty() && moves(motion);
 }
 
 void cast_moving(const TimedScene& scene, const CastRequest& request,

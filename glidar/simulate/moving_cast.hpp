@@ -30,6 +30,9 @@ struct MovingCastWorkspace {
   std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it has moved
 };
 
+/// True when the sensor or an instance moves.
+bool moves(const Motion& motion);
+
 /// True when the beams are fired at different times while something moves.
 bool moves_during_frame(const Motion& motion, const Beams& beams);
 

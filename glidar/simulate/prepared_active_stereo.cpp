@@ -2,52 +2,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/prepared_active_stereo.hpp>
 
-#include <glidar/sensor/depth_camera/point_spread.hpp>
-#include <glidar/sensor/optics/pinhole.hpp>
-
 namespace glidar {
 namespace {
 
-/// The image of rays: the centre of each sub_rays x sub_rays block is the centre of a pixel.
-PinholeIntrinsics ray_intrinsics(const PinholeIntrinsics& pixel, std::uint32_t sub_rays) {
-  const double n = sub_rays;
-  return {.width = pixel.width * sub_rays,
-          .height = pixel.height * sub_rays,
-          .fx = pixel.fx * n,
-          .fy = pixel.fy * n,
-          .cx = (pixel.cx - pixel.pixel_centre + 0.5) * n,
-          .cy = (pixel.cy - pixel.pixel_centre + 0.5) * n,
-          .pixel_centre = 0.5};
-}
-
 /// The pattern as a camera at the position of the projector sees it, W/sr.
 std::vector<float> view_pattern(const PreparedActiveStereo& prepared) {
+  const PreparedImager& imager = prepared.imager;
   std::vector<float> rays;
-  rays.reserve(prepared.rays.size());
-  for (const Eigen::Vector3d& ray : prepared.rays.directions) {
+  rays.reserve(imager.rays.size());
+  for (const Eigen::Vector3d& ray : imager.rays.directions) {
     rays.push_back(
         static_cast<float>(intensity_at(prepared.pattern, ray.x() / ray.z(), ray.y() / ray.z())));
   }
   std::vector<float> view;
   ThreadPool one_thread(1);
-  average_rays(rays, prepared.camera.sub_rays, prepared.weights,
-               {prepared.intrinsics.width, prepared.intrinsics.height}, one_thread, view);
+  average_rays(rays, imager.setup.sub_rays, imager.weights, imager.size, one_thread, view);
   return view;
 }
 
 }  // namespace
 
-PreparedActiveStereo prepare_active_stereo(const ActiveStereo& camera,
-                                           const PinholeIntrinsics& intrinsics,
-                                           double wavelength_m) {
+PreparedActiveStereo prepare_active_stereo(const ActiveStereo& camera, const Sensor& sensor) {
   PreparedActiveStereo prepared{
       .camera = camera,
-      .intrinsics = intrinsics,
-      .wavelength_m = wavelength_m,
+      .imager = prepare_imager(sensor, {camera.imager, camera.illumination, camera.sub_rays}),
+      .focal_length_px = std::get<Pinhole>(sensor.optics).intrinsics.fx,
       .pattern = make_intensity_map(camera.projector),
-      .rays = make_beams(Pinhole{ray_intrinsics(intrinsics, camera.sub_rays), NoDistortion{}}),
-      .weights = point_spread_weights(camera.sub_rays, camera.imager.blur_px),
-      .electron_rate = electron_rate_per_radiance(camera.imager, intrinsics.fx, wavelength_m),
       .pattern_view = {}};
   if (camera.reference == ActiveStereo::Reference::pattern) {
     prepared.pattern_view = view_pattern(prepared);

@@ -46,12 +46,15 @@ HitColumnMask required_hit_columns(const Sensor& sensor) {
 }
 
 PreparedDepthCamera prepare(const ActiveStereo& camera, const Sensor& sensor) {
-  return prepare_active_stereo(camera, std::get<Pinhole>(sensor.optics).intrinsics,
-                               sensor.wavelength_m);
+  return prepare_active_stereo(camera, sensor);
 }
 
 PreparedDepthCamera prepare(const TofCamera& camera, const Sensor& sensor) {
   return prepare_tof(camera, sensor);
+}
+
+PreparedDepthCamera prepare(const StructuredLightCamera& camera, const Sensor& sensor) {
+  return prepare_structured_light(camera, sensor);
 }
 
 /// Images have noise of their own.

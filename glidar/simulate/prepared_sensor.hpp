@@ -7,6 +7,7 @@
 #include <glidar/sensor/lidar/weather_echoes.hpp>
 #include <glidar/sensor/sensor.hpp>
 #include <glidar/simulate/prepared_active_stereo.hpp>
+#include <glidar/simulate/prepared_structured_light.hpp>
 #include <glidar/simulate/prepared_tof.hpp>
 
 #include <optional>
@@ -29,7 +30,8 @@ struct PulseModel {
 };
 
 /// A depth camera that is simulated from its raw images.
-using PreparedDepthCamera = std::variant<PreparedActiveStereo, PreparedTof>;
+using PreparedDepthCamera =
+    std::variant<PreparedActiveStereo, PreparedTof, PreparedStructuredLight>;
 
 /// A sensor with everything about it that is the same for all frames of a scene.
 struct PreparedSensor {

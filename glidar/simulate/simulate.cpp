@@ -44,6 +44,7 @@ void reset_frame(const Simulation& s) {
   frame.tof_amplitude.clear();
   frame.bounced_share.clear();
   frame.disparity_px.clear();
+  frame.projector_px.clear();
   frame.boxes.clear();
 }
 

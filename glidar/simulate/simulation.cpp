@@ -2,10 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/simulation.hpp>
 
+#include <glidar/math/constants.hpp>
+
+#include <cmath>
+
 namespace glidar {
 
 TimedScene timed_scene(const Simulation& s) {
   return {s.renderer, s.scene, s.motion, s.frame.stamp_ns};
+}
+
+std::uint32_t exposure_time_ns(std::size_t index, double interval_s) {
+  const double time_ns = static_cast<double>(index) * interval_s * kSecond_ns;
+  return static_cast<std::uint32_t>(std::floor(time_ns + 0.5));
 }
 
 CastRequest cast_request(const Simulation& s, const Beams& beams,

@@ -54,8 +54,9 @@ struct TofWorkspace {
   Hits illuminator_hits;
 };
 
-/// Images of an active stereo camera. R = number of rays of an image, P = of its pixels.
+/// Images of a depth camera with a projector. R = number of rays of an image, P = of its pixels.
 struct InfraredWorkspace {
+  Beams timed_rays;                      ///< of an image while the scene moves
   Hits hits;                             ///< of the rays
   std::vector<float> projector;          ///< R, radiance by the projector's light, W / (m^2 sr)
   std::vector<float> sun;                ///< R, by the sun's; empty: no sun
@@ -67,9 +68,11 @@ struct InfraredWorkspace {
   std::vector<std::size_t> tested_rays;  ///< of such pixels
   std::vector<std::uint8_t> unseen;      ///< P, surfaces that the second camera does not see
   std::vector<std::uint8_t> unlit;       ///< P, those that the projector does not see
-  ElectronRates left;
+  ElectronRates left;                    ///< of a stereo camera, or the image of the only camera
   ElectronRates right;
   Exposure exposure;
+  std::vector<float> projector_px;      ///< R, coordinate of the projector; NaN: not lit
+  std::vector<float> pattern_radiance;  ///< R, by the projector's light of a pattern
   std::optional<StereoMatcher> matcher;
 };
 
@@ -123,6 +126,9 @@ struct Simulation {
 
 /// The scene of the frame.
 TimedScene timed_scene(const Simulation& s);
+
+/// When exposure `index` of a sequence starts, since the start of the frame, in whole nanoseconds.
+std::uint32_t exposure_time_ns(std::size_t index, double interval_s);
 
 /// A cast of beams from the sensor's pose at the frame's start.
 CastRequest cast_request(const Simulation& s, const Beams& beams, const HitColumnMask& hit_columns);

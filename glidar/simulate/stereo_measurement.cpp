@@ -3,6 +3,7 @@
 #include <glidar/simulate/stereo_measurement.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/simulate/image_reading.hpp>
 #include <glidar/simulate/infrared_image.hpp>
 #include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
@@ -17,34 +18,28 @@ namespace {
 constexpr std::size_t kReadingsPerTask = 1024;
 constexpr float kTransparentOpacity = 0.5F;  ///< surfaces below it are a cause of holes
 
-PixelLight light_of(const ElectronRates& rates, const Exposure& exposure, std::size_t pixel) {
-  return {exposure.time_s * double{rates.projector[pixel]},
-          exposure.time_s * double{rates.ambient[pixel]}};
+/// What the left or right image is taken with.
+ImageExposure exposure_of(const Simulation& s, const ActiveStereo& camera, Purpose purpose) {
+  return {.imager = camera.imager,
+          .exposure = s.workspace.infrared.exposure,
+          .speckle_contrast = camera.projector.speckle_contrast,
+          .purpose = purpose};
 }
 
-/// An image as the imager reports it.
-RawImage read_image(const Simulation& s, const PreparedActiveStereo& prepared,
-                    const ElectronRates& rates, Purpose purpose) {
-  const Imager& imager = prepared.camera.imager;
-  const double contrast = prepared.camera.projector.speckle_contrast;
-  const Exposure& exposure = s.workspace.infrared.exposure;
-  const double levels = levels_per_electron(imager, exposure);
-  RawImage image;
-  image.grey = {.width = rates.width,
-                .height = rates.height,
-                .max_level = (1U << imager.bits) - 1U,
-                .level = std::vector<std::uint16_t>(rates.projector.size())};
-  image.electrons.resize(rates.projector.size());
-  const auto read = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const PixelLight light = light_of(rates, exposure, i);
-      image.electrons[i] = static_cast<float>(light.projector_e + light.ambient_e);
-      image.grey.level[i] =
-          read_pixel(imager, levels, contrast, light, rng_key(s.frame, purpose, i)).level;
-    }
+/// Renders what an imager at this place sees.
+void render_view(const Simulation& s, const PreparedActiveStereo& prepared,
+                 const Eigen::Vector3d& eye_m, ElectronRates& rates) {
+  const auto intensity = [&](const Eigen::Vector3d& path) {
+    const bool is_in_front = path.z() > 0.0;
+    return is_in_front ? intensity_at(prepared.pattern, path.x() / path.z(), path.y() / path.z())
+                       : 0.0;
   };
-  s.renderer.thread_pool().parallel_for(rates.projector.size(), kReadingsPerTask, read);
-  return image;
+  render_infrared(s,
+                  {.imager = prepared.imager,
+                   .projector = ProjectorIntensity(intensity),
+                   .projector_m = prepared.camera.projector.origin_m,
+                   .eye_m = eye_m},
+                  rates);
 }
 
 /// The stored picture of the pattern, its brightest pixel at the greatest level.
@@ -52,8 +47,8 @@ RawImage pattern_image(const PreparedActiveStereo& prepared) {
   const std::vector<float>& view = prepared.pattern_view;
   const float brightest = *std::max_element(view.begin(), view.end());
   RawImage image{.name = "ir_reference"};
-  image.grey = {.width = prepared.intrinsics.width,
-                .height = prepared.intrinsics.height,
+  image.grey = {.width = prepared.imager.size.width,
+                .height = prepared.imager.size.height,
                 .max_level = (1U << prepared.camera.imager.bits) - 1U};
   image.grey.level.reserve(view.size());
   for (const float intensity : view) {
@@ -68,17 +63,17 @@ RawImage pattern_image(const PreparedActiveStereo& prepared) {
 void take_images(const Simulation& s, const PreparedActiveStereo& prepared) {
   InfraredWorkspace& memory = s.workspace.infrared;
   const ActiveStereo& camera = prepared.camera;
-  render_infrared(s, prepared, Eigen::Vector3d::Zero(), memory.left);
+  render_view(s, prepared, Eigen::Vector3d::Zero(), memory.left);
   memory.exposure = find_exposure(camera.imager, memory.left);
   std::vector<RawImage>& images = s.frame.raw_images;
-  images.push_back(read_image(s, prepared, memory.left, Purpose::left_image));
+  images.push_back(read_image(s, memory.left, exposure_of(s, camera, Purpose::left_image)));
   images.back().name = "ir_left";
   if (camera.reference == ActiveStereo::Reference::pattern) {
     images.push_back(pattern_image(prepared));
     return;
   }
-  render_infrared(s, prepared, second_origin_m(camera), memory.right);
-  images.push_back(read_image(s, prepared, memory.right, Purpose::right_image));
+  render_view(s, prepared, second_origin_m(camera), memory.right);
+  images.push_back(read_image(s, memory.right, exposure_of(s, camera, Purpose::right_image)));
   images.back().name = "ir_right";
 }
 
@@ -93,7 +88,7 @@ StereoMatch match_images(const Simulation& s, const ActiveStereo& camera) {
 /// Depth of a disparity, in whole units.
 double depth_of(const PreparedActiveStereo& prepared, float disparity_px) {
   const double unit_m = prepared.camera.depth_unit_m;
-  const double z = prepared.intrinsics.fx * prepared.camera.baseline_m / double{disparity_px};
+  const double z = prepared.focal_length_px * prepared.camera.baseline_m / double{disparity_px};
   return unit_m > 0.0 ? std::floor(z / unit_m + 0.5) * unit_m : z;
 }
 
@@ -189,11 +184,9 @@ StereoPixelTrace trace_pixel(const Simulation& s, const PreparedActiveStereo& pr
   StereoPixelTrace trace;
   trace.exposure = memory.exposure;
   trace.light = light_of(memory.left, memory.exposure, i);
-  trace.reading = read_pixel(camera.imager, levels_per_electron(camera.imager, memory.exposure),
-                             camera.projector.speckle_contrast, trace.light,
-                             rng_key(frame, Purpose::left_image, i));
+  trace.reading = read_pixel(s, memory.left, exposure_of(s, camera, Purpose::left_image), i);
   const double depth = depth_m(s.beams, i, frame.ground_truth.range_m[i]);
-  trace.true_disparity_px = prepared.intrinsics.fx * camera.baseline_m / depth;
+  trace.true_disparity_px = prepared.focal_length_px * camera.baseline_m / depth;
   trace.right_light = right_light(s, trace.true_disparity_px, i);
   StereoRun run;
   run.pool = &s.renderer.thread_pool();

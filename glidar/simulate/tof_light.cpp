@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/tof_light.hpp>
 
-#include <glidar/math/constants.hpp>
 #include <glidar/sensor/lidar/surface_reflectance.hpp>
 #include <glidar/sensor/optics/sub_pixels.hpp>
 #include <glidar/simulate/tof_bounces.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace glidar {
 namespace {
@@ -77,19 +75,9 @@ std::vector<TofExposure> list_exposures(const Simulation& s, const PreparedTof& 
   if (!s.is_moving) return {{0, steps, 0}};
   std::vector<TofExposure> exposures;
   for (std::size_t i = 0; i < steps; ++i) {
-    const double time_ns = static_cast<double>(i) * prepared.camera.step_interval_s * kSecond_ns;
-    exposures.push_back({i, i + 1, static_cast<std::uint32_t>(std::floor(time_ns + 0.5))});
+    exposures.push_back({i, i + 1, exposure_time_ns(i, prepared.camera.step_interval_s)});
   }
   return exposures;
-}
-
-/// True when objects or the sensor move between the first and the last phase step.
-bool moves_between_steps(const Simulation& s, const PreparedTof& prepared) {
-  Beams last;
-  last.directions = {Eigen::Vector3d::UnitZ()};
-  last.times_ns = {static_cast<std::uint32_t>(std::ceil(
-      static_cast<double>(step_count(prepared)) * prepared.camera.step_interval_s * kSecond_ns))};
-  return prepared.camera.step_interval_s > 0.0 && moves_during_frame(s.motion, last);
 }
 
 }  // namespace
@@ -114,7 +102,7 @@ void find_tof_light(const Simulation& s, const PreparedTof& prepared) {
   memory.reflectance.resize(s.beams.size());
   memory.bounced.assign(s.beams.size(), 0.0F);
   Simulation timed = s;
-  timed.is_moving = moves_between_steps(s, prepared);
+  timed.is_moving = prepared.camera.step_interval_s > 0.0 && moves(s.motion);
   for (const TofExposure& exposure : list_exposures(timed, prepared)) {
     cast_rays(timed, prepared, exposure);
     add_direct_light(timed, prepared, exposure);

@@ -115,17 +115,23 @@ double fringe_light(const FringePatterns& patterns, std::size_t image, std::uint
   return patterns.min_level + (patterns.max_level - patterns.min_level) * share;
 }
 
+std::vector<std::uint16_t> pattern_line(const FringePatterns& patterns, std::size_t image) {
+  std::vector<std::uint16_t> line;
+  line.reserve(encoded_size(patterns));
+  for (std::uint32_t i = 0; i < encoded_size(patterns); ++i) {
+    const double level = encoded_level(fringe_light(patterns, image, i), patterns.gamma);
+    line.push_back(static_cast<std::uint16_t>(std::floor(level * kMaxGrey + 0.5)));
+  }
+  return line;
+}
+
 GreyImage make_pattern(const FringePatterns& patterns, std::size_t image) {
   validate(patterns);
   if (image >= image_count(patterns)) {
     throw Error({"fringe patterns", "there is no image " + std::to_string(image),
                  "0 to " + std::to_string(image_count(patterns) - 1), ""});
   }
-  std::vector<std::uint16_t> line;
-  for (std::uint32_t i = 0; i < encoded_size(patterns); ++i) {
-    const double level = encoded_level(fringe_light(patterns, image, i), patterns.gamma);
-    line.push_back(static_cast<std::uint16_t>(std::floor(level * kMaxGrey + 0.5)));
-  }
+  const std::vector<std::uint16_t> line = pattern_line(patterns, image);
   GreyImage pattern = {patterns.width, patterns.height};
   pattern.level.reserve(std::size_t{patterns.width} * patterns.height);
   for (std::uint32_t y = 0; y < patterns.height; ++y) {

@@ -52,8 +52,12 @@ std::uint32_t stripe_of(const FringePatterns& patterns, std::uint32_t pixel);
 /// for fringes (1 + cos(2 pi ((x + 1/2) / period - i / steps))) / 2 from min_level to max_level.
 double fringe_light(const FringePatterns& patterns, std::size_t image, std::uint32_t pixel);
 
-/// Image i of the sequence as the projector takes it, 8 bits: the light with the projector's gamma
-/// compensated, rounded. Throws Error when there is no such image.
+/// The levels of image i of the sequence along the encoded axis, 0 to 255: the light with the
+/// projector's gamma compensated, rounded.
+std::vector<std::uint16_t> pattern_line(const FringePatterns& patterns, std::size_t image);
+
+/// Image i of the sequence as the projector takes it, 8 bits, see pattern_line(). Throws Error
+/// when there is no such image.
 GreyImage make_pattern(const FringePatterns& patterns, std::size_t image);
 
 }  // namespace glidar

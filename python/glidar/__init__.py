@@ -34,7 +34,7 @@ from ._stereo import (StereoMatch, StereoOptions, StereoStatus, StereoTest, Ster
                       sample_stereo_pair)
 from ._tof import (TofCandidate, TofEdgeTest, TofFilter, TofFrame, TofMeasurement, TofMisfitTest, TofOptions, TofStatus, TofTest,
                    TofTrace, decode_tof, explain_tof, sample_tof_images)
-from ._structured_light import DecodedFringes, FringeStatus, StructuredLight
+from ._structured_light import DecodedFringes, FringeStatus, FringeTest, FringeTrace, StructuredLight
 from ._status import ReturnSource, Status
 from ._point_trace import RandomSample, Echo, Measurement, NoiseStep, PointTrace
 from ._trajectory import Trajectory
@@ -88,6 +88,8 @@ __all__ = [
     "TofTrace",
     "DecodedFringes",
     "FringeStatus",
+    "FringeTest",
+    "FringeTrace",
     "StructuredLight",
     "NoiseStep",
     "PointTrace",

@@ -43,8 +43,15 @@ class DepthImages:
         return self._core.measured("disparity_px")
 
     @property
+    def projector_px(self) -> npt.NDArray[np.float32] | None:
+        """Column (or row) of the projector of a structured-light camera with ``depth_model`` "physical", whole numbers
+        are centres of pixels; NaN where it is not decoded. None for other sensors."""
+        return self._core.measured("projector_px")
+
+    @property
     def raw_images(self) -> dict[str, RawImage]:
-        """The images from which the depths were decoded, by name: "ir_left" and "ir_right", or "ir_reference".
-        Empty unless ``depth_model`` is "physical"."""
+        """The images from which the depths were decoded, by name: "ir_left" and "ir_right" or "ir_reference";
+        of structured-light cameras "pattern_00", "pattern_01" ... in the order of the patterns. Empty unless
+        ``depth_model`` is "physical"."""
         return {name: RawImage(levels.astype(np.uint8) if max_level <= MAX_BYTE else levels, electrons)
                 for name, max_level, levels, electrons in self._core.raw_images()}

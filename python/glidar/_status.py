@@ -28,6 +28,10 @@ class Status(enum.IntEnum):
     projector_shadow = 17
     transparent = 18
     filtered_edge = 19
+    low_modulation = 20
+    weak_code = 21
+    inconsistent_code = 22
+    outside_projector = 23
 
 
 class ReturnSource(enum.IntEnum):

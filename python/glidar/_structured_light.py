@@ -16,7 +16,7 @@ import numpy.typing as npt
 from . import _core
 from ._depth import json_text
 from ._errors import Error
-from ._inputs import numbers, path_of, whole
+from ._inputs import MAX_UINT32, numbers, path_of, whole
 
 _ALLOWED = "an array images x rows x columns of uint8 or uint16"
 
@@ -50,12 +50,59 @@ class DecodedFringes:
     """A ``FringeStatus``."""
 
 
+@dataclass(frozen=True)
+class FringeTest:
+    """One test of a pixel."""
+
+    name: str
+    """The status of a pixel that fails it."""
+    passed: bool
+    finding: str
+    """The numbers that were compared."""
+
+
+@dataclass(frozen=True)
+class FringeTrace:
+    """How a pixel got its coordinate or status, from ``StructuredLight.explain()``. ``str`` lists all of it."""
+
+    status: FringeStatus
+    levels: npt.NDArray[np.uint16]
+    """Grey level of each image, (images,)."""
+    phase_rad: float
+    """Phase of the fringes, 0 to 2 pi; 0 without fringes."""
+    modulation: float
+    """Amplitude of the fringes, grey levels."""
+    mean_level: float
+    stripe: int
+    """Number of the stripe by the Gray code."""
+    period: float
+    """Whole periods that the stripe selects."""
+    code_error: float
+    """Difference between phase and code, periods."""
+    coordinate_px: float
+    """Also of a pixel that fails a test."""
+    tests: tuple[FringeTest, ...]
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def _level_stack(images: npt.ArrayLike) -> tuple[npt.NDArray[np.uint16], int]:
+    """The images, and the greatest level of their type."""
+    array = numbers(images, "images", (None, None, None), _ALLOWED)
+    if array.ndim != 3 or array.dtype not in (np.uint8, np.uint16):
+        raise Error("images", f"an array of {array.ndim} dimensions of {array.dtype}", _ALLOWED)
+    return np.ascontiguousarray(array, np.uint16), int(np.iinfo(array.dtype).max)
+
+
 class StructuredLight:
     """A camera and a projector of phase-shifted fringes with a Gray code (docs/structured-light.md).
 
     Args:
         setup: a setup file, or a dict with its keys: ``camera`` and ``projector`` with the keys of pinhole optics in
-            sensor files, ``projector_from_camera`` with those of a pose, ``patterns``, ``decoding``.
+            sensor files, ``projector_from_camera`` with those of a pose, ``patterns``, ``decoding``. Or a sensor file or
+            ``sensor.to_dict()`` with a ``depth_camera`` of type "structured_light".
 
     Raises:
         Error: an unknown or missing key, or a value out of range.
@@ -87,9 +134,21 @@ class StructuredLight:
         Raises:
             Error: images of another type, number or size.
         """
-        array = numbers(images, "images", (None, None, None), _ALLOWED)
-        if array.ndim != 3 or array.dtype not in (np.uint8, np.uint16):
-            raise Error("images", f"an array of {array.ndim} dimensions of {array.dtype}", _ALLOWED)
-        found = self._core.decode(np.ascontiguousarray(array, np.uint16), int(np.iinfo(array.dtype).max),
-                                  whole(threads, "threads", 4096))
-        return DecodedFringes(**found)
+        levels, max_level = _level_stack(images)
+        return DecodedFringes(**self._core.decode(levels, max_level, whole(threads, "threads", 4096)))
+
+    def explain(self, images: npt.ArrayLike, *, column: int, row: int) -> FringeTrace:
+        """Reports how one pixel of the images is decoded: its grey levels, phase, code and tests.
+
+        Args:
+            images: as for ``decode()``.
+            column, row: the pixel, from 0.
+
+        Raises:
+            Error: as ``decode()``, or the pixel is outside the images.
+        """
+        levels, max_level = _level_stack(images)
+        found = self._core.explain(levels, max_level, whole(column, "column", MAX_UINT32), whole(row, "row", MAX_UINT32))
+        found["status"] = FringeStatus(found["status"])
+        found["tests"] = tuple(FringeTest(*test) for test in found["tests"])
+        return FringeTrace(**found)

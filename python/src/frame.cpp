@@ -53,6 +53,7 @@ nb::object measured_column(nb::handle self, const std::string& name) {
   if (name == "tof_amplitude") return column<float>(m, self, m.frame.tof_amplitude);
   if (name == "bounced_share") return column<float>(m, self, m.frame.bounced_share);
   if (name == "disparity_px") return column<float>(m, self, m.frame.disparity_px);
+  if (name == "projector_px") return column<float>(m, self, m.frame.projector_px);
   if (name == "sensor_pose")
     return column<double, 7>(m, self, m.frame.beam_poses.world_from_sensor);
   if (name == "object_pose")

@@ -53,6 +53,7 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("radial_velocity_m_s", frame.radial_velocity_m_s);
   visit("true_radial_velocity_m_s", frame.true_radial_velocity_m_s);
   visit("disparity_px", frame.disparity_px);
+  visit("projector_px", frame.projector_px);
   for (auto& image : frame.raw_images) {
     visit((image.name + ".level").c_str(), image.grey.level);
     visit((image.name + ".electrons").c_str(), image.electrons);

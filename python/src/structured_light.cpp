@@ -3,6 +3,7 @@
 #include "convert.hpp"
 
 #include <glidar/io/config/structured_light_file.hpp>
+#include <glidar/structured_light/fringe_trace.hpp>
 
 #include <nanobind/stl/string.h>
 
@@ -58,6 +59,30 @@ nb::dict decode(const StructuredLight& setup, const LevelStack& levels, std::uin
   return result;
 }
 
+nb::dict explain(const StructuredLight& setup, const LevelStack& levels, std::uint32_t max_level,
+                 std::uint32_t column, std::uint32_t row) {
+  FringeTrace trace = explain_fringes(grey_images(levels, max_level), setup.patterns,
+                                      setup.decoding, {column, row});
+  nb::list tests;
+  for (const FringeTest& test : trace.tests) {
+    tests.append(nb::make_tuple(to_string(test.failure), test.has_passed, test.finding));
+  }
+  nb::dict result;
+  result["text"] = format_fringe_trace(trace);
+  result["status"] = static_cast<unsigned>(trace.status);
+  result["phase_rad"] = trace.phase_rad;
+  result["modulation"] = trace.modulation;
+  result["mean_level"] = trace.mean_level;
+  result["stripe"] = trace.stripe;
+  result["period"] = trace.period;
+  result["code_error"] = trace.code_error;
+  result["coordinate_px"] = trace.coordinate_px;
+  result["tests"] = tests;
+  const std::array<std::size_t, 1> shape = {trace.levels.size()};
+  result["levels"] = array_from(std::move(trace.levels), shape);
+  return result;
+}
+
 }  // namespace
 
 void bind_structured_light(nb::module_& module) {
@@ -70,6 +95,10 @@ void bind_structured_light(nb::module_& module) {
           },
           nb::arg("source"), nb::arg("is_file"))
       .def("patterns", patterns, nb::sig("def patterns(self) -> typing.Any"))
+      .def("explain", explain, nb::arg("levels"), nb::arg("max_level"), nb::arg("column"),
+           nb::arg("row"),
+           nb::sig("def explain(self, levels: object, max_level: int, column: int, row: int) -> "
+                   "dict[str, typing.Any]"))
       .def("decode", decode, nb::arg("levels"), nb::arg("max_level"), nb::arg("threads"),
            nb::sig("def decode(self, levels: object, max_level: int, threads: int) -> "
                    "dict[str, typing.Any]"));

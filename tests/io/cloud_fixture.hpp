@@ -134,7 +134,7 @@ inline void set_frame(CloudFixture& made) {
       .rows = made.rows, .cols = made.cols, .near_m = 1.25, .far_m = 3.1, .rgba = {}};
   for (std::size_t k = 0; k < 4 * count; ++k)
     frame.framebuffer.rgba.push_back(static_cast<std::uint8_t>(k * 37));
-  for (const char* name : {"ir_left", "ir_right", "ir_reference"}) {
+  for (const char* name : {"ir_left", "ir_right", "ir_reference", "pattern_00", "pattern_01"}) {
     RawImage& image = frame.raw_images.emplace_back();
     image.name = name;
     image.grey = {.width = made.cols, .height = made.rows};

@@ -63,6 +63,27 @@ def test_noise_of_the_phase_follows_its_law():
     assert abs(sigma_rad / law - 1) < 0.05  # 5,000 samples: a standard error of 1 %
 
 
+def test_explain_agrees_with_the_decoder():
+    scanner = glidar.StructuredLight(SETUP)
+    columns, _ = projector_columns()
+    taken = images(scanner.patterns(), columns, 400.0)
+    taken[:, 5, 40] = 3000  # a shadow
+    found = scanner.decode(taken)
+    for row, column in ((30, 50), (5, 40), (63, 95)):
+        trace = scanner.explain(taken, column=column, row=row)
+        assert trace.status == found.status[row, column]
+        assert np.array_equal(trace.levels, taken[:, row, column])
+        assert np.float32(trace.phase_rad) == found.phase_rad[row, column]
+        assert np.float32(trace.modulation) == found.modulation[row, column]
+        assert [test.name for test in trace.tests] == ["saturated", "low_modulation", "weak_code", "inconsistent", "outside"]
+        assert all(test.passed for test in trace.tests) == (trace.status == glidar.FringeStatus.valid)
+        if trace.status == glidar.FringeStatus.valid:
+            assert np.float32(trace.coordinate_px) == found.coordinate_px[row, column]
+    assert "pixel 40,5: low_modulation" in str(scanner.explain(taken, column=40, row=5))
+    with pytest.raises(glidar.Error, match="columns 0 to 95"):
+        scanner.explain(taken, column=96, row=0)
+
+
 def test_files_and_dicts_are_the_same(tmp_path):
     path = tmp_path / "setup.yaml"
     path.write_text(str(SETUP).replace("'", ""), encoding="utf-8")

@@ -233,14 +233,15 @@ TEST(TofCameras, ExplainReportsThePhotonsAndTheDecodingOfAPixel) {
     frame.seed = 1;
     const PointTrace trace = explain(
         simulator, static_motion(stage.panels.scene, stage.world_from_sensor), entry, frame);
-    ASSERT_TRUE(trace.tof);
-    EXPECT_EQ(trace.tof->light.size(), 9U);
-    EXPECT_FLOAT_EQ(static_cast<float>(trace.tof->bounced_share), measured.bounced_share[entry]);
+    ASSERT_TRUE(trace.depth);
+    const auto& pixel = std::get<TofPixelTrace>(*trace.depth);
+    EXPECT_EQ(pixel.light.size(), 9U);
+    EXPECT_FLOAT_EQ(static_cast<float>(pixel.bounced_share), measured.bounced_share[entry]);
     EXPECT_EQ(trace.measured.status, measured.status[entry]);
     if (measured.status[entry] != Status::hit) continue;
-    EXPECT_EQ(trace.tof->decoded.range_m, measured.range_m[entry]);
+    EXPECT_EQ(pixel.decoded.range_m, measured.range_m[entry]);
     const bool is_surface = measured.ground_truth.instance[entry] != kInvalidId;
-    EXPECT_EQ(trace.tof->light[0].signal > 0.0, is_surface);
+    EXPECT_EQ(pixel.light[0].signal > 0.0, is_surface);
     EXPECT_EQ(measured.return_source[entry],
               is_surface ? ReturnSource::surface : ReturnSource::false_alarm);
   }

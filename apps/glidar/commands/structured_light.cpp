@@ -25,11 +25,12 @@ constexpr const char* kStructuredLightExamples =
     R"(Phase-shifted fringes with a Gray code: writes the images to be projected, and turns the camera's
 images of them into depth.
 Examples:
-  glidar structured-light examples/structured_light.yaml --patterns patterns/
+  glidar structured-light examples/scanner.yaml --patterns patterns/
 With your own files, the images in the order of the patterns:
   glidar structured-light setup.yaml image_*.png -o depth.npy -o status.png -o phase.npy
 
-setup.yaml, with the keys of pinhole optics in sensor files:
+setup.yaml is a sensor file with a depth_camera of type structured_light, which glidar render
+simulates, or has the keys of pinhole optics in sensor files:
   camera: {width: 1280, height: 1024, fx: 1800, fy: 1800, cx: 640, cy: 512}
   projector: {width: 1280, height: 800, fx: 1500, fy: 1500, cx: 640, cy: 400}
   projector_from_camera: {position: [-0.2, 0, 0], rotation_vector: [0, 0.25, 0]}

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/structured_light/structured_light.hpp>
+#include <glidar/sensor/depth_camera/structured_light.hpp>
 
 #include <span>
 #include <string>

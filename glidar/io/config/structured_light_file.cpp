@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/structured_light_file.hpp>
 
+#include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
+
+#include <variant>
 
 namespace glidar {
 namespace {
@@ -15,14 +18,32 @@ StructuredLight read_structured_light(const YamlField& root) {
   return setup;
 }
 
+/// A sensor file has all keys of a setup.
+bool is_sensor(const YamlField& root) {
+  return root.node["depth_camera"].IsDefined();
+}
+
+StructuredLight setup_of_sensor(const std::string& source, const Sensor& sensor) {
+  const auto* camera = std::get_if<StructuredLightCamera>(&*sensor.depth_camera);
+  if (camera != nullptr) return setup_of(*camera, std::get<Pinhole>(sensor.optics));
+  throw Error({.where = source + ": depth_camera",
+               .found = "a sensor that projects no patterns",
+               .allowed = "type: structured_light",
+               .remedy = "use another sensor file, or a setup with camera and projector"});
+}
+
 }  // namespace
 
 StructuredLight load_structured_light(const std::filesystem::path& path) {
-  return read_structured_light(read_yaml(path));
+  const YamlField root = read_yaml(path);
+  if (is_sensor(root)) return setup_of_sensor(path.string(), load_sensor_file(path));
+  return read_structured_light(root);
 }
 
 StructuredLight parse_structured_light(const std::string& text) {
-  return read_structured_light(read_yaml_text("structured light", text));
+  const YamlField root = read_yaml_text("structured light", text);
+  if (is_sensor(root)) return setup_of_sensor("structured light", parse_sensor(text));
+  return read_structured_light(root);
 }
 
 }  // namespace glidar

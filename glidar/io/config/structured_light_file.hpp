@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/structured_light/structured_light.hpp>
+#include <glidar/sensor/depth_camera/structured_light.hpp>
 
 #include <filesystem>
 #include <string>
 
 namespace glidar {
 
-/// The camera, projector and patterns of a YAML file (docs/structured-light.md). Throws Error with
-/// the place in the file.
+/// The camera, projector and patterns of a YAML file (docs/structured-light.md): a setup, or a
+/// sensor with a depth_camera of type structured_light. Throws Error with the place in the file.
 StructuredLight load_structured_light(const std::filesystem::path& path);
 
 /// The same of a text in YAML or JSON.

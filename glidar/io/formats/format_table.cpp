@@ -59,6 +59,7 @@ const std::vector<Format>& formats() {
       ir_reference_png_format(),
       ir_png_format(),
       tof_npy_format(),
+      patterns_npy_format(),
   };
   // clang-format on
   return kFormats;

@@ -3,9 +3,11 @@
 #include <glidar/io/formats/raw_image_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace glidar {
@@ -13,6 +15,9 @@ namespace {
 
 using Reference = ActiveStereo::Reference;
 
+constexpr std::uint32_t kMaxByte = 255;
+constexpr const char* kPatternRemedy =
+    "use a sensor file with a depth_camera of type structured_light and --depth-model physical";
 constexpr const char* kRemedy =
     "use a sensor with a depth_camera and --depth-model physical, such as D435";
 
@@ -25,8 +30,14 @@ const GreyImage& find_image(const Frame& frame, const std::string& name, const A
                "a frame of a depth camera that is simulated from raw images", kRemedy});
 }
 
+std::vector<std::uint8_t> bytes_of(const GreyImage& image) {
+  std::vector<std::uint8_t> grey(image.level.size());
+  std::transform(image.level.begin(), image.level.end(), grey.begin(),
+                 [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
+  return grey;
+}
+
 void write_image(const CloudFile& job, const std::string& name, AtomicFile& file) {
-  constexpr std::uint32_t kMaxByte = 255;
   const GreyImage& image = find_image(job.frame, name, file);
   if (image.max_level > kMaxByte) {
     write_png({PngKind::grey16, image.width, image.height, std::as_bytes(std::span(image.level)),
@@ -34,11 +45,35 @@ void write_image(const CloudFile& job, const std::string& name, AtomicFile& file
               file);
     return;
   }
-  std::vector<std::uint8_t> grey(image.level.size());
-  std::transform(image.level.begin(), image.level.end(), grey.begin(),
-                 [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
+  const std::vector<std::uint8_t> grey = bytes_of(image);
   write_png({PngKind::grey8, image.width, image.height, std::as_bytes(std::span(grey)), job.pixels},
             file);
+}
+
+/// The images of patterns, in their order. Throws Error when the frame has none.
+std::vector<const GreyImage*> find_patterns(const Frame& frame, const AtomicFile& file) {
+  std::vector<const GreyImage*> patterns;
+  for (const RawImage& image : frame.raw_images) {
+    if (image.name.starts_with("pattern_")) patterns.push_back(&image.grey);
+  }
+  if (!patterns.empty()) return patterns;
+  throw Error({file.path().string(), "a frame without images of patterns",
+               "a frame of a structured-light camera that is simulated from raw images",
+               kPatternRemedy});
+}
+
+void write_patterns(const CloudFile& job, AtomicFile& file) {
+  const std::vector<const GreyImage*> images = find_patterns(job.frame, file);
+  const bool is_byte = images.front()->max_level <= kMaxByte;
+  const std::array<std::size_t, 3> shape = {images.size(), job.frame.rows, job.frame.cols};
+  file.write(npy_header(is_byte ? "|u1" : "<u2", shape));
+  for (const GreyImage* image : images) {
+    if (is_byte) {
+      file.write(std::as_bytes(std::span<const std::uint8_t>(bytes_of(*image))));
+    } else {
+      file.write(std::as_bytes(std::span(image->level)));
+    }
+  }
 }
 
 /// What a sensor without such images lacks; `is_right`: an image of the right imager.
@@ -65,6 +100,13 @@ Misfit right_misfit(const CloudPictureOptions& /*picture*/, const Sensor& sensor
 Misfit reference_misfit(const CloudPictureOptions& /*picture*/, const Sensor& sensor,
                         const Beams& /*beams*/) {
   return find_misfit_of(sensor, true, Reference::pattern);
+}
+
+Misfit pattern_misfit(const CloudPictureOptions& /*picture*/, const Sensor& sensor,
+                      const Beams& /*beams*/) {
+  const DepthCamera* camera = physical_camera(sensor);
+  if (camera != nullptr && std::holds_alternative<StructuredLightCamera>(*camera)) return {};
+  return {"it is not simulated from images of patterns", kPatternRemedy};
 }
 
 }  // namespace
@@ -100,6 +142,16 @@ Format ir_reference_png_format() {
                       AtomicFile& file) { write_image(job, "ir_reference", file); },
           .pixels = "grey level of the pattern as seen from the projector",
           .misfit = reference_misfit};
+}
+
+Format patterns_npy_format() {
+  return {.info = {.suffix = ".patterns.npy",
+                   .description = "raw images of a structured-light camera",
+                   .columns = {}},
+          .content = Content::image,
+          .write = write_patterns,
+          .pixels = "grey levels, images x rows x columns",
+          .misfit = pattern_misfit};
 }
 
 }  // namespace glidar

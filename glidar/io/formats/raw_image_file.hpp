@@ -11,4 +11,8 @@ Format ir_left_png_format();
 Format ir_right_png_format();
 Format ir_reference_png_format();
 
+/// Frame::raw_images "pattern_00" ... of a structured-light camera as a NumPy array of uint8 or
+/// uint16, images x rows x columns.
+Format patterns_npy_format();
+
 }  // namespace glidar

@@ -4,6 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/field.hpp>
+#include <glidar/sensor/depth_camera/ambient_light.hpp>
 #include <glidar/sensor/depth_camera/dot_projector.hpp>
 #include <glidar/sensor/depth_camera/imager.hpp>
 #include <glidar/stereo/stereo_options.hpp>
@@ -14,17 +15,6 @@
 namespace glidar {
 
 class FieldVisitor;
-
-/// Infrared light other than the projector's, within the passband of the camera.
-struct AmbientLight {
-  double ambient_w_per_m2 = 0.03;  ///< irradiance of every surface, from all sides
-  double sun_w_per_m2 = 0.0;       ///< irradiance of a surface that faces the sun
-  /// Towards the sun in the world frame, of any length.
-  Eigen::Vector3d sun_direction = Eigen::Vector3d::UnitZ();
-};
-
-/// Keys of `illumination` of depth cameras.
-void describe(AmbientLight& light, FieldVisitor& visitor);
 
 /// A stereo camera with a projector: depths come from infrared images by stereo matching. The
 /// sensor's optics are the left camera; the right one has the same, displaced along +x.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/sensor/depth_camera/active_stereo.hpp>
+#include <glidar/sensor/depth_camera/structured_light_camera.hpp>
 #include <glidar/tof/tof_camera.hpp>
 
 #include <cstdint>
@@ -19,7 +20,7 @@ enum class DepthModel : std::uint8_t {
 };
 
 /// What DepthModel::physical simulates.
-using DepthCamera = std::variant<ActiveStereo, TofCamera>;
+using DepthCamera = std::variant<ActiveStereo, TofCamera, StructuredLightCamera>;
 
 /// Keys of `depth_camera` of sensor files: `type` and those of the type.
 void describe(DepthCamera& camera, FieldVisitor& visitor);

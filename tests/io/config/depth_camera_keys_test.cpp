@@ -44,6 +44,57 @@ TEST(DepthCameraKeys, ReadWhatTheyName) {
   EXPECT_EQ(camera.matcher.box_px, 7U);
 }
 
+const char* const kScanner =
+    "depth_model: physical\ndepth_camera:\n  type: structured_light\n"
+    "  projector: {width: 500, height: 300, fx: 600, fy: 610, cx: 240, cy: 150,\n"
+    "              distortion: {model: radial_tangential, k1: 0.1}}\n"
+    "  projector_from_camera: {position: [-0.2, 0.01, 0.02], rotation_vector: [0, 0.2, 0]}\n"
+    "  light: {power_w: 2, gamma: 2.2, blur_px: 0.7, speckle_contrast: 0.1}\n"
+    "  patterns: {axis: rows, steps: 5, period_px: 20, gamma: 2.2}\n"
+    "  decoding: {min_modulation: 7}\n"
+    "  illumination: {ambient_w_per_m2: 0.2}\n"
+    "  imager: {bits: 12}\n  sub_rays: 2\n  image_interval_s: 0.01\n";
+
+TEST(DepthCameraKeys, ReadThoseOfStructuredLight) {
+  const Sensor sensor = parse_sensor(camera_text(kScanner));
+  const auto& camera = std::get<StructuredLightCamera>(sensor.depth_camera.value());
+  EXPECT_EQ(camera.projector.intrinsics.fy, 610.0);
+  EXPECT_EQ(std::get<RadialTangential>(camera.projector.distortion).k1, 0.1);
+  EXPECT_EQ(camera.projector_from_camera.translation(), Eigen::Vector3d(-0.2, 0.01, 0.02));
+  EXPECT_EQ(camera.patterns.width, 500U);
+  EXPECT_EQ(camera.patterns.height, 300U);
+  EXPECT_EQ(camera.patterns.axis, FringeAxis::rows);
+  EXPECT_EQ(camera.patterns.steps, 5U);
+  EXPECT_EQ(camera.light.power_w, 2.0);
+  EXPECT_EQ(camera.light.gamma, 2.2);
+  EXPECT_EQ(camera.light.blur_px, 0.7);
+  EXPECT_EQ(camera.light.speckle_contrast, 0.1);
+  EXPECT_EQ(camera.decoding.min_modulation, 7.0);
+  EXPECT_EQ(camera.illumination.ambient_w_per_m2, 0.2);
+  EXPECT_EQ(camera.imager.bits, 12U);
+  EXPECT_EQ(camera.sub_rays, 2U);
+  EXPECT_EQ(camera.image_interval_s, 0.01);
+  const std::string document = sensor_document(sensor);
+  EXPECT_EQ(sensor_document(parse_sensor(document)), document);
+}
+
+TEST(DepthCameraKeys, OfStructuredLightRefuseWhatDoesNotFit) {
+  const auto changed = [](const std::string& from, const std::string& to) {
+    std::string text = kScanner;
+    text.replace(text.find(from), from.size(), to);
+    return refusal(text);
+  };
+  EXPECT_THAT(changed("steps: 5", "steps: 2"), HasSubstr("0, or 3 to 64"));
+  EXPECT_THAT(changed("[-0.2, 0.01, 0.02]", "[0, 0, 0]"), HasSubstr("position of the camera"));
+  EXPECT_THAT(changed("image_interval_s: 0.01", "image_interval_s: 1"),
+              HasSubstr("seconds from 0 to 4"));
+  EXPECT_THAT(changed("sub_rays: 2", "sub_rays: 17"), HasSubstr("1 to 16"));
+  EXPECT_THAT(changed("light: {power_w: 2,", "light: {power: 2,"), HasSubstr("power_w"));
+  EXPECT_THAT(refusal("depth_camera: {type: structured_light, projector_from_camera: {position: "
+                      "[0.1, 0, 0]}}\n"),
+              HasSubstr("projector"));
+}
+
 TEST(DepthCameraKeys, OfPresetsAreRestoredFromTheirDocument) {
   for (const char* name : {"D415", "D435", "D455", "Kinect-v1"}) {
     const Sensor sensor = testing::preset(name);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/structured_light/structured_light.hpp>
+#include <glidar/sensor/depth_camera/structured_light.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>

@@ -30,4 +30,8 @@ void describe(StructuredLight& setup, FieldVisitor& visitor);
 /// camera's size.
 std::vector<float> triangulate(const DecodedFringes& decoded, const StructuredLight& setup);
 
+/// The same, with the rays of the camera's pixels: make_beams(setup.camera). `pool` may be null.
+std::vector<float> triangulate(const DecodedFringes& decoded, const StructuredLight& setup,
+                               const Beams& camera_rays, ThreadPool* pool);
+
 }  // namespace glidar

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/structured_light/structured_light.hpp>
+#include <glidar/sensor/depth_camera/structured_light.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
@@ -14,6 +14,7 @@
 namespace glidar {
 namespace {
 
+constexpr std::size_t kPixelsPerTask = 4096;
 constexpr int kMaxSecantSteps = 50;
 /// In pixels of the projector; a hundredth of what float stores of a coordinate of 1000.
 constexpr double kConvergedPlace_px = 1e-7;
@@ -70,6 +71,15 @@ double ray_depth_m(const Ray& ray, const Pinhole& projector, double coordinate_p
   return is_in_front ? start_m : kNaN;
 }
 
+void require_size(const DecodedFringes& decoded, const PinholeIntrinsics& camera) {
+  if (decoded.width == camera.width && decoded.height == camera.height) return;
+  throw Error(
+      {"structured light",
+       "the images have " + std::to_string(decoded.width) + "x" + std::to_string(decoded.height) +
+           " pixels",
+       std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", as the camera", ""});
+}
+
 }  // namespace
 
 void describe(StructuredLight& setup, FieldVisitor& visitor) {
@@ -89,24 +99,31 @@ void describe(StructuredLight& setup, FieldVisitor& visitor) {
 }
 
 std::vector<float> triangulate(const DecodedFringes& decoded, const StructuredLight& setup) {
-  const PinholeIntrinsics& k = setup.camera.intrinsics;
-  if (decoded.width != k.width || decoded.height != k.height) {
-    throw Error({"structured light",
-                 "the images have " + std::to_string(decoded.width) + "x" +
-                     std::to_string(decoded.height) + " pixels",
-                 std::to_string(k.width) + "x" + std::to_string(k.height) + ", as the camera", ""});
-  }
-  const Beams beams = make_beams(setup.camera);
+  return triangulate(decoded, setup, make_beams(setup.camera), nullptr);
+}
+
+std::vector<float> triangulate(const DecodedFringes& decoded, const StructuredLight& setup,
+                               const Beams& camera_rays, ThreadPool* pool) {
+  require_size(decoded, setup.camera.intrinsics);
   const PinholeProjection projection(setup.projector);
   const int axis = setup.patterns.axis == FringeAxis::columns ? 0 : 1;
   const Eigen::Matrix3d rotation = setup.projector_from_camera.linear();
   std::vector<float> depth_m(decoded.coordinate_px.size(), kNaNf);
-  for (std::size_t i = 0; i < depth_m.size(); ++i) {
-    const Eigen::Vector3d& direction = beams.directions[i];
-    if (std::isnan(decoded.coordinate_px[i]) || !(direction.z() > 0.0)) continue;
+  const auto find_depth = [&](std::size_t i) {
+    const Eigen::Vector3d& direction = camera_rays.directions[i];
+    if (std::isnan(decoded.coordinate_px[i]) || !(direction.z() > 0.0)) return;
     const Ray ray = {projection, setup.projector_from_camera.translation(),
                      rotation * (direction / direction.z()), axis};
-    depth_m[i] = static_cast<float>(ray_depth_m(ray, setup.projector, decoded.coordinate_px[i]));
+    depth_m[i] =
+        static_cast<float>(ray_depth_m(ray, setup.projector, double{decoded.coordinate_px[i]}));
+  };
+  const auto find_depths = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) find_depth(i);
+  };
+  if (pool == nullptr) {
+    find_depths(0, depth_m.size());
+  } else {
+    pool->parallel_for(depth_m.size(), kPixelsPerTask, find_depths);
   }
   return depth_m;
 }
