@@ -6,6 +6,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/optics/sub_pixels.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -72,17 +73,7 @@ void check_pinhole(const ActiveStereo& camera, const Pinhole& pinhole) {
 
 void check_pinhole(const TofCamera& camera, const Pinhole& pinhole) {
   validate(camera);
-  constexpr double kMaxRays = 0x1p25;
-  const PinholeIntrinsics& image = pinhole.intrinsics;
-  const double rays =
-      static_cast<double>(image.width) * image.height * camera.sub_rays * camera.sub_rays;
-  if (rays <= kMaxRays) return;
-  throw Error({.where = "depth_camera, sub_rays",
-               .found = "is " + std::to_string(camera.sub_rays) + ", so that " +
-                        std::to_string(image.width) + "x" + std::to_string(image.height) +
-                        " pixels have too many rays",
-               .allowed = "at most " + number_text(kMaxRays) + " rays",
-               .remedy = "use fewer sub_rays or pixels"});
+  check_sub_rays(pinhole.intrinsics, camera.sub_rays);
 }
 
 }  // namespace
