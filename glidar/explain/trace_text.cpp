@@ -35,6 +35,11 @@ struct TraceWriter {
     text += excerpt(fmt::format(form, std::forward<Values>(values)...), kMaxLine_bytes);
     text += '\n';
   }
+  /// Lines of another trace; the first has the head.
+  void lines(std::string_view head, const std::string& trace_lines) {
+    std::istringstream stream(trace_lines);
+    for (std::string one; std::getline(stream, one); head = "") line(head, "{}", one);
+  }
   [[nodiscard]] bool has_hit() const {
     return frame.ground_truth.instance[trace.entry] != kInvalidId;
   }
@@ -174,8 +179,7 @@ void write_stereo(TraceWriter& out, const StereoPixelTrace& stereo) {
   out.line("", "the same surface in the right image: {:.1f} and {:.1f} electrons",
            stereo.right_light.projector_e, stereo.right_light.ambient_e);
   out.line("match", "true disparity {:.4f} px", stereo.true_disparity_px);
-  std::istringstream lines(format_stereo_trace(stereo.match));
-  for (std::string text; std::getline(lines, text);) out.line("", "{}", text);
+  out.lines("", format_stereo_trace(stereo.match));
 }
 
 /// The photons of each phase step, and how they were decoded.
@@ -194,11 +198,7 @@ void write_tof(TraceWriter& out, const TofPixelTrace& tof) {
   }
   out.line("", "{:.2f} % of the illuminator's light came over diffuse bounces",
            100.0 * tof.bounced_share);
-  std::istringstream lines(format_tof_trace(tof.decoded));
-  bool is_first = true;
-  for (std::string text; std::getline(lines, text); is_first = false) {
-    out.line(is_first ? "decoded" : "", "{}", text);
-  }
+  out.lines("decoded", format_tof_trace(tof.decoded));
 }
 
 void write_light(TraceWriter& out) {

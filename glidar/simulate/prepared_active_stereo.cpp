@@ -3,22 +3,10 @@
 #include <glidar/simulate/prepared_active_stereo.hpp>
 
 #include <glidar/sensor/depth_camera/point_spread.hpp>
-#include <glidar/sensor/optics/pinhole.hpp>
+#include <glidar/sensor/optics/sub_pixels.hpp>
 
 namespace glidar {
 namespace {
-
-/// The image of rays: the centre of each sub_rays x sub_rays block is the centre of a pixel.
-PinholeIntrinsics ray_intrinsics(const PinholeIntrinsics& pixel, std::uint32_t sub_rays) {
-  const double n = sub_rays;
-  return {.width = pixel.width * sub_rays,
-          .height = pixel.height * sub_rays,
-          .fx = pixel.fx * n,
-          .fy = pixel.fy * n,
-          .cx = (pixel.cx - pixel.pixel_centre + 0.5) * n,
-          .cy = (pixel.cy - pixel.pixel_centre + 0.5) * n,
-          .pixel_centre = 0.5};
-}
 
 /// The pattern as a camera at the position of the projector sees it, W/sr.
 std::vector<float> view_pattern(const PreparedActiveStereo& prepared) {
@@ -45,7 +33,7 @@ PreparedActiveStereo prepare_active_stereo(const ActiveStereo& camera,
       .intrinsics = intrinsics,
       .wavelength_m = wavelength_m,
       .pattern = make_intensity_map(camera.projector),
-      .rays = make_beams(Pinhole{ray_intrinsics(intrinsics, camera.sub_rays), NoDistortion{}}),
+      .rays = make_beams(divide_pixels({intrinsics, NoDistortion{}}, camera.sub_rays)),
       .weights = point_spread_weights(camera.sub_rays, camera.imager.blur_px),
       .electron_rate = electron_rate_per_radiance(camera.imager, intrinsics.fx, wavelength_m),
       .pattern_view = {}};
