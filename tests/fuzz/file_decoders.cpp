@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_decoders.hpp"
 
+#include "depth_decoders.hpp"
 #include "packet_decoders.hpp"
 
 #include <apps/glidar/options/option_values.hpp>
@@ -173,7 +174,7 @@ void read_rosbag2(const fs::path& file) {
   read_bag(file.parent_path());
 }
 
-constexpr std::array<FileDecoder, 21> kDecoders = {{
+constexpr std::array<FileDecoder, 23> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
@@ -195,6 +196,8 @@ constexpr std::array<FileDecoder, 21> kDecoders = {{
     {"ouster_source", "metadata.json", [](const fs::path& file) { load_ouster_source(file); }},
     {"packets", "packets.bin", read_packets},
     {"pcap", "scan.pcap", read_capture},
+    {"tof", "raw.bin", read_raw_tof_images},
+    {"stereo", "pair.bin", read_raw_stereo_pair},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.
