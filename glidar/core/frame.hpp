@@ -62,8 +62,8 @@ std::string_view name(ReturnSource source);
 
 /// An image of the sensor from which its depths are decoded.
 struct RawImage {
-  std::string name;     ///< "ir_left", "ir_right", "ir_reference": suffixes of files
-  GreyImage grey = {};  ///< as the imager reports it
+  std::string name;                   ///< "ir_left", "ir_right", "ir_reference": suffixes of files
+  GreyImage grey = {};                ///< as the imager reports it
   std::vector<float> electrons = {};  ///< one per pixel: the mean without noise and speckle
 };
 

@@ -111,7 +111,8 @@ PhasorImage make_phasors(const TofImages& images, const TofOptions& options,
   result.is_saturated.resize(pixels);
   const TapPhases phases = tap_phases(images.taps);
   const auto find_pixel = [&](std::size_t f, std::size_t i) {
-    const TapSum sum = sum_taps(images, phases, tap_offset(images, f, 0) + i, options.saturation_level);
+    const TapSum sum =
+        sum_taps(images, phases, tap_offset(images, f, 0) + i, options.saturation_level);
     if (sum.is_saturated) {
       result.is_saturated[i] = 1;
       return;

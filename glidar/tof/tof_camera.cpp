@@ -36,7 +36,8 @@ void require_contrasts(const TofCamera& camera, const FieldVisitor* visitor) {
   const std::string found = "has " + std::to_string(camera.contrast.size()) + " numbers for " +
                             std::to_string(needed) + " frequencies";
   if (visitor != nullptr) visitor->reject("contrast", found, "one for each frequency, or none");
-  throw Error({kCameraPlace + std::string("contrast"), found, "one for each frequency, or none", ""});
+  throw Error(
+      {kCameraPlace + std::string("contrast"), found, "one for each frequency, or none", ""});
 }
 
 }  // namespace
@@ -81,14 +82,16 @@ void describe(TofCamera& camera, FieldVisitor& visitor) {
 }
 
 void validate(const TofCamera& camera) {
-  tof::require_numbers(kCameraPlace, {{"signal_electrons", kAboveZero, camera.signal_electrons},
-                  {"ambient_electrons", kFromZero, camera.ambient_electrons},
-                  {"dark_electrons", kFromZero, camera.dark_electrons},
-                  {"read_noise_electrons", kFromZero, camera.read_noise_electrons},
-                  {"electrons_per_level", kAboveZero, camera.electrons_per_level},
-                  {"step_interval_s", kFromZero, camera.step_interval_s}});
+  tof::require_numbers(kCameraPlace,
+                       {{"signal_electrons", kAboveZero, camera.signal_electrons},
+                        {"ambient_electrons", kFromZero, camera.ambient_electrons},
+                        {"dark_electrons", kFromZero, camera.dark_electrons},
+                        {"read_noise_electrons", kFromZero, camera.read_noise_electrons},
+                        {"electrons_per_level", kAboveZero, camera.electrons_per_level},
+                        {"step_interval_s", kFromZero, camera.step_interval_s}});
   if (camera.full_well_electrons != kInfinity) {
-    tof::require_numbers(kCameraPlace, {{"full_well_electrons", kAboveZero, camera.full_well_electrons}});
+    tof::require_numbers(kCameraPlace,
+                         {{"full_well_electrons", kAboveZero, camera.full_well_electrons}});
   }
   for (const double contrast : camera.contrast) {
     tof::require_numbers(kCameraPlace, {{"contrast", kContrastRule, contrast}});

@@ -46,7 +46,8 @@ void write_image(const CloudFile& job, const std::string& name, AtomicFile& file
             file);
 }
 
-/// What a sensor without such images lacks; `is_second`: an image that the left one is matched with.
+/// What a sensor without such images lacks; `is_second`: an image that the left one is matched
+/// with.
 Misfit find_misfit_of(const Sensor& sensor, bool is_second, Reference reference) {
   const DepthCamera* camera = physical_camera(sensor);
   const auto* stereo = camera != nullptr ? std::get_if<ActiveStereo>(camera) : nullptr;
