@@ -17,6 +17,7 @@
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/formats/sidecar.hpp>
+#include <glidar/io/formats/tof_image_file.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/png_texture.hpp>
@@ -174,7 +175,7 @@ void read_rosbag2(const fs::path& file) {
   read_bag(file.parent_path());
 }
 
-constexpr std::array<FileDecoder, 23> kDecoders = {{
+constexpr std::array<FileDecoder, 24> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
@@ -198,6 +199,7 @@ constexpr std::array<FileDecoder, 23> kDecoders = {{
     {"pcap", "scan.pcap", read_capture},
     {"tof", "raw.bin", read_raw_tof_images},
     {"stereo", "pair.bin", read_raw_stereo_pair},
+    {"tof_npy", "raw.tof.npy", [](const fs::path& file) { load_tof_images(file); }},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.
