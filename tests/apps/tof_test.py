@@ -66,6 +66,17 @@ class TofCommand(PngTest):
         for one, other in zip(decoded, self.floats("range.npy", pixels)):
             self.assertTrue(math.isnan(one) or one <= other)
 
+    def test_a_preset_with_a_lens_has_the_depths_of_its_simulation(self):
+        self.succeed("render", "builtin:asteroid", "--sensor", "Kinect-v2", "--depth-model", "physical", "-o", "k.tof.npy", "-o",
+                     "k.depth.png", "--no-sidecar")
+        self.succeed("tof", "k.tof.npy", "--sensor", "Kinect-v2", "-o", "depth.png")
+        pairs = [pair for rows in zip(self.grey_rows("depth.png"), self.grey_rows("k.depth.png"), strict=True)
+                 for pair in zip(*rows, strict=True)]
+        others = [abs(a - b) for a, b in pairs if a != b]
+        self.assertGreater(sum(b > 0 for _, b in pairs), 10_000)
+        self.assertLess(len(others), 0.001 * len(pairs))  # cosines of the decoder are floats, so a few round otherwise
+        self.assertTrue(all(difference == 1 for difference in others))
+
     def test_the_sample_has_every_cause_of_its_page(self):
         done = self.succeed(*SAMPLE, "-o", "range.npy", "-o", "status.npy")
         for cause in ("valid", "not_illuminated", "saturated", "low_signal", "too_far", "edge"):
