@@ -4,6 +4,7 @@
 // VLP-16 in a furnished room. And the cost of possible coincidences of a thousand objects with the
 // ground under them.
 #include "ratio_reporter.hpp"
+#include "room.hpp"
 
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
@@ -13,26 +14,6 @@
 
 namespace glidar::bench {
 namespace {
-
-/// A room of 8 m x 8 m x 4 m, the sensor 1.5 m above its floor, and objects on it: 118,784
-/// triangles.
-Scene make_room() {
-  Scene scene;
-  add_model(scene, make_builtin_model("box"));
-  scene.instances[0].scale = 4.0;
-  scene.instances[0].world_from_object.translation().z() = 2.5;
-  const auto put = [&](const char* model, double scale, const Eigen::Vector3d& at_m) {
-    add_model(scene, make_builtin_model(model));
-    scene.instances.back().scale = scale;
-    scene.instances.back().world_from_object.translation() = at_m;
-  };
-  put("asteroid", 0.7, {2.2, 1.0, -0.8});
-  put("torus", 0.6, {-2.0, 2.0, -0.5});
-  put("torus", 0.4, {1.0, -2.5, 0.1});
-  put("sphere", 0.5, {-1.5, -2.0, 0.0});
-  put("box", 0.4, {3.0, -2.0, -0.9});
-  return scene;
-}
 
 /// A ground of 200 m x 200 m 2 m below the sensor, and 1000 boxes of 1 m at this height over it.
 Scene make_field(double height_m) {

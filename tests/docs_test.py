@@ -49,6 +49,9 @@ class Pages(unittest.TestCase):
     def test_stereo(self):
         self.run_page("docs/stereo.md")
 
+    def test_time_of_flight(self):
+        self.run_page("docs/time-of-flight.md")
+
     def test_depth_filters(self):
         self.run_page("docs/depth-filters.md")
 

@@ -35,6 +35,7 @@ std::vector<Subcommand> all_subcommands() {
           subcommand("align", add_align),
           subcommand("stereo", add_stereo),
           subcommand("structured-light", add_structured_light),
+          subcommand("tof", add_tof),
           subcommand("verify", add_verify)};
 }
 

@@ -32,7 +32,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar sensors
   glidar verify
 More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
-sensors, schema, filter, align, stereo, structured-light and verify)";
+sensors, schema, filter, align, stereo, structured-light, tof and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/frame.hpp>
 
-#include <limits>
+#include <glidar/math/constants.hpp>
 
 namespace glidar {
 
@@ -86,10 +86,10 @@ std::string_view name(ReturnSource source) {
 
 void invalidate_return(Frame& frame, std::size_t entry, Status why) {
   frame.status[entry] = why;
-  frame.range_m[entry] = std::numeric_limits<double>::quiet_NaN();
+  frame.range_m[entry] = kNaN;
   frame.intensity[entry] = 0.0F;
   if (!frame.radial_velocity_m_s.empty()) {
-    frame.radial_velocity_m_s[entry] = std::numeric_limits<double>::quiet_NaN();
+    frame.radial_velocity_m_s[entry] = kNaN;
   }
   if (!frame.return_source.empty()) frame.return_source[entry] = ReturnSource::none;
 }

@@ -37,7 +37,7 @@ enum class Status : std::uint8_t {
   outside_search = 14,       ///< the best match is the first or last disparity of the search
   ambiguous_match = 15,      ///< another disparity matches as well
   left_right_mismatch = 16,  ///< the other image selects another match
-  projector_shadow = 17,     ///< a surface hides the pixel's from the projector
+  projector_shadow = 17,     ///< another surface blocks the projector's light
   transparent = 18,          ///< the surface lets most of the light pass
   filtered_edge = 19,        ///< at an edge, where the light of two surfaces mixes
   low_modulation = 20,       ///< fringes hardly change: dark or far surface, strong other light
@@ -66,8 +66,8 @@ std::string_view name(ReturnSource source);
 
 /// An image of the sensor from which its depths are decoded.
 struct RawImage {
-  std::string name;     ///< "ir_left", "ir_right", "pattern_00" ...: see docs/files/clouds.md
-  GreyImage grey = {};  ///< as the imager reports it
+  std::string name;                   ///< "ir_left", "pattern_00" ...: see docs/files/images.md
+  GreyImage grey = {};                ///< as the imager reports it
   std::vector<float> electrons = {};  ///< one per pixel: the mean without noise and speckle
 };
 

@@ -25,6 +25,12 @@ inline std::size_t pixel_count(const TofImages& images) {
   return std::size_t{images.width} * images.height;
 }
 
+/// Removes the images; their memory is kept for others.
+inline void clear(TofImages& images) {
+  images.width = images.height = images.frequencies = images.taps = 0;
+  images.level.clear();
+}
+
 /// Index in `level` of the first pixel of a phase step.
 inline std::size_t tap_offset(const TofImages& images, std::size_t frequency, std::size_t tap) {
   return (frequency * images.taps + tap) * pixel_count(images);

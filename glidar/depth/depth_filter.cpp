@@ -20,7 +20,7 @@ constexpr WholeRule kTemporalDeltaRule = {1, 100};
 constexpr WholeRule kPersistenceRule = {0, 8};
 constexpr NumberRule kSpatialAlphaRule = {0.25, 1.0, false, "a number from 0.25 to 1"};
 constexpr NumberRule kThresholdRule = {0.0, 65.535, false, "metres from 0 to 65.535"};
-/// Disparities of 1/32 px fit into float far beyond it.
+/// Far above the baseline of any camera; disparities in float are finite.
 constexpr NumberRule kBaselineRule = {0.0, 1e3, true, "metres above 0 and below 1000"};
 
 constexpr std::array<Named<HoleWidth>, 6> kHoleWidthNames = {{{"none", HoleWidth::none},

@@ -35,6 +35,11 @@ struct TraceWriter {
     text += excerpt(fmt::format(form, std::forward<Values>(values)...), kMaxLine_bytes);
     text += '\n';
   }
+  /// Lines of another trace; the first has the head.
+  void lines(std::string_view head, const std::string& trace_lines) {
+    std::istringstream stream(trace_lines);
+    for (std::string one; std::getline(stream, one); head = "") line(head, "{}", one);
+  }
   [[nodiscard]] bool has_hit() const {
     return frame.ground_truth.instance[trace.entry] != kInvalidId;
   }
@@ -167,12 +172,6 @@ void write_exposure(TraceWriter& out, const Exposure& exposure) {
   out.line("exposed", "{:.4g} ms, gain {:.4g}", 1e3 * exposure.time_s, exposure.gain);
 }
 
-/// Several lines under one head.
-void write_lines(TraceWriter& out, std::string_view head, const std::string& text) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line); head = "") out.line(head, "{}", line);
-}
-
 /// The photons of a pixel, and how it was matched.
 void write_depth(TraceWriter& out, const StereoPixelTrace& stereo) {
   const PixelReading& reading = stereo.reading;
@@ -184,7 +183,7 @@ void write_depth(TraceWriter& out, const StereoPixelTrace& stereo) {
   out.line("", "the same surface in the right image: {:.1f} and {:.1f} electrons",
            stereo.right_light.projector_e, stereo.right_light.ambient_e);
   out.line("match", "true disparity {:.4f} px", stereo.true_disparity_px);
-  write_lines(out, "", format_stereo_trace(stereo.match));
+  out.lines("", format_stereo_trace(stereo.match));
 }
 
 /// The photons of each phase step, and how they were decoded.
@@ -203,7 +202,7 @@ void write_depth(TraceWriter& out, const TofPixelTrace& tof) {
   }
   out.line("", "{:.2f} % of the illuminator's light came over diffuse bounces",
            100.0 * tof.bounced_share);
-  write_lines(out, "decoded", format_tof_trace(tof.decoded));
+  out.lines("decoded", format_tof_trace(tof.decoded));
 }
 
 /// The electrons of each image of a pixel, and how they were decoded.
@@ -219,7 +218,7 @@ void write_depth(TraceWriter& out, const StructuredLightPixelTrace& pixel) {
   } else {
     out.line("projector", "true coordinate {:.4f} px", pixel.true_projector_px);
   }
-  write_lines(out, "decoded", format_fringe_trace(pixel.decoded));
+  out.lines("decoded", format_fringe_trace(pixel.decoded));
 }
 
 void write_light(TraceWriter& out) {

@@ -29,7 +29,7 @@ double radial_velocity_m_s(const KinematicState& sensor, const KinematicState& o
   const Eigen::Matrix3d world_from_sensor = sensor.pose.linear();
   const Eigen::Vector3d direction = world_from_sensor * point.direction;
   const Eigen::Vector3d origin_arm_m = world_from_sensor * point.origin_m;
-  // Positions are subtracted first, so that a scene far from its origin loses no precision.
+  // Positions are subtracted first, for full precision far from the world's origin.
   const Eigen::Vector3d point_arm_m = (sensor.pose.translation() - object.pose.translation()) +
                                       origin_arm_m + point.range_m * direction;
   const Eigen::Vector3d relative_m_s =

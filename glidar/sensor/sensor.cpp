@@ -6,6 +6,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/optics/sub_pixels.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -70,26 +71,14 @@ void check_pinhole(const ActiveStereo& camera, const Pinhole& pinhole) {
   check_image(camera, pinhole.intrinsics);
 }
 
-void check_ray_count(const PinholeIntrinsics& image, std::uint32_t sub_rays) {
-  constexpr double kMaxRays = 0x1p25;
-  const double rays = static_cast<double>(image.width) * image.height * sub_rays * sub_rays;
-  if (rays <= kMaxRays) return;
-  throw Error({.where = "depth_camera, sub_rays",
-               .found = "is " + std::to_string(sub_rays) + ", so that " +
-                        std::to_string(image.width) + "x" + std::to_string(image.height) +
-                        " pixels have too many rays",
-               .allowed = "at most " + number_text(kMaxRays) + " rays",
-               .remedy = "use fewer sub_rays or pixels"});
-}
-
 void check_pinhole(const TofCamera& camera, const Pinhole& pinhole) {
   validate(camera);
-  check_ray_count(pinhole.intrinsics, camera.sub_rays);
+  check_sub_rays(pinhole.intrinsics, camera.sub_rays);
 }
 
 void check_pinhole(const StructuredLightCamera& camera, const Pinhole& pinhole) {
   validate(camera);
-  check_ray_count(pinhole.intrinsics, camera.sub_rays);
+  check_sub_rays(pinhole.intrinsics, camera.sub_rays);
   check_image(camera, pinhole.intrinsics);
 }
 

@@ -40,8 +40,8 @@ struct SurfacePoint {
 /// other surfaces have their monostatic backscatter (core/brdf.hpp) divided by its cosine, both at
 /// the normal's angle from the bisector of the directions to source and camera, so that source and
 /// camera in one place see the backscatter itself. E of the projector is its intensity /
-/// distance^2. Ambient light comes evenly from all sides. The share of light that the surface's
-/// opacity lets pass is lost.
+/// distance^2. Ambient light comes evenly from all sides. Radiance is proportional to the
+/// surface's opacity: light that passes through it does not return.
 InfraredRadiance infrared_radiance(const InfraredLights& lights, const SurfacePoint& point);
 
 /// Radiance where no surface is: that of the surroundings that cause the ambient irradiance.

@@ -3,6 +3,8 @@
 #include <glidar/simulate/infrared_shadows.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/optics/sub_pixels.hpp>
+#include <glidar/simulate/projector_occlusion.hpp>
 
 #include <algorithm>
 
@@ -11,8 +13,7 @@ namespace {
 
 constexpr std::size_t kRaysPerTask = 4096;
 constexpr std::size_t kRowsPerTask = 4;
-constexpr double kShadowTolerance = 1e-6;  // relative: far above rounding, far below any shadow
-constexpr double kSunReach = 1e4;          // metres from which rays of the sun come
+constexpr double kSunReach = 1e4;    // metres from which rays of the sun come
 constexpr double kRangeStep = 0.03;  // between neighbours, beyond which they are not one surface
 
 /// What is known of a pixel's shadow.
@@ -30,7 +31,7 @@ struct RayGrid {
   [[nodiscard]] std::size_t pixels() const { return width * height; }
   /// Ray k of a pixel, in rows.
   [[nodiscard]] std::size_t ray(std::size_t pixel, std::size_t k) const {
-    return ((pixel / width) * n + k / n) * width * n + (pixel % width) * n + k % n;
+    return ray_of_pixel(width, n, pixel, k);
   }
   [[nodiscard]] std::size_t middle(std::size_t pixel) const { return ray(pixel, n * n / 2); }
 };
@@ -44,8 +45,8 @@ class ShadowTest {
 
   void run() {
     test_middles();
-    const std::vector<std::size_t> edges = find_edges();
-    test_all_rays(edges);
+    find_edges();
+    test_edges();
   }
 
  private:
@@ -75,7 +76,7 @@ class ShadowTest {
 
   [[nodiscard]] bool is_shadowed(std::size_t ray, std::size_t beam) const {
     const double range_m = s_.workspace.infrared.shadow_hits.range_m[beam];
-    return range_m < (1.0 - kShadowTolerance) * path_to(ray).norm();  // false for NaN
+    return range_m < (1.0 - kShadowEpsilon) * path_to(ray).norm();  // false for NaN
   }
 
   void resize_beams(std::size_t count) {
@@ -146,8 +147,8 @@ class ShadowTest {
     return false;
   }
 
-  /// Pixels of which all rays are to be tested; those of other pixels in shadow become 0.
-  std::vector<std::size_t> find_edges() {
+  /// Flags the pixels of which all rays are to be tested; those of other pixels in shadow become 0.
+  void find_edges() {
     std::vector<std::uint8_t>& flags = s_.workspace.infrared.edges;
     flags.resize(grid_.pixels());
     for_pixels([&](std::size_t pixel) { flags[pixel] = is_edge(pixel) ? 1 : 0; });
@@ -156,21 +157,19 @@ class ShadowTest {
           s_.workspace.infrared.shades[pixel] == static_cast<std::uint8_t>(Shade::shadowed);
       if (flags[pixel] == 0 && is_dark) set_dark(pixel);
     });
-    std::vector<std::size_t> edges;
-    for (std::size_t pixel = 0; pixel < flags.size(); ++pixel) {
-      if (flags[pixel] != 0) edges.push_back(pixel);
-    }
-    return edges;
   }
 
   void set_dark(std::size_t pixel) {
     for (std::size_t k = 0; k < grid_.n * grid_.n; ++k) radiance_[grid_.ray(pixel, k)] = 0.0F;
   }
 
-  void test_all_rays(const std::vector<std::size_t>& pixels) {
+  /// Tests all rays of the flagged pixels that have light.
+  void test_edges() {
+    const std::vector<std::uint8_t>& flags = s_.workspace.infrared.edges;
     std::vector<std::size_t>& rays = s_.workspace.infrared.tested_rays;
     rays.clear();
-    for (const std::size_t pixel : pixels) {
+    for (std::size_t pixel = 0; pixel < flags.size(); ++pixel) {
+      if (flags[pixel] == 0) continue;
       for (std::size_t k = 0; k < grid_.n * grid_.n; ++k) {
         if (radiance_[grid_.ray(pixel, k)] > 0.0F) rays.push_back(grid_.ray(pixel, k));
       }

@@ -53,7 +53,7 @@ struct Body {
 
 /// The pose of the sensor at a time relative to the body at rest, in the sensor's frame at the
 /// start: S0^-1 * B0 * B^-1 * S with the poses B and S at that time. Positions are subtracted
-/// first, so that a scene far from its origin loses no precision.
+/// first, for full precision far from the world's origin.
 Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& b, const Pose& s) {
   Pose pose = Pose::Identity();
   const Eigen::Matrix3d back = s0.linear().transpose();

@@ -33,7 +33,7 @@ ObjectBox place_box(const Simulation& s, std::uint32_t i) {
   const Pose& world_from_sensor = s.frame.world_from_sensor;
   const Eigen::Matrix3d sensor_from_world = world_from_sensor.linear().transpose();
   ObjectBox box{.instance = i};
-  // positions are subtracted first, so that a scene far from its origin loses no precision
+  // positions are subtracted first, for full precision far from the world's origin
   const Pose& world_from_object = s.frame.world_from_instance[i];
   box.sensor_from_box.linear() = sensor_from_world * world_from_object.linear();
   box.sensor_from_box.translation() =

@@ -42,11 +42,10 @@ void point_at_hits(const Simulation& s, const Eigen::Vector3d& origin_m, EntryFi
 
 /// Whether a surface hides the hit from the point, or the point sees its other side.
 bool is_hidden(const Simulation& s, const Eigen::Vector3d& origin_m, std::size_t i) {
-  constexpr double kEpsilon = 1e-6;  // relative: far above rounding, far below any shadow
   const Hits& truth = s.frame.ground_truth;
   const Eigen::Vector3d path = path_to_hit(*s.fired, origin_m, truth, i);
   const bool faces_away = truth.normal[i].cast<double>().dot(path) >= 0.0;
-  return faces_away || s.workspace.sub_rays.hits.range_m[i] < (1.0 - kEpsilon) * path.norm();
+  return faces_away || s.workspace.sub_rays.hits.range_m[i] < (1.0 - kShadowEpsilon) * path.norm();
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ void reset_frame(const Simulation& s) {
   frame.deskewed.start_from_sensor.clear();
   frame.framebuffer.rgba.clear();
   frame.raw_images.clear();
-  frame.tof_images = {};
+  clear(frame.tof_images);
   frame.tof_amplitude.clear();
   frame.bounced_share.clear();
   frame.disparity_px.clear();

@@ -19,8 +19,8 @@ struct MovingSensor {
 };
 
 /// The poses of the sensor at the firing times of beams, at most PoseBlock::kSize, relative to its
-/// pose at the start: S0^-1 * S. Positions are subtracted first, so that a scene far from its
-/// origin loses no precision.
+/// pose at the start: S0^-1 * S. Positions are subtracted first, for full precision far from
+/// the world's origin.
 void find_start_from_sensor(const MovingSensor& sensor, const Beams& beams, BeamRange range,
                             PoseBlock& start_from_sensor);
 

@@ -29,7 +29,7 @@ bool is_same_surface(const PixelSurface& a, const PixelSurface& b) {
          std::abs(a.normal.dot(b.point_m - a.point_m)) <= kMaxPlaneDistance * a.range_m;
 }
 
-/// Pixels around a pixel, with sums over them.
+/// Rows and columns around a pixel, within the image.
 struct Square {
   std::size_t first_row;
   std::size_t end_row;
@@ -45,7 +45,7 @@ Square square_around(const Simulation& s, std::size_t pixel, std::size_t radius)
           std::min(column + radius + 1, std::size_t{s.beams.cols})};
 }
 
-/// Adds the weight of light in the pixel's steps.
+/// Adds the light of the exposure's steps, multiplied by `scale`.
 void add_scaled(const TofExposure& exposure, double scale, const TofLight* from, TofLight* to) {
   for (std::size_t i = exposure.first; i < exposure.end; ++i) {
     to[i].signal += scale * from[i].signal;

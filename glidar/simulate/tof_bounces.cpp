@@ -6,6 +6,7 @@
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/lidar/surface_reflectance.hpp>
 #include <glidar/sensor/optics/sub_pixels.hpp>
+#include <glidar/simulate/projector_occlusion.hpp>
 #include <glidar/simulate/tof_bounce_filter.hpp>
 
 #include <algorithm>
@@ -196,7 +197,6 @@ void cast_illuminator_rays(const Simulation& s, const PreparedTof& prepared,
 /// Adds the light of the illuminator on the ends of the paths.
 void add_lit_ends(const Simulation& s, const PreparedTof& prepared, const PixelBlock& block,
                   const TofExposure& exposure) {
-  constexpr double kShadowEpsilon = 1e-6;  // relative: far above rounding, far below any shadow
   TofWorkspace& memory = s.workspace.tof;
   const std::size_t steps = step_count(prepared);
   for_each_path(s, prepared, block, [&](SurfaceReflectance&, std::size_t pixel, std::size_t i) {

@@ -97,20 +97,23 @@ void sweep_both_ways(const CostSource& source, std::size_t y, CostVolume& volume
 
 }  // namespace
 
+void check_volume(std::uint32_t width, std::uint32_t height, std::uint32_t disparities) {
+  const std::uint64_t row = std::uint64_t{width} * padded_lanes(disparities);
+  if (height <= kMaxCells / std::max<std::uint64_t>(row, 1)) return;
+  throw Error({"stereo pair",
+               std::to_string(width) + "x" + std::to_string(height) + " pixels with " +
+                   std::to_string(disparities) + " disparities have too many costs",
+               "at most " + std::to_string(kMaxCells),
+               "search fewer disparities, or crop or shrink the images"});
+}
+
 void resize_volume(const GreyImage& image, std::uint32_t disparities, CostVolume& volume) {
+  check_volume(image.width, image.height, disparities);
   volume.width = image.width;
   volume.height = image.height;
   volume.disparities = disparities;
   volume.lanes = padded_lanes(disparities);
   const std::uint64_t cells = std::uint64_t{image.width} * image.height * volume.lanes;
-  if (cells > kMaxCells) {
-    throw Error({"stereo pair",
-                 std::to_string(image.width) + "x" + std::to_string(image.height) +
-                     " pixels with " + std::to_string(disparities) + " disparities are " +
-                     std::to_string(cells) + " costs",
-                 "at most " + std::to_string(kMaxCells),
-                 "search fewer disparities, or crop or shrink the images"});
-  }
   volume.cost.reserve(cells);
   volume.sum.reserve(cells);
 }

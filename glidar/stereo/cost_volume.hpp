@@ -27,6 +27,9 @@ struct CostVolume {
   [[nodiscard]] std::size_t offset(std::size_t y) const { return y * row_size(); }
 };
 
+/// Throws Error when a pair of images of this size has too many costs for the memory.
+void check_volume(std::uint32_t width, std::uint32_t height, std::uint32_t disparities);
+
 /// Gives a volume the size of a pair, in the memory that it has if that is large enough. Throws
 /// Error when the pair is too large.
 void resize_volume(const GreyImage& image, std::uint32_t disparities, CostVolume& volume);

@@ -12,7 +12,7 @@ namespace glidar::tof {
 struct Decoding {
   Unwrapping unwrapping;
   PhasorImage phasors;  ///< after the filter
-  DepthImage depths;
+  DecodedDepths depths;
   TofMeasurement measurement;
 };
 

@@ -16,11 +16,17 @@ double rounded(double value) {
   return std::floor(value + 0.5);
 }
 
-/// The distance of the phases from the line through 0 in the direction of the frequencies.
-double misfit_rad(const Unwrapping& u, const PerFrequency& turns) {
+/// The range whose phases are the nearest: that of minimum variance, because phases have equal
+/// errors, so that their weights are f^2.
+double nearest_range_m(const Unwrapping& u, const PerFrequency& turns) {
   double along = 0.0;
   for (std::size_t f = 0; f < u.frequencies; ++f) along += turns[f] * u.per_m[f];
-  const double range_m = along / u.per_m_squares;
+  return along / u.per_m_squares;
+}
+
+/// The distance of the phases from the line through 0 in the direction of the frequencies.
+double misfit_rad(const Unwrapping& u, const PerFrequency& turns) {
+  const double range_m = nearest_range_m(u, turns);
   double squares = 0.0;
   for (std::size_t f = 0; f < u.frequencies; ++f) {
     const double error = turns[f] - range_m * u.per_m[f];
@@ -29,11 +35,9 @@ double misfit_rad(const Unwrapping& u, const PerFrequency& turns) {
   return kTwoPi * std::sqrt(squares);
 }
 
-/// The range of minimum variance: phases have equal errors, so their weights are f^2.
+/// nearest_range_m() from 0 on.
 double weighted_range_m(const Unwrapping& u, const PerFrequency& turns) {
-  double along = 0.0;
-  for (std::size_t f = 0; f < u.frequencies; ++f) along += turns[f] * u.per_m[f];
-  const double range_m = along / u.per_m_squares;
+  const double range_m = nearest_range_m(u, turns);
   return range_m < 0.0 ? range_m + u.unambiguous_m : range_m;
 }
 

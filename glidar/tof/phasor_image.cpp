@@ -39,17 +39,27 @@ struct TapSum {
   bool is_saturated = false;
 };
 
-TapSum sum_taps(const TofImages& images, std::size_t frequency, std::size_t pixel,
+/// Sine and cosine of the phase of each step.
+using TapPhases = std::array<SineCosine, kMaxTofTaps>;
+
+TapPhases tap_phases(std::size_t taps) {
+  TapPhases phases = {};
+  const double per_tap = 1.0 / static_cast<double>(taps);
+  for (std::size_t k = 0; k < taps; ++k) {
+    phases[k] = sincos_turns(static_cast<double>(k) * per_tap);
+  }
+  return phases;
+}
+
+TapSum sum_taps(const TofImages& images, const TapPhases& phases, std::size_t first,
                 double saturation_level) {
   TapSum sum;
-  const double per_tap = 1.0 / images.taps;
   for (std::size_t k = 0; k < images.taps; ++k) {
-    const auto level = static_cast<double>(images.level[tap_offset(images, frequency, k) + pixel]);
+    const auto level = static_cast<double>(images.level[first + k * pixel_count(images)]);
     // also true for NaN and infinity
     if (!(std::abs(level) < saturation_level)) sum.is_saturated = true;
-    const SineCosine step = sincos_turns(static_cast<double>(k) * per_tap);
-    sum.value.re += level * step.cosine;
-    sum.value.im += level * step.sine;
+    sum.value.re += level * phases[k].cosine;
+    sum.value.im += level * phases[k].sine;
   }
   return sum;
 }
@@ -99,8 +109,10 @@ PhasorImage make_phasors(const TofImages& images, const TofOptions& options,
   const std::size_t pixels = result.pixels();
   result.value.resize(pixels * images.frequencies);
   result.is_saturated.resize(pixels);
+  const TapPhases phases = tap_phases(images.taps);
   const auto find_pixel = [&](std::size_t f, std::size_t i) {
-    const TapSum sum = sum_taps(images, f, i, options.saturation_level);
+    const TapSum sum =
+        sum_taps(images, phases, tap_offset(images, f, 0) + i, options.saturation_level);
     if (sum.is_saturated) {
       result.is_saturated[i] = 1;
       return;

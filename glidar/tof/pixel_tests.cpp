@@ -64,7 +64,7 @@ TofStatus find_status(const PixelEvidence& pixel, const TofOptions& options) {
   return pixel.depth_m > options.far_m ? TofStatus::too_far : TofStatus::valid;
 }
 
-EdgeEvidence gather_edge_evidence(const DepthImage& image, const PhasorImage& phasors,
+EdgeEvidence gather_edge_evidence(const DecodedDepths& image, const PhasorImage& phasors,
                                   const TofOptions& options, std::size_t pixel) {
   EdgeEvidence edge;
   const std::size_t row = pixel / image.width;

@@ -35,7 +35,7 @@ bool has_fit(const PixelEvidence& pixel);
 TofStatus find_status(const PixelEvidence& pixel, const TofOptions& options);
 
 /// Depths and amplitudes of all pixels, which the edge test compares.
-struct DepthImage {
+struct DecodedDepths {
   std::size_t width = 0;
   std::size_t height = 0;
   std::vector<double> depth_m;  ///< 0: no depth; those beyond the limits are depths
@@ -51,7 +51,7 @@ struct EdgeEvidence {
   double phase_change = 0.0;
 };
 
-EdgeEvidence gather_edge_evidence(const DepthImage& image, const PhasorImage& phasors,
+EdgeEvidence gather_edge_evidence(const DecodedDepths& image, const PhasorImage& phasors,
                                   const TofOptions& options, std::size_t pixel);
 
 bool is_depth_edge(const EdgeEvidence& edge, const TofOptions& options);

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/tof/number_checks.hpp>
 
 #include <array>
 #include <string>
@@ -20,24 +21,12 @@ constexpr WholeRule kFilterRule = {0, 8};
 constexpr std::array<Named<TofWaveform>, 2> kWaveformNames = {
     {{"sine", TofWaveform::sine}, {"triangle", TofWaveform::triangle}}};
 
-struct Checked {
-  const char* key;
-  const NumberRule& rule;
-  double value;
-};
-
-void require_values(std::initializer_list<Checked> numbers) {
-  for (const auto& [key, rule, value] : numbers) {
-    if (accepts(rule, value)) continue;
-    throw Error(
-        {"time_of_flight, " + std::string(key), "is " + number_text(value), rule.allowed, ""});
-  }
-}
+constexpr const char* kCameraPlace = "time_of_flight, ";
 
 void require_whole_value(const char* key, const WholeRule& rule, std::uint32_t value) {
   if (value >= rule.min && value <= rule.max) return;
   throw Error(
-      {"time_of_flight, " + std::string(key), "is " + std::to_string(value),
+      {kCameraPlace + std::string(key), "is " + std::to_string(value),
        "a whole number from " + std::to_string(rule.min) + " to " + std::to_string(rule.max), ""});
 }
 
@@ -47,7 +36,8 @@ void require_contrasts(const TofCamera& camera, const FieldVisitor* visitor) {
   const std::string found = "has " + std::to_string(camera.contrast.size()) + " numbers for " +
                             std::to_string(needed) + " frequencies";
   if (visitor != nullptr) visitor->reject("contrast", found, "one for each frequency, or none");
-  throw Error({"time_of_flight, contrast", found, "one for each frequency, or none", ""});
+  throw Error(
+      {kCameraPlace + std::string("contrast"), found, "one for each frequency, or none", ""});
 }
 
 }  // namespace
@@ -92,17 +82,19 @@ void describe(TofCamera& camera, FieldVisitor& visitor) {
 }
 
 void validate(const TofCamera& camera) {
-  require_values({{"signal_electrons", kAboveZero, camera.signal_electrons},
-                  {"ambient_electrons", kFromZero, camera.ambient_electrons},
-                  {"dark_electrons", kFromZero, camera.dark_electrons},
-                  {"read_noise_electrons", kFromZero, camera.read_noise_electrons},
-                  {"electrons_per_level", kAboveZero, camera.electrons_per_level},
-                  {"step_interval_s", kFromZero, camera.step_interval_s}});
+  tof::require_numbers(kCameraPlace,
+                       {{"signal_electrons", kAboveZero, camera.signal_electrons},
+                        {"ambient_electrons", kFromZero, camera.ambient_electrons},
+                        {"dark_electrons", kFromZero, camera.dark_electrons},
+                        {"read_noise_electrons", kFromZero, camera.read_noise_electrons},
+                        {"electrons_per_level", kAboveZero, camera.electrons_per_level},
+                        {"step_interval_s", kFromZero, camera.step_interval_s}});
   if (camera.full_well_electrons != kInfinity) {
-    require_values({{"full_well_electrons", kAboveZero, camera.full_well_electrons}});
+    tof::require_numbers(kCameraPlace,
+                         {{"full_well_electrons", kAboveZero, camera.full_well_electrons}});
   }
   for (const double contrast : camera.contrast) {
-    require_values({{"contrast", kContrastRule, contrast}});
+    tof::require_numbers(kCameraPlace, {{"contrast", kContrastRule, contrast}});
   }
   require_whole_value("sub_rays", kSubRayRule, camera.sub_rays);
   require_whole_value("bounces", kBounceRule, camera.bounces);

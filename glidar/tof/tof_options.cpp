@@ -6,6 +6,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/light_speed.hpp>
 #include <glidar/math/unambiguous_range.hpp>
+#include <glidar/tof/number_checks.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,19 +28,6 @@ constexpr double kMaxPeriods = 1000.0;
 
 constexpr const char* kPlace = "time-of-flight option ";
 
-struct CheckedNumber {
-  const char* key;
-  const NumberRule& rule;
-  double value;
-};
-
-void require_numbers(std::initializer_list<CheckedNumber> numbers) {
-  for (const auto& [key, rule, value] : numbers) {
-    if (accepts(rule, value)) continue;
-    throw Error({kPlace + std::string(key), "is " + number_text(value), rule.allowed, ""});
-  }
-}
-
 std::string list_text(const std::vector<double>& values) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : ", ") + number_text(value);
@@ -53,7 +41,8 @@ void validate_frequencies(const TofOptions& options) {
                  "has " + std::to_string(f.size()) + " frequencies",
                  "1 to " + std::to_string(kMaxTofFrequencies), ""});
   }
-  for (const double f_hz : f) require_numbers({{"frequencies_hz", kFrequencyRule, f_hz}});
+  for (const double f_hz : f)
+    tof::require_numbers(kPlace, {{"frequencies_hz", kFrequencyRule, f_hz}});
   const double periods =
       unambiguous_range_m(f) * *std::max_element(f.begin(), f.end()) / kHalfLight_m_per_s;
   if (periods > kMaxPeriods + 0.5) {
@@ -142,29 +131,30 @@ void validate(const TofOptions& options) {
   validate_frequencies(options);
   validate_unwrapping(options);
   for (const double gain : options.amplitude_gain) {
-    require_numbers({{"amplitude_gain", kAboveZero, gain}});
+    tof::require_numbers(kPlace, {{"amplitude_gain", kAboveZero, gain}});
   }
   const TofMisfitTest& misfit = options.misfit_test;
   const TofFilter filter = options.filter.value_or(TofFilter{});
   const TofEdgeTest edge = options.edge_test.value_or(TofEdgeTest{});
-  require_numbers({{"saturation_level", kUpToInfinity, options.saturation_level},
-                   {"min_amplitude", kFromZero, options.min_amplitude},
-                   {"min_amplitude_sum", kFromZero, options.min_amplitude_sum},
-                   {"misfit_test.min_rad", kFromZero, misfit.min_rad},
-                   {"misfit_test.max_rad", kFromZero, misfit.max_rad},
-                   {"misfit_test.scale", kFromZero, misfit.scale},
-                   {"misfit_test.exponent", kExponentRule, misfit.exponent},
-                   {"filter.min_amplitude", kFromZero, filter.min_amplitude},
-                   {"filter.phase_weight", kFromZero, filter.phase_weight},
-                   {"filter.max_phase_change", kFromZero, filter.max_phase_change},
-                   {"edge_test.amplitude_deviation", kFromZero, edge.amplitude_deviation},
-                   {"edge_test.min_mean_amplitude", kFromZero, edge.min_mean_amplitude},
-                   {"edge_test.near_step_m", kFromZero, edge.near_step_m},
-                   {"edge_test.far_step_m", kFromZero, edge.far_step_m},
-                   {"edge_test.max_step_m", kFromZero, edge.max_step_m},
-                   {"edge_test.mean_step_m", kFromZero, edge.mean_step_m},
-                   {"near_m", kFromZero, options.near_m},
-                   {"far_m", kUpToInfinity, options.far_m}});
+  tof::require_numbers(kPlace,
+                       {{"saturation_level", kUpToInfinity, options.saturation_level},
+                        {"min_amplitude", kFromZero, options.min_amplitude},
+                        {"min_amplitude_sum", kFromZero, options.min_amplitude_sum},
+                        {"misfit_test.min_rad", kFromZero, misfit.min_rad},
+                        {"misfit_test.max_rad", kFromZero, misfit.max_rad},
+                        {"misfit_test.scale", kFromZero, misfit.scale},
+                        {"misfit_test.exponent", kExponentRule, misfit.exponent},
+                        {"filter.min_amplitude", kFromZero, filter.min_amplitude},
+                        {"filter.phase_weight", kFromZero, filter.phase_weight},
+                        {"filter.max_phase_change", kFromZero, filter.max_phase_change},
+                        {"edge_test.amplitude_deviation", kFromZero, edge.amplitude_deviation},
+                        {"edge_test.min_mean_amplitude", kFromZero, edge.min_mean_amplitude},
+                        {"edge_test.near_step_m", kFromZero, edge.near_step_m},
+                        {"edge_test.far_step_m", kFromZero, edge.far_step_m},
+                        {"edge_test.max_step_m", kFromZero, edge.max_step_m},
+                        {"edge_test.mean_step_m", kFromZero, edge.mean_step_m},
+                        {"near_m", kFromZero, options.near_m},
+                        {"far_m", kUpToInfinity, options.far_m}});
 }
 
 TofOptions kinect_v2_options() {

@@ -26,7 +26,7 @@ class Help(CliTest):
     def test_examples_of_every_help_run(self):
         lines = []
         for level in ([], ["render"], ["explain"], ["view"], ["stream"], ["info"], ["sensors"],
-                      ["stereo"], ["verify"]):
+                      ["stereo"], ["tof"], ["verify"]):
             text = self.succeed(*level, "--help").stdout
             own = text[text.index("Examples:"):].split("With your own files:")[0]
             lines += re.findall(r"(?m)^  (glidar .*)$", own)
@@ -57,7 +57,7 @@ class Help(CliTest):
         self.succeed(*arguments, "--frames", "1")
 
     def test_help_has_one_line_of_at_most_100_characters_per_option(self):
-        for level in ("render", "view", "stream", "replay", "decode", "info", "filter", "stereo", "verify"):
+        for level in ("render", "view", "stream", "replay", "decode", "info", "filter", "stereo", "tof", "verify"):
             text = self.succeed(level, "--help").stdout
             self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
             self.assertLessEqual(max(len(line) for line in text.split("\n")), 100)

@@ -59,6 +59,9 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
         "vlp32c", "vlp32c_dual", "hdl64", "vls128", "vls128_dual", "ouster_legacy", "ouster_rng15",
         "livox"}},
       {"pcap", {"two", "big_endian", "pcapng", "fragments", "cut"}},
+      {"tof", {"two_frequencies", "eight_frequencies", "kinect", "infinite", "one_pixel"}},
+      {"stereo", {"shifted", "paths_4", "flat", "narrow"}},
+      {"tof_npy", {"floats", "doubles", "version_2"}},
   };
   for (const testing::FileDecoder& decoder : testing::file_decoders()) {
     std::size_t files = 0;

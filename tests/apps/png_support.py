@@ -23,22 +23,24 @@ class PngTest(CliTest):
         Path(self.folder, name).write_bytes(grey_png(rows, bits))
 
     def grey_rows(self, name):
-        """The numbers of a 16-bit grey PNG, row by row, by undoing its filters."""
+        """The numbers of a grey PNG of 8 or 16 bits, row by row, by undoing its filters."""
         data, place, idat = self.bytes_of(name), 8, b""
         while place < len(data):
             size, kind = struct.unpack_from(">I4s", data, place)
             if kind == b"IHDR":
-                width, height = struct.unpack_from(">II", data, place + 8)
+                width, height, bits = struct.unpack_from(">IIB", data, place + 8)
             if kind == b"IDAT":
                 idat += data[place + 8:place + 8 + size]
             place += size + 12
-        raw, before, rows = zlib.decompress(idat), bytes(2 * width), []
+        step = bits // 8
+        size = step * width
+        raw, before, rows = zlib.decompress(idat), bytes(size), []
         for y in range(height):
-            kind, line = raw[y * (2 * width + 1)], bytearray(raw[y * (2 * width + 1) + 1:(y + 1) * (2 * width + 1)])
-            for i in range(2 * width):
-                left, up, corner = (line[i - 2] if i > 1 else 0), before[i], (before[i - 2] if i > 1 else 0)
+            kind, line = raw[y * (size + 1)], bytearray(raw[y * (size + 1) + 1:(y + 1) * (size + 1)])
+            for i in range(size):
+                left, up, corner = (line[i - step] if i >= step else 0), before[i], (before[i - step] if i >= step else 0)
                 nearest = min((abs(up - corner), 0, left), (abs(left - corner), 1, up), (abs(left + up - 2 * corner), 2, corner))
                 line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest[2])[kind]) & 255
-            rows.append(list(struct.unpack(f">{width}H", line)))
+            rows.append(list(struct.unpack(f">{width}{'H' if bits == 16 else 'B'}", line)))
             before = line
         return rows

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_decoders.hpp"
 
+#include "depth_decoders.hpp"
 #include "packet_decoders.hpp"
 
 #include <apps/glidar/options/option_values.hpp>
@@ -16,6 +17,7 @@
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/formats/sidecar.hpp>
+#include <glidar/io/formats/tof_image_file.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/png_texture.hpp>
@@ -173,7 +175,7 @@ void read_rosbag2(const fs::path& file) {
   read_bag(file.parent_path());
 }
 
-constexpr std::array<FileDecoder, 21> kDecoders = {{
+constexpr std::array<FileDecoder, 24> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
@@ -195,6 +197,9 @@ constexpr std::array<FileDecoder, 21> kDecoders = {{
     {"ouster_source", "metadata.json", [](const fs::path& file) { load_ouster_source(file); }},
     {"packets", "packets.bin", read_packets},
     {"pcap", "scan.pcap", read_capture},
+    {"tof", "raw.bin", read_raw_tof_images},
+    {"stereo", "pair.bin", read_raw_stereo_pair},
+    {"tof_npy", "raw.tof.npy", [](const fs::path& file) { load_tof_images(file); }},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.

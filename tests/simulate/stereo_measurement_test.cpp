@@ -263,9 +263,11 @@ TEST(StereoMeasurement, RefusesSensorsThatItDoesNotFit) {
   EXPECT_THAT(error_text([&] { shoot(panels.scene, distorted); }), HasSubstr("without distortion"));
   Sensor narrow = stereo_sensor(64, 40);
   EXPECT_THAT(error_text([&] { shoot(panels.scene, narrow); }), HasSubstr("wider than the image"));
-  Sensor fine = stereo_sensor(20000, 4);
+  Sensor fine = stereo_sensor(20000, 40);
   stereo_camera(fine).sub_rays = 16;
-  EXPECT_THAT(error_text([&] { shoot(panels.scene, fine); }), HasSubstr("use fewer sub-rays"));
+  EXPECT_THAT(error_text([&] { shoot(panels.scene, fine); }), HasSubstr("use fewer sub_rays"));
+  EXPECT_THAT(error_text([&] { shoot(panels.scene, stereo_sensor(16384, 2048)); }),
+              HasSubstr("have too many costs"));
 }
 
 }  // namespace

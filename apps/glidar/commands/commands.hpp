@@ -28,6 +28,7 @@ Command add_align(CLI::App& program);
 Command add_filter(CLI::App& program);
 Command add_stereo(CLI::App& program);
 Command add_structured_light(CLI::App& program);
+Command add_tof(CLI::App& program);
 Command add_verify(CLI::App& program);
 
 }  // namespace glidar::app

@@ -4,6 +4,7 @@
 #include <apps/glidar/options/stereo_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/status_shares.hpp>
 #include <apps/glidar/run/stereo_files.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
@@ -15,7 +16,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,21 +72,6 @@ StereoGeometry geometry_of(const StereoFlags& flags) {
           .depth_unit_m = flags.depth_unit_mm * 1e-3};
 }
 
-/// "76.2 % valid, 11.3 % border ...": every status that occurs.
-std::string share_text(const StereoMatch& match) {
-  std::array<std::size_t, kStereoStatusCount> counts{};
-  for (const StereoStatus status : match.status) ++counts[static_cast<std::size_t>(status)];
-  std::string text;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0) continue;
-    text += fmt::format(
-        "{}{:.1f} % {}", text.empty() ? "" : ", ",
-        100.0 * static_cast<double>(counts[i]) / static_cast<double>(match.status.size()),
-        to_string(static_cast<StereoStatus>(i)));
-  }
-  return text;
-}
-
 void match_and_write(const StereoFlags& flags, const StereoPair& pair, Console& console,
                      ThreadPool& pool) {
   StereoMatch match;
@@ -100,8 +85,8 @@ void match_and_write(const StereoFlags& flags, const StereoPair& pair, Console& 
   if (!flags.right.empty()) read = {flags.left, flags.right};
   write_stereo_files(flags.outputs, read, match, geometry_of(flags));
   if (flags.quiet) return;
-  fmt::print("{}x{} pixels: {}\nwrote {}\n", match.width, match.height, share_text(match),
-             fmt::join(flags.outputs, " "));
+  fmt::print("{}x{} pixels: {}\nwrote {}\n", match.width, match.height,
+             status_shares(match.status, kStereoStatusCount), fmt::join(flags.outputs, " "));
 }
 
 int run_stereo(const StereoFlags& flags) {

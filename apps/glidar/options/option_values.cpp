@@ -118,6 +118,13 @@ Pose parse_pose(const std::string& text) {
   return make_pose(position(n), unit_quaternion(n, 3));
 }
 
+std::array<std::uint32_t, 2> parse_pixel(const std::string& text) {
+  const std::vector<std::string> parts = parse_list(text);
+  if (parts.size() != 2) refuse_value(text, "COLUMN,ROW, for example 320,240");
+  const auto parse = whole<std::uint32_t>(0, 0xFFFFFFFF);
+  return {parse(parts[0]), parse(parts[1])};
+}
+
 std::function<std::array<std::uint32_t, 2>(const std::string&)> image_size(std::uint32_t min,
                                                                            std::uint32_t max) {
   return [min, max](const std::string& text) {

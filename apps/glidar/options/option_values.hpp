@@ -106,6 +106,9 @@ Eigen::Quaterniond parse_angle_axis(const std::string& text);
 /// "x,y,z,qw,qx,qy,qz".
 Pose parse_pose(const std::string& text);
 
+/// "COLUMN,ROW" of a pixel.
+std::array<std::uint32_t, 2> parse_pixel(const std::string& text);
+
 /// A parser of "WIDTHxHEIGHT" in pixels, each from `min` to `max`.
 std::function<std::array<std::uint32_t, 2>(const std::string&)> image_size(std::uint32_t min,
                                                                            std::uint32_t max);

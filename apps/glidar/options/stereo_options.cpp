@@ -53,13 +53,6 @@ void add_test_options(CLI::App& command, StereoOptions& options) {
             options.saturation_level, whole<std::uint32_t>(0, 65535));
 }
 
-std::array<std::uint32_t, 2> parse_pixel(const std::string& text) {
-  const std::vector<std::string> parts = parse_list(text);
-  if (parts.size() != 2) refuse_value(text, "COLUMN,ROW, for example 320,240");
-  const auto parse = whole<std::uint32_t>(0, 0xFFFFFFFF);
-  return {parse(parts[0]), parse(parts[1])};
-}
-
 }  // namespace
 
 void add_stereo_options(CLI::App& command, StereoFlags& flags) {

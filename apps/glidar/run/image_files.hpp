@@ -20,6 +20,11 @@ struct ImageSize {
   std::uint32_t height = 0;
 };
 
+/// Whether the name of a file is that of a NumPy array.
+inline bool is_npy(const std::string& path) {
+  return path.ends_with(".npy");
+}
+
 /// Writes a NumPy array rows x columns; `type` is NumPy's, such as "<f4".
 template <class T>
 void write_image_npy(std::span<const T> values, const char* type, ImageSize size,

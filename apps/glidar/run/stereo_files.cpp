@@ -22,10 +22,6 @@ constexpr std::array<Colour, kStereoStatusCount> kStereoColours = {{{235, 235, 2
                                                                     {225, 110, 40},
                                                                     {50, 110, 200}}};
 
-bool is_npy(const std::string& path) {
-  return path.ends_with(".npy");
-}
-
 ImageSize size_of(const StereoMatch& match) {
   return {match.width, match.height};
 }

@@ -3,12 +3,12 @@
 #include <glidar/io/config/ray_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/npy_head.hpp>
 #include <glidar/io/files/text_file.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <span>
 
@@ -53,75 +53,8 @@ void each_line(std::string_view text, const Visit& visit) {
   }
 }
 
-/// The header of an .npy file (NumPy's format 1.0 and 2.0).
-struct NpyHead {
-  std::size_t data_at = 0;
-  std::size_t number_bytes = 0;  // 4 or 8
-  std::vector<std::size_t> shape;
-};
-
-/// The text after 'key': in the head's dictionary; empty when it is not there.
-std::string_view value_of(std::string_view head, std::string_view key) {
-  const std::size_t at = head.find(key);
-  if (at == std::string_view::npos) return {};
-  const std::size_t colon = head.find(':', at);
-  if (colon == std::string_view::npos) return {};
-  std::string_view value = head.substr(colon + 1);
-  while (value.starts_with(' ')) value.remove_prefix(1);
-  return value;
-}
-
-std::vector<std::size_t> shape_of(std::string_view head) {
-  std::vector<std::size_t> shape;
-  std::string_view value = value_of(head, "'shape'");
-  value = value.substr(0, value.find(')'));
-  while (!value.empty() && shape.size() <= 3) {
-    const char c = value.front();
-    std::size_t number = 0;
-    const auto [stop, problem] = std::from_chars(value.data(), value.data() + value.size(), number);
-    if (problem != std::errc{}) {
-      if (c != '(' && c != ',' && c != ' ') return {};
-      value.remove_prefix(1);
-      continue;
-    }
-    shape.push_back(number);
-    value.remove_prefix(static_cast<std::size_t>(stop - value.data()));
-  }
-  return shape;
-}
-
-NpyHead read_npy_head(const std::string& where, const std::string& bytes) {
-  constexpr std::string_view kMagic = "\x93NUMPY";
-  constexpr std::size_t kShortHead = 10;
-  constexpr std::size_t kLongHead = 12;
-  const auto byte = [&](std::size_t i) {
-    return std::size_t{static_cast<unsigned char>(bytes[i])};
-  };
-  if (!bytes.starts_with(kMagic) || bytes.size() < kLongHead || byte(6) < 1 || byte(6) > 2) {
-    fail(where, "no NumPy array", "an .npy file of format 1 or 2");
-  }
-  const bool is_long = byte(6) == 2;
-  std::size_t length = byte(8) + (byte(9) << 8U);
-  if (is_long) length += (byte(10) << 16U) + (byte(11) << 24U);
-  NpyHead head;
-  head.data_at = (is_long ? kLongHead : kShortHead) + length;
-  if (head.data_at > bytes.size()) fail(where, "the file ends in its head", "a whole .npy file");
-  const std::string_view text = std::string_view(bytes).substr(0, head.data_at);
-  const std::string_view type = value_of(text, "'descr'");
-  if (type.starts_with("'<f8'")) head.number_bytes = sizeof(double);
-  if (type.starts_with("'<f4'")) head.number_bytes = sizeof(float);
-  const bool by_rows = value_of(text, "'fortran_order'").starts_with("False");
-  if (head.number_bytes == 0 || !by_rows) {
-    fail(where, "numbers of another type or order", "float32 or float64, row by row",
-         "numpy.save(file, numpy.ascontiguousarray(rays, dtype='<f8'))");
-  }
-  head.shape = shape_of(text);
-  return head;
-}
-
-/// rows, cols and numbers per ray from a shape; checked against the bytes that are there.
-std::array<std::size_t, 3> ray_shape(const std::string& where, const NpyHead& head,
-                                     std::size_t bytes) {
+/// rows, cols and numbers per ray from a shape.
+std::array<std::size_t, 3> ray_shape(const std::string& where, const NpyHead& head) {
   const std::vector<std::size_t>& s = head.shape;
   const bool flat = s.size() == 2;
   const std::array<std::size_t, 3> shape =
@@ -132,24 +65,12 @@ std::array<std::size_t, 3> ray_shape(const std::string& where, const NpyHead& he
     fail(where, "an array of another shape",
          "N x 3 (directions), N x 6 (origins, directions), or rows x cols x 3 or 6");
   }
-  const std::size_t there = (bytes - head.data_at) / (head.number_bytes * shape[2]);
-  if (shape[0] > there || shape[1] > there / shape[0]) {
-    fail(where, "fewer numbers than its shape requires", "a whole .npy file");
-  }
   return shape;
 }
 
-double number_at(const char* data, std::size_t bytes) {
-  double value = 0.0;
-  float small = 0.0F;
-  if (bytes == sizeof(double)) std::memcpy(&value, data, bytes);
-  if (bytes == sizeof(float)) std::memcpy(&small, data, bytes);
-  return bytes == sizeof(float) ? double{small} : value;
-}
-
 Eigen::Vector3d vector_at(const char* data, std::size_t bytes) {
-  return {number_at(data, bytes), number_at(data + bytes, bytes),
-          number_at(data + 2 * bytes, bytes)};
+  return {npy_number(data, bytes), npy_number(data + bytes, bytes),
+          npy_number(data + 2 * bytes, bytes)};
 }
 
 }  // namespace
@@ -193,7 +114,8 @@ RayTable load_scan_csv(const fs::path& path) {
 RayTable load_ray_npy(const fs::path& path) {
   const std::string bytes = read_input_file(path, kRays);
   const NpyHead head = read_npy_head(path.string(), bytes);
-  const auto [rows, cols, width] = ray_shape(path.string(), head, bytes.size());
+  const auto [rows, cols, width] = ray_shape(path.string(), head);
+  require_npy_numbers(path.string(), head, bytes);
   RayTable table;
   table.rows = static_cast<std::uint32_t>(rows);
   table.cols = static_cast<std::uint32_t>(cols);

@@ -51,8 +51,8 @@ PreviewLayout make_layout(const BeamPicture& beams) {
   PreviewLayout layout{};
   layout.zoom = std::max<std::size_t>(1, kDefault / std::max(cols, rows));
   const std::size_t width = cols * layout.zoom;
-  constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;  // maximum after stretching rows
-  const std::size_t tallest = std::min(kTallest, kMaxPixels / (width * rows));
+  constexpr std::size_t kMaxPreviewPixels = std::size_t{1} << 26U;  // maximum after stretching rows
+  const std::size_t tallest = std::min(kTallest, kMaxPreviewPixels / (width * rows));
   layout.tall = std::clamp<std::size_t>(width / (kMinShape * rows), layout.zoom,
                                         std::max(layout.zoom, tallest));
   const std::size_t height = rows * layout.tall;

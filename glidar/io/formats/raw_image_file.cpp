@@ -19,15 +19,20 @@ constexpr std::uint32_t kMaxByte = 255;
 constexpr const char* kPatternRemedy =
     "use a sensor file with a depth_camera of type structured_light and --depth-model physical";
 constexpr const char* kRemedy =
-    "use a sensor with a depth_camera and --depth-model physical, such as D435";
+    "use a sensor with a depth_camera of type active_stereo and --depth-model physical, such as "
+    "D435";
 
 /// The image of this name. Throws Error when the frame does not have it.
 const GreyImage& find_image(const Frame& frame, const std::string& name, const AtomicFile& file) {
+  std::string names;
   for (const RawImage& image : frame.raw_images) {
     if (image.name == name) return image.grey;
+    names += (names.empty() ? "." : ", .") + image.name + ".png";
   }
-  throw Error({file.path().string(), "a frame without the raw image '" + name + "'",
-               "a frame of a depth camera that is simulated from raw images", kRemedy});
+  const std::string found = "a frame without the raw image '" + name + "'";
+  if (!names.empty()) throw Error({file.path().string(), found, names, "write one of these"});
+  throw Error({file.path().string(), found,
+               "a frame of a depth camera that is simulated from infrared images", kRemedy});
 }
 
 std::vector<std::uint8_t> bytes_of(const GreyImage& image) {
@@ -76,7 +81,8 @@ void write_patterns(const CloudFile& job, AtomicFile& file) {
   }
 }
 
-/// What a sensor without such images lacks; `is_right`: an image of the right imager.
+/// What a sensor without such images lacks; `is_second`: an image that the left one is matched
+/// with.
 Misfit find_misfit_of(const Sensor& sensor, bool is_second, Reference reference) {
   const DepthCamera* camera = physical_camera(sensor);
   const auto* stereo = camera != nullptr ? std::get_if<ActiveStereo>(camera) : nullptr;

@@ -3,9 +3,12 @@
 #include <glidar/io/formats/tof_image_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/input_file.hpp>
+#include <glidar/io/files/npy_head.hpp>
 #include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -75,6 +78,29 @@ Format tof_npy_format() {
           .write = write_tof_npy,
           .pixels = "raw values, frequencies x phase steps x rows x columns",
           .misfit = find_tof_misfit};
+}
+
+TofImages load_tof_images(const std::filesystem::path& path) {
+  static const InputFileKind kKind = {"an NPY array of raw images", 1024, ""};
+  const std::string bytes = read_input_file(path, kKind);
+  const NpyHead head = read_npy_head(path.string(), bytes);
+  const std::vector<std::size_t>& shape = head.shape;
+  if (shape.size() != 4 || std::find(shape.begin(), shape.end(), 0U) != shape.end()) {
+    throw Error({path.string(), "an array of another shape",
+                 "frequencies x phase steps x rows x columns", "numpy.reshape the array"});
+  }
+  require_npy_numbers(path.string(), head, bytes);
+  TofImages images{.width = static_cast<std::uint32_t>(shape[3]),
+                   .height = static_cast<std::uint32_t>(shape[2]),
+                   .frequencies = static_cast<std::uint32_t>(shape[0]),
+                   .taps = static_cast<std::uint32_t>(shape[1])};
+  images.level.resize(shape[0] * shape[1] * shape[2] * shape[3]);
+  const char* at = bytes.data() + head.data_at;
+  for (float& level : images.level) {
+    level = static_cast<float>(npy_number(at, head.number_bytes));
+    at += head.number_bytes;
+  }
+  return images;
 }
 
 }  // namespace glidar

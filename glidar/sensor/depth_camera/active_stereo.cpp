@@ -4,17 +4,13 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/sensor/optics/sub_pixels.hpp>
+#include <glidar/stereo/cost_volume.hpp>
 
-#include <algorithm>
 #include <array>
 #include <string>
 
 namespace glidar {
-namespace {
-
-constexpr std::uint64_t kMaxSubRayColumns = 65536;  // of an image of rays
-
-}  // namespace
 
 void describe(ActiveStereo& camera, FieldVisitor& visitor) {
   using Reference = ActiveStereo::Reference;
@@ -70,13 +66,8 @@ void check_image(const ActiveStereo& camera, const PinholeIntrinsics& image) {
                  .allowed = "at most its " + std::to_string(image.width) + " columns",
                  .remedy = "search fewer disparities"});
   }
-  const std::uint64_t side = std::uint64_t{std::max(image.width, image.height)} * camera.sub_rays;
-  if (side > kMaxSubRayColumns) {
-    throw Error({.where = "depth_camera, sub_rays",
-                 .found = std::to_string(side) + " rays along a side of the image",
-                 .allowed = "at most " + std::to_string(kMaxSubRayColumns),
-                 .remedy = "use fewer sub-rays, or a smaller image"});
-  }
+  stereo::check_volume(image.width, image.height, camera.matcher.disparities);
+  check_sub_rays(image, camera.sub_rays);
 }
 
 }  // namespace glidar

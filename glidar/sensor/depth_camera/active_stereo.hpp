@@ -50,8 +50,8 @@ Eigen::Vector3d second_origin_m(const ActiveStereo& camera);
 /// Throws Error naming the first value that does not fit the others or the matcher.
 void validate(const ActiveStereo& camera);
 
-/// Throws Error when the image is too narrow for the matcher's search, or the cost or sub-rays of
-/// all its pixels too many.
+/// Throws Error when the image is narrower than the matcher's search, or too large for it or for
+/// the sub-rays.
 void check_image(const ActiveStereo& camera, const PinholeIntrinsics& image);
 
 }  // namespace glidar

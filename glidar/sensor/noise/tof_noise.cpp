@@ -5,6 +5,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
+#include <glidar/math/unambiguous_range.hpp>
 #include <glidar/sensor/noise/multipath.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <numeric>
 
 namespace glidar {
 namespace {
@@ -45,7 +45,7 @@ Waves waves_of(const std::vector<double>& frequencies_hz) {
     waves.weight[k] = f[k] * f[k] / squares;
   }
   waves.finest_m = kHalfLight_m_per_s / f[0];
-  waves.limit_m = unambiguous_m(frequencies_hz);
+  waves.limit_m = unambiguous_range_m(frequencies_hz);
   constexpr double kPhaseRounding = 1e-12;
   waves.number = std::ceil(waves.limit_m / waves.finest_m * (1.0 - kPhaseRounding));
   waves.sigma_m_per_turn = kHalfLight_m_per_s / std::sqrt(squares);
@@ -211,21 +211,13 @@ void check_frequencies(const ContinuousWave& step, FieldVisitor& visitor) {
   const std::vector<double>& all = step.frequencies_hz;
   const double finest = *std::max_element(all.begin(), all.end());
   constexpr double kMaxWaves = 1000.0;
-  if (finest * unambiguous_m(all) <= kMaxWaves * kHalfLight_m_per_s) return;
+  if (finest * unambiguous_range_m(all) <= kMaxWaves * kHalfLight_m_per_s) return;
   visitor.reject("frequencies_hz",
                  "their greatest common divisor is below a thousandth of the greatest",
                  "frequencies in simple ratios", "round them to whole MHz");
 }
 
 }  // namespace
-
-double unambiguous_m(const std::vector<double>& frequencies_hz) {
-  std::uint64_t common = 0;
-  for (const double f : frequencies_hz) {
-    common = std::gcd(common, static_cast<std::uint64_t>(std::llround(f)));
-  }
-  return kHalfLight_m_per_s / static_cast<double>(std::max<std::uint64_t>(common, 1));
-}
 
 void prepare(const ContinuousWave& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {

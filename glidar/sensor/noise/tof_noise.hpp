@@ -41,9 +41,6 @@ struct ContinuousWave {
   double max_phase_residual = 0.1;
 };
 
-/// The unambiguous range: c / (2 gcd), with the frequencies rounded to whole hertz.
-double unambiguous_m(const std::vector<double>& frequencies_hz);
-
 /// True if pixels mix their light with that of their neighbours.
 inline bool has_multipath(const ContinuousWave& step) {
   return step.multipath_fraction > 0.0;

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/optics/sub_pixels.hpp>
 
+#include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
+
+#include <string>
+
 namespace glidar {
 
 Pinhole divide_pixels(const Pinhole& camera, std::uint32_t sub_rays) {
@@ -15,6 +20,18 @@ Pinhole divide_pixels(const Pinhole& camera, std::uint32_t sub_rays) {
            .cy = (pixel.cy - pixel.pixel_centre + 0.5) * n,
            .pixel_centre = 0.5},
           camera.distortion};
+}
+
+void check_sub_rays(const PinholeIntrinsics& image, std::uint32_t sub_rays) {
+  constexpr double kMaxRays = 0x1p25;  // a few GiB with what they hit
+  const double rays = static_cast<double>(image.width) * image.height * sub_rays * sub_rays;
+  if (rays <= kMaxRays) return;
+  throw Error({.where = "depth_camera, sub_rays",
+               .found = "is " + std::to_string(sub_rays) + ", so that " +
+                        std::to_string(image.width) + "x" + std::to_string(image.height) +
+                        " pixels have too many rays",
+               .allowed = "at most " + number_text(kMaxRays) + " rays",
+               .remedy = "use fewer sub_rays or pixels"});
 }
 
 }  // namespace glidar

@@ -13,6 +13,9 @@ namespace glidar {
 /// centre of a pixel. The distortion is the same.
 Pinhole divide_pixels(const Pinhole& camera, std::uint32_t sub_rays);
 
+/// Throws Error when an image has too many rays for the memory.
+void check_sub_rays(const PinholeIntrinsics& image, std::uint32_t sub_rays);
+
 /// The index of ray i of sub_rays^2 of a pixel, of a camera with this number of columns.
 inline std::size_t ray_of_pixel(std::size_t columns, std::size_t sub_rays, std::size_t pixel,
                                 std::size_t i) {

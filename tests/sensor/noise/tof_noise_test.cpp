@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/unambiguous_range.hpp>
+
 #include "sensor/noise_stage.hpp"
 
 #include <complex>
@@ -25,10 +27,10 @@ ContinuousWave kinect_v2() {
 }
 
 TEST(ContinuousWave, UnambiguousRangesAreThoseOfTheFrequencies) {
-  EXPECT_NEAR(unambiguous_m({80e6}), 1.874, 5e-4);
-  EXPECT_NEAR(unambiguous_m({16e6}), 9.369, 5e-4);
-  EXPECT_NEAR(unambiguous_m({120e6}), 1.249, 5e-4);
-  EXPECT_NEAR(unambiguous_m({80e6, 16e6, 120e6}), 18.74, 5e-3);
+  EXPECT_NEAR(unambiguous_range_m(std::vector{80e6}), 1.874, 5e-4);
+  EXPECT_NEAR(unambiguous_range_m(std::vector{16e6}), 9.369, 5e-4);
+  EXPECT_NEAR(unambiguous_range_m(std::vector{120e6}), 1.249, 5e-4);
+  EXPECT_NEAR(unambiguous_range_m(std::vector{80e6, 16e6, 120e6}), 18.74, 5e-3);
 }
 
 TEST(ContinuousWave, HasTheSpreadOfLangeAndSeitz) {
@@ -66,7 +68,7 @@ TEST(ContinuousWave, AnyNumberOfFrequenciesFindsTheRangeThatFitsThemAll) {
       {10e6, 20e6, 30e6, 40e6, 50e6, 60e6, 70e6, 80e6}};
   for (const auto& frequencies_hz : choices) {
     law.frequencies_hz = frequencies_hz;
-    const double limit_m = unambiguous_m(frequencies_hz);
+    const double limit_m = unambiguous_range_m(frequencies_hz);
     NoiseStage stage(1, 600, 1.0);
     std::vector<double> true_m;
     for (std::size_t i = 0; i < 600; ++i) {

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: arrays of NumPy.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// The header of an .npy file of floats or doubles in C order. Source: numpy.lib.format ("Format
+/// Version 1.0" and "2.0").
+struct NpyHead {
+  std::size_t data_at = 0;         ///< offset of the first number
+  std::size_t number_bytes = 0;    ///< 4 or 8
+  std::vector<std::size_t> shape;  ///< at most five sizes
+};
+
+/// Throws Error, with `where` as its place, for other contents.
+NpyHead read_npy_head(const std::string& where, const std::string& bytes);
+
+/// Throws Error when the file has fewer numbers than the shape requires.
+void require_npy_numbers(const std::string& where, const NpyHead& head, const std::string& bytes);
+
+/// The number at `data`, of 4 or 8 bytes.
+double npy_number(const char* data, std::size_t bytes);
+
+}  // namespace glidar
