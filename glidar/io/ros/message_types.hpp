@@ -71,6 +71,8 @@ template <>
 const MessageType& message_type<PacketMsg>();
 template <>
 const MessageType& message_type<String>();
+template <>
+const MessageType& message_type<MarkerArray>();
 
 /// The type of this name in ROS 1 or ROS 2; nullptr if there is none. Accepts the CustomMsg of
 /// livox_ros_driver too, which has the same definition.
