@@ -107,6 +107,12 @@ class Keys(CliTest):
         self.assertIn("did you mean 'disparities'?", self.error_of(STEREO.replace("disparities", "disparites")))
         self.assertIn("did you mean 'frequencies_hz'?", self.error_of(TOF.replace("[15e6]", "[15e6], frequency_hz: [15e6]")))
 
+    def test_exposures_take_at_most_four_seconds_together(self):
+        for interval_s, seconds in ((1.25, "5"), (1e300, "4e+300")):
+            error = self.error_of(TOF.replace("{type: ", f"{{step_interval_s: {interval_s:g}, type: "))
+            self.assertRegex(error, r"s\.yaml:5:\d+: ")
+            self.assertIn(f"so that 4 phase steps take {seconds} s; allowed: at most 4 s", error)
+
     def test_a_missing_type_and_an_unknown_one_are_refused(self):
         self.assertIn("active_stereo", self.error_of(STEREO.replace("active_stereo", "activ_stereo")))
         self.assertIn("type", self.error_of(STEREO.replace("type: active_stereo, ", "")))
