@@ -86,7 +86,7 @@ class Sizes(CliTest):
 
     def test_images_too_large_for_the_memory_are_refused_at_once(self):
         for text, width, height, words in (
-                (STEREO, 65536, 65536, "have too many costs"), (STEREO, 5000, 5000, "have too many rays"),
+                (STEREO, 65536, 65536, "have too many costs"), (STEREO, 5000, 5000, "depth_camera: sub_rays is 3, so that 5000x5000 pixels have too many rays"),
                 (TOF, 65536, 65536, "have too many rays"), (TOF, 2000, 2000, "have too many rays"),
                 (TOF, 65537, 1, "allowed: a whole number from 1 to 65536"), (STEREO, 0, 4, "allowed: a whole number from 1 to")):
             with self.subTest(width=width, height=height, words=words):
