@@ -28,7 +28,7 @@ constexpr const char* kTofSample = "builtin:disc";
 
 constexpr const char* kTofExamples =
     R"(Decodes the raw images of a continuous-wave camera: for each pixel its range, or the cause of a
-hole. RAW is a NumPy array of float32 or float64, frequencies x phase steps x rows x columns.
+hole. RAW is a NumPy array of floats or integers, frequencies x phase steps x rows x columns.
 Examples:
   glidar tof builtin:disc -o depth.png -o status.png
   glidar tof builtin:disc --explain 49,56
