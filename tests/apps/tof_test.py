@@ -167,7 +167,7 @@ class TofCommand(PngTest):
             "add --sensor": (*raw, *output), "leave --sensor out": (*SAMPLE, *output, "--sensor", "Kinect-v2"),
             "is no time-of-flight camera": (*raw, *output, "--sensor", "D435"),
             "neither -o nor --explain": SAMPLE, "its name does not state what to write": (*SAMPLE, "-o", "result.png"),
-            "400,3 is outside the image": (*SAMPLE, "--explain", "400,3"), "COLUMN,ROW": (*SAMPLE, "--explain", "4"),
+            "400,3 is outside the image": (*SAMPLE, *output, "--explain", "400,3"), "COLUMN,ROW": (*SAMPLE, "--explain", "4"),
             "--depth-unit-mm": (*SAMPLE, *output, "--depth-unit-mm", "nan")}
         for words, arguments in cases.items():
             with self.subTest(words):
@@ -178,6 +178,10 @@ class TofCommand(PngTest):
         self.store_bytes("depth.npy", data)
         self.refused("tof", "depth.npy", "--sensor", "s.yaml", "-o", "depth.npy")
         self.assertEqual(self.bytes_of("depth.npy"), data)
+        self.write("range.npy", SENSOR)
+        self.assertIn("range.npy: is an input file, or another output writes it",
+                      self.refused("tof", "depth.npy", "--sensor", "range.npy", "-o", "range.npy"))
+        self.assertEqual(self.bytes_of("range.npy").decode(), SENSOR)
 
 
 if __name__ == "__main__":
