@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Frames of depth cameras that are simulated from raw images, beside those by noise steps: a D435
-// of 848x480 pixels and 128 disparities with the share of its matcher, a Kinect v1, a Kinect v2 and
-// an Azure Kinect in a furnished room.
+// of 848x480 pixels and 128 disparities with the share of its matcher, a Kinect v1, a Kinect v2, an
+// Azure Kinect and a structured-light scanner in a furnished room.
 #include "ratio_reporter.hpp"
 #include "room.hpp"
 
@@ -21,6 +21,7 @@ Pose camera_pose() {
   return look_at({-3.0, -3.0, 0.5}, {1.5, 0.5, -0.8}, Eigen::Vector3d::UnitZ());
 }
 
+/// Of a preset or a sensor file.
 Sensor camera(const std::string& preset, DepthModel model) {
   Sensor sensor = load_sensor_file(find_sensor_file(preset));
   set_depth_model(model, preset, sensor);
@@ -66,9 +67,13 @@ void bench_matcher(const std::string& name, const std::string& preset, unsigned 
 }
 
 void register_benchmarks() {
-  for (const char* preset : {"D435", "Kinect-v1", "Kinect-v2", "Azure-Kinect-NFOV"}) {
-    bench_frames(std::string(preset) + " law", preset, DepthModel::law, 2);
-    bench_frames(std::string(preset) + " physical", preset, DepthModel::physical, 2);
+  const std::string scanner = GLIDAR_EXAMPLES "/scanner.yaml";
+  for (const std::string& preset :
+       {std::string("D435"), std::string("Kinect-v1"), std::string("Kinect-v2"),
+        std::string("Azure-Kinect-NFOV"), scanner}) {
+    const std::string name = preset == scanner ? "scanner" : preset;
+    bench_frames(name + " law", preset, DepthModel::law, 2);
+    bench_frames(name + " physical", preset, DepthModel::physical, 2);
   }
   bench_frames("D435 physical, 1 thread", "D435", DepthModel::physical, 1);
   bench_matcher("D435 matcher", "D435", 2);

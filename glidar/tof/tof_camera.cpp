@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/sequence_time.hpp>
 #include <glidar/tof/number_checks.hpp>
 
 #include <array>
@@ -40,6 +41,19 @@ void require_contrasts(const TofCamera& camera, const FieldVisitor* visitor) {
       {kCameraPlace + std::string("contrast"), found, "one for each frequency, or none", ""});
 }
 
+void require_sequence(const TofCamera& camera, const FieldVisitor* visitor) {
+  const std::size_t steps = camera.decoder.frequencies_hz.size() * camera.decoder.taps;
+  const double sequence_s = static_cast<double>(steps) * camera.step_interval_s;
+  if (sequence_s <= kMaxSequence_s) return;
+  const std::string found = "is " + number_text(camera.step_interval_s) + ", so that " +
+                            std::to_string(steps) + " phase steps take " + number_text(sequence_s) +
+                            " s";
+  const std::string allowed = "at most " + number_text(kMaxSequence_s) + " s for all phase steps";
+  const std::string remedy = "use a shorter interval or fewer phase steps";
+  if (visitor != nullptr) visitor->reject("step_interval_s", found, allowed, remedy);
+  throw Error({kCameraPlace + std::string("step_interval_s"), found, allowed, remedy});
+}
+
 }  // namespace
 
 void describe(TofCamera& camera, FieldVisitor& visitor) {
@@ -64,8 +78,10 @@ void describe(TofCamera& camera, FieldVisitor& visitor) {
   visitor.number({"electrons_per_level", "unit of the raw values"}, kAboveZero,
                  camera.electrons_per_level);
   visitor.boolean({"has_whole_levels", "raw values are rounded"}, camera.has_whole_levels);
-  visitor.number({"step_interval_s", "from the start of a phase step to the next", kUnitSecond},
-                 kFromZero, camera.step_interval_s);
+  visitor.number(
+      {"step_interval_s",
+       "from the start of a phase step to the next; all phase steps take at most 4 s", kUnitSecond},
+      kFromZero, camera.step_interval_s);
   visitor.whole_number({"sub_rays", "n: each pixel is n x n rays"}, kSubRayRule, camera.sub_rays);
   visitor.whole_number({"bounces", "diffuse bounces of the light; 0: direct light alone"},
                        kBounceRule, camera.bounces);
@@ -78,7 +94,9 @@ void describe(TofCamera& camera, FieldVisitor& visitor) {
                        kFilterRule, camera.bounce_filter_px);
   visit_object(visitor, {"decoder", "from raw images to ranges", kNoUnit, kRequired},
                camera.decoder);
-  if (visitor.is_reading()) require_contrasts(camera, &visitor);
+  if (!visitor.is_reading()) return;
+  require_contrasts(camera, &visitor);
+  require_sequence(camera, &visitor);
 }
 
 void validate(const TofCamera& camera) {
@@ -102,6 +120,7 @@ void validate(const TofCamera& camera) {
   require_whole_value("bounce_filter_px", kFilterRule, camera.bounce_filter_px);
   validate(camera.decoder);
   require_contrasts(camera, nullptr);
+  require_sequence(camera, nullptr);
 }
 
 }  // namespace glidar

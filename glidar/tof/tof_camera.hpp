@@ -38,7 +38,7 @@ struct TofCamera {
   double full_well_electrons = kInfinity;  ///< from which a well is saturated
   double electrons_per_level = 1.0;        ///< unit of the raw values
   bool has_whole_levels = false;           ///< raw values are rounded
-  double step_interval_s = 0.0;            ///< from the start of a phase step to the next
+  double step_interval_s = 0.0;            ///< between starts of phase steps; all: at most 4 s
   std::uint32_t sub_rays = 4;              ///< n: each pixel is n x n rays
   std::uint32_t bounces = 1;               ///< diffuse bounces of the light before the surface
   std::uint32_t bounce_rays = 16;          ///< rays per pixel that sample them

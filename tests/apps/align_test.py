@@ -52,6 +52,12 @@ class AlignCommand(PngTest):
             with self.subTest(arguments):
                 self.assertIn(text, self.refused("align", *arguments))
 
+    def test_inputs_are_not_overwritten(self):
+        before = self.bytes_of("cameras.yaml"), self.bytes_of("d.png")
+        for name in ("cameras.yaml", "d.png"):
+            self.assertIn("is an input file", self.refused("align", "d.png", "--cameras", "cameras.yaml", "-o", name))
+        self.assertEqual((self.bytes_of("cameras.yaml"), self.bytes_of("d.png")), before)
+
 
 if __name__ == "__main__":
     unittest.main()

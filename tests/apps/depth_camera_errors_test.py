@@ -86,7 +86,7 @@ class Sizes(CliTest):
 
     def test_images_too_large_for_the_memory_are_refused_at_once(self):
         for text, width, height, words in (
-                (STEREO, 65536, 65536, "have too many costs"), (STEREO, 5000, 5000, "have too many rays"),
+                (STEREO, 65536, 65536, "have too many costs"), (STEREO, 5000, 5000, "depth_camera: sub_rays is 3, so that 5000x5000 pixels have too many rays"),
                 (TOF, 65536, 65536, "have too many rays"), (TOF, 2000, 2000, "have too many rays"),
                 (TOF, 65537, 1, "allowed: a whole number from 1 to 65536"), (STEREO, 0, 4, "allowed: a whole number from 1 to")):
             with self.subTest(width=width, height=height, words=words):
@@ -106,6 +106,12 @@ class Keys(CliTest):
             self.assertIn(f"did you mean '{nearest}'?", error)
         self.assertIn("did you mean 'disparities'?", self.error_of(STEREO.replace("disparities", "disparites")))
         self.assertIn("did you mean 'frequencies_hz'?", self.error_of(TOF.replace("[15e6]", "[15e6], frequency_hz: [15e6]")))
+
+    def test_exposures_take_at_most_four_seconds_together(self):
+        for interval_s, seconds in ((1.25, "5"), (1e300, "4e+300")):
+            error = self.error_of(TOF.replace("{type: ", f"{{step_interval_s: {interval_s:g}, type: "))
+            self.assertRegex(error, r"s\.yaml:5:\d+: ")
+            self.assertIn(f"so that 4 phase steps take {seconds} s; allowed: at most 4 s", error)
 
     def test_a_missing_type_and_an_unknown_one_are_refused(self):
         self.assertIn("active_stereo", self.error_of(STEREO.replace("active_stereo", "activ_stereo")))

@@ -191,7 +191,7 @@ class Recording(ReplayTest):
             with self.subTest(arguments):
                 done = self.run_program("stream", "scene.yaml", *out, *arguments)
                 self.assertEqual(done.returncode, 2, done.stdout)
-                self.assertIn("is an input file: the scene was read from it, or another output writes it", done.stderr)
+                self.assertIn("is an input file, or another output writes it", done.stderr)
         self.assertEqual(self.bytes_of("scene.yaml").decode(), SCENE)
         self.record_scene()
         before = self.bytes_of("r.jsonl")

@@ -109,7 +109,7 @@ class StereoCommand(CliTest):
         self.expect_error("depth needs the geometry", *pair, "-o", "depth.png")
         self.expect_error("its name does not state what to write", *pair, "-o", "result.png")
         self.expect_error("neither -o nor --explain", *pair)
-        self.expect_error("400,3 is outside the image", *pair, "--explain", "400,3")
+        self.expect_error("400,3 is outside the image", *pair, *output, "--explain", "400,3")
 
     def test_inputs_are_not_overwritten(self):
         data = png(90, 20, noise(90, 20))

@@ -75,10 +75,19 @@ class StructuredLightCommand(PngTest):
             (("missing.yaml", *IMAGES, "-o", "depth.npy"), "missing.yaml"),
             (("bad.yaml", *IMAGES, "-o", "depth.npy"), "steps"),
             (("setup.yaml", *IMAGES[:11], "missing.png", "-o", "depth.npy"), "missing.png"),
+            (("setup.yaml", *IMAGES[:11], "missing.png", "-o", "depth.npy", "--patterns", "out"), "missing.png"),
         )
         for arguments, text in cases:
             with self.subTest(arguments):
                 self.assertIn(text, self.refused("structured-light", *arguments))
+
+    def test_patterns_do_not_replace_images(self):
+        self.succeed("structured-light", "setup.yaml", "--patterns", "out")
+        patterns = [f"out/pattern_{i:02}.png" for i in range(len(IMAGES))]
+        before = self.bytes_of(patterns[0])
+        command = ("structured-light", "setup.yaml", *patterns, "-o", "phase.npy", "--patterns", "out")
+        self.assertIn("out/pattern_00.png: is an input file", self.refused(*command))
+        self.assertEqual(self.bytes_of(patterns[0]), before)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 """glidar tof: decoded files beside those of the simulation, the trace of a pixel, errors."""
 
 import math
+import re
 import struct
 import unittest
 from pathlib import Path
@@ -28,11 +29,15 @@ depth_camera:
 """
 
 
+CODES = {"<f2": "e", "<f4": "f", "<f8": "d", "|i1": "b", "|u1": "B", "<i2": "h", "<u2": "H", "<i4": "i", "<u4": "I", "<i8": "q",
+         "<u8": "Q"}  # of struct
+
+
 def npy(shape, values, kind="<f4", version=1):
     """A NumPy array file, by its specification."""
     head = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {tuple(shape)!r}, }}".encode()
     size = struct.pack("<H" if version == 1 else "<I", len(head))
-    return b"\x93NUMPY" + bytes([version, 0]) + size + head + struct.pack(f"<{len(values)}{'f' if kind == '<f4' else 'd'}", *values)
+    return b"\x93NUMPY" + bytes([version, 0]) + size + head + struct.pack(f"<{len(values)}{CODES[kind]}", *values)
 
 
 class TofCommand(PngTest):
@@ -108,6 +113,30 @@ class TofCommand(PngTest):
             self.assertEqual(self.bytes_of(f"{name}_status.npy"), self.bytes_of("a_status.npy"))
             self.assertEqual(self.bytes_of(f"{name}_amplitude.npy"), self.bytes_of("a_amplitude.npy"))
 
+    def test_images_of_every_real_type_have_the_same_ranges(self):
+        values = [round(60 + 50 * math.cos(0.4 * f + 0.1 * p - math.pi / 2 * k)) for f in (1, 2) for k in range(TAPS)
+                  for p in range(WIDTH * HEIGHT)]  # exact in each type
+        for sign in (1, -1):
+            results = set()
+            for kind in CODES:
+                if sign < 0 and "u" in kind:
+                    continue
+                self.store_bytes("a.npy", npy((2, TAPS, HEIGHT, WIDTH), [sign * value for value in values], kind))
+                self.succeed("tof", "a.npy", "--sensor", "s.yaml", "-o", "amplitude.npy", "-o", "range.npy")
+                results.add(self.bytes_of("amplitude.npy") + self.bytes_of("range.npy"))
+            self.assertEqual(len(results), 1)
+
+    def test_halves_may_be_tiny_or_infinite(self):
+        self.write("plain.yaml", re.sub("min_amplitude: 5, edge_test: {}", "min_amplitude: 0", SENSOR))
+        tiny = [math.ldexp(1 + k, -24) for k in range(TAPS) for _ in range(WIDTH * HEIGHT)] * 2  # subnormal
+        tiny[0], tiny[1] = math.inf, -math.inf
+        for kind in ("<f2", "<f4"):
+            self.store_bytes("a.npy", npy((2, TAPS, HEIGHT, WIDTH), tiny, kind))
+            self.succeed("tof", "a.npy", "--sensor", "plain.yaml", "-o", f"{kind[1:]}_amplitude.npy", "-o", f"{kind[1:]}_status.npy")
+        self.assertEqual(self.bytes_of("f2_status.npy")[-WIDTH * HEIGHT:][:2], b"\2\2")
+        for name in ("amplitude.npy", "status.npy"):
+            self.assertEqual(self.bytes_of(f"f2_{name}"), self.bytes_of(f"f4_{name}"))
+
     def test_bad_raw_images_are_errors(self):
         good = npy((2, TAPS, HEIGHT, WIDTH), [1.0] * (2 * TAPS * HEIGHT * WIDTH))
         cases = {
@@ -115,7 +144,8 @@ class TofCommand(PngTest):
             "head": (good[:40], "the file ends in its head"),
             "text": (b"no array", "no NumPy array"),
             "empty": (b"", "no NumPy array"),
-            "whole": (good.replace(b"<f4", b"<i4"), "allowed: float32 or float64, row by row"),
+            "complex": (good.replace(b"<f4", b"<c8"), "allowed: floats of 16 to 64 bits or integers, little-endian, row by row"),
+            "big": (good.replace(b"<f4", b">f4"), "little-endian"),
             "columns": (good.replace(b"'fortran_order': False", b"'fortran_order': True "), "row by row"),
             "flat": (npy((HEIGHT, WIDTH), [1.0] * (HEIGHT * WIDTH)), "allowed: frequencies x phase steps x rows x columns"),
             "deep": (npy((1, 2, TAPS, HEIGHT, WIDTH), [1.0] * (2 * TAPS * HEIGHT * WIDTH)), "an array of another shape"),
@@ -137,7 +167,7 @@ class TofCommand(PngTest):
             "add --sensor": (*raw, *output), "leave --sensor out": (*SAMPLE, *output, "--sensor", "Kinect-v2"),
             "is no time-of-flight camera": (*raw, *output, "--sensor", "D435"),
             "neither -o nor --explain": SAMPLE, "its name does not state what to write": (*SAMPLE, "-o", "result.png"),
-            "400,3 is outside the image": (*SAMPLE, "--explain", "400,3"), "COLUMN,ROW": (*SAMPLE, "--explain", "4"),
+            "400,3 is outside the image": (*SAMPLE, *output, "--explain", "400,3"), "COLUMN,ROW": (*SAMPLE, "--explain", "4"),
             "--depth-unit-mm": (*SAMPLE, *output, "--depth-unit-mm", "nan")}
         for words, arguments in cases.items():
             with self.subTest(words):
@@ -148,6 +178,10 @@ class TofCommand(PngTest):
         self.store_bytes("depth.npy", data)
         self.refused("tof", "depth.npy", "--sensor", "s.yaml", "-o", "depth.npy")
         self.assertEqual(self.bytes_of("depth.npy"), data)
+        self.write("range.npy", SENSOR)
+        self.assertIn("range.npy: is an input file, or another output writes it",
+                      self.refused("tof", "depth.npy", "--sensor", "range.npy", "-o", "range.npy"))
+        self.assertEqual(self.bytes_of("range.npy").decode(), SENSOR)
 
 
 if __name__ == "__main__":

@@ -114,6 +114,10 @@ TEST(LidarFile, ReadsArraysOfRays) {
   const auto grid = std::get<RayTable>(load_sensor_file(file).optics);
   EXPECT_EQ(grid.rows, 2U);
   EXPECT_TRUE(grid.origins_m.empty());
+  const std::string numbers("\0\0\1\0\xFE\0", 6);  // 0, 0, 1, 0, -2, 0
+  (void)folder.write("rays.npy", npy_header("|i1", std::array<std::size_t, 2>{2, 3}) + numbers);
+  const auto whole = std::get<RayTable>(load_sensor_file(file).optics);
+  EXPECT_EQ(whole.directions[1], Eigen::Vector3d(0, -2, 0));
 }
 
 TEST(LidarFile, HostileRayFilesAreRefused) {
@@ -124,7 +128,7 @@ TEST(LidarFile, HostileRayFilesAreRefused) {
   for (const std::string& bytes :
        {std::string(), std::string("no array at all"), good.substr(0, 20),
         good.substr(0, good.size() - 1), npy({3, 1}, {1, 0, 0}), npy({0, 3}, {}), huge,
-        npy_header("<i4", std::array<std::size_t, 2>{1, 3}) + std::string(12, '\0')}) {
+        npy_header("<c8", std::array<std::size_t, 2>{1, 3}) + std::string(24, '\0')}) {
     (void)folder.write("rays.npy", bytes);
     EXPECT_NE(error_of(folder, [&] { load_sensor_file(file); }).find("rays.npy"),
               std::string::npos);

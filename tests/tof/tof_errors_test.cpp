@@ -105,6 +105,11 @@ TEST(TofErrors, NameTheValueOfACameraThatIsNotAllowed) {
               HasSubstr("has 2 numbers for 1 frequencies"));
   EXPECT_THAT(camera_error([](TofCamera& c) { c.sub_rays = 17; }),
               HasSubstr("sub_rays: is 17; allowed: a whole number from 1 to 16"));
+  EXPECT_THAT(camera_error([](TofCamera& c) { c.step_interval_s = 1e300; }),
+              HasSubstr("step_interval_s: is 1e+300, so that 4 phase steps take"));
+  EXPECT_THAT(camera_error([](TofCamera& c) { c.step_interval_s = 1.25; }),
+              HasSubstr("is 1.25, so that 4 phase steps take 5 s; allowed: at most 4 s for all"));
+  EXPECT_EQ(camera_error([](TofCamera& c) { c.step_interval_s = 1.0; }), "no error");
   EXPECT_EQ(camera_error([](TofCamera&) {}), "no error");
 }
 

@@ -94,11 +94,13 @@ int run_stereo(const StereoFlags& flags) {
   Console console(flags.quiet);
   const StereoPair pair = load_pair(flags);
   ThreadPool pool(flags.threads);
-  if (!flags.outputs.empty()) match_and_write(flags, pair, console, pool);
+  std::string trace;  // before any file is written, because the pixel may be outside the image
   if (flags.explained) {
-    fmt::print("{}", format_stereo_trace(explain_stereo(pair.left, pair.right, flags.options,
-                                                        *flags.explained, {.pool = &pool})));
+    trace = format_stereo_trace(
+        explain_stereo(pair.left, pair.right, flags.options, *flags.explained, {.pool = &pool}));
   }
+  if (!flags.outputs.empty()) match_and_write(flags, pair, console, pool);
+  fmt::print("{}", trace);
   return kDone;
 }
 

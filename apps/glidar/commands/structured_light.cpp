@@ -70,31 +70,43 @@ std::string fringe_share_text(const DecodedFringes& decoded) {
   return text;
 }
 
-void decode_and_write(const StructuredLightFlags& flags, const StructuredLight& setup) {
+MeasuredFringes decode_images(const StructuredLightFlags& flags, const StructuredLight& setup) {
   std::vector<GreyImage> images;
   for (const std::string& path : flags.images) images.push_back(load_grey_image(path));
   ThreadPool pool(flags.threads);
   MeasuredFringes measured;
   measured.decoded = decode_fringes(images, setup.patterns, setup.decoding, &pool);
   measured.depth_m = triangulate(measured.decoded, setup);
-  std::vector<std::string> read = flags.images;
-  read.push_back(flags.setup);
-  write_fringe_files(flags.outputs, read, measured, flags.depth_unit_mm * kMillimetre_m);
-  if (flags.quiet) return;
-  fmt::print("{}x{} pixels: {}\nwrote {}\n", measured.decoded.width, measured.decoded.height,
-             fringe_share_text(measured.decoded), fmt::join(flags.outputs, " "));
+  return measured;
 }
 
+/// "60x2 pixels: 76.2 % valid ..." and the files.
+std::string summary_text(const StructuredLightFlags& flags, const DecodedFringes& decoded) {
+  return fmt::format("{}x{} pixels: {}\nwrote {}\n", decoded.width, decoded.height,
+                     fringe_share_text(decoded), fmt::join(flags.outputs, " "));
+}
+
+/// Patterns and results appear together, so that an error leaves none.
 int run_structured_light(const StructuredLightFlags& flags) {
   check_structured_light_flags(flags);
   const StructuredLight setup = load_structured_light(flags.setup);
+  std::vector<std::string> read = flags.images;
+  read.push_back(flags.setup);
+  StagedFiles files;
+  files.protect(read);
+  std::string summary;
   if (!flags.pattern_folder.empty()) {
-    const std::vector<std::string> names = write_patterns(flags.pattern_folder, setup.patterns);
-    if (!flags.quiet) {
-      fmt::print("wrote {} to {} ({} files)\n", names.front(), names.back(), names.size());
-    }
+    const std::vector<std::string> names =
+        stage_patterns(flags.pattern_folder, setup.patterns, files);
+    summary = fmt::format("wrote {} to {} ({} files)\n", names.front(), names.back(), names.size());
   }
-  if (!flags.outputs.empty()) decode_and_write(flags, setup);
+  if (!flags.outputs.empty()) {
+    const MeasuredFringes measured = decode_images(flags, setup);
+    stage_fringe_files(flags.outputs, measured, flags.depth_unit_mm * kMillimetre_m, files);
+    summary += summary_text(flags, measured.decoded);
+  }
+  files.commit();
+  if (!flags.quiet) fmt::print("{}", summary);
   return kDone;
 }
 

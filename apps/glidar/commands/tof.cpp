@@ -28,7 +28,7 @@ constexpr const char* kTofSample = "builtin:disc";
 
 constexpr const char* kTofExamples =
     R"(Decodes the raw images of a continuous-wave camera: for each pixel its range, or the cause of a
-hole. RAW is a NumPy array of float32 or float64, frequencies x phase steps x rows x columns.
+hole. RAW is a NumPy array of floats or integers, frequencies x phase steps x rows x columns.
 Examples:
   glidar tof builtin:disc -o depth.png -o status.png
   glidar tof builtin:disc --explain 49,56
@@ -55,9 +55,14 @@ void check_tof_flags(const TofFlags& flags) {
                "add --sensor, or decode builtin:disc"});
 }
 
-/// The raw images, decoder and directions of a sensor.
-TofSample load_raw(const TofFlags& flags) {
-  if (flags.raw == kTofSample) return sample_tof_images();
+/// Raw images with the decoder and directions of their sensor, and the files they were read from.
+struct RawInput {
+  TofSample raw;
+  std::vector<std::string> files = {};
+};
+
+RawInput load_raw(const TofFlags& flags) {
+  if (flags.raw == kTofSample) return {sample_tof_images()};
   const Sensor sensor = load_sensor(flags.sensor, {});
   const auto* camera =
       sensor.depth_camera ? std::get_if<TofCamera>(&*sensor.depth_camera) : nullptr;
@@ -70,19 +75,22 @@ TofSample load_raw(const TofFlags& flags) {
   TofSample raw{load_tof_images(flags.raw), prepared.decoder, std::move(prepared.depth_per_range),
                 std::move(prepared.is_illuminated)};
   const PinholeIntrinsics& optics = std::get<Pinhole>(sensor.optics).intrinsics;
-  if (raw.images.width == optics.width && raw.images.height == optics.height) return raw;
+  if (raw.images.width == optics.width && raw.images.height == optics.height) {
+    std::vector<std::string> files = sensor.files;
+    files.push_back(flags.raw);
+    return {std::move(raw), std::move(files)};
+  }
   throw Error({flags.raw,
                fmt::format("has {}x{} pixels, the sensor '{}' {}x{}", raw.images.width,
                            raw.images.height, sensor.name, optics.width, optics.height),
                "raw images of the sensor", "choose its sensor, or change 'optics' in a copy"});
 }
 
-void decode_and_write(const TofFlags& flags, const TofSample& raw,
+void decode_and_write(const TofFlags& flags, const RawInput& input,
                       const TofCalibration& calibration, ThreadPool& pool) {
+  const TofSample& raw = input.raw;
   const TofMeasurement measured = decode_tof(raw.images, raw.options, calibration, {.pool = &pool});
-  std::vector<std::string> read;
-  if (flags.raw != kTofSample) read = {flags.raw};
-  write_tof_files(flags.outputs, read,
+  write_tof_files(flags.outputs, input.files,
                   {measured, calibration.depth_per_range, flags.depth_unit_mm * 1e-3});
   if (flags.quiet) return;
   fmt::print("{}x{} pixels: {}\nwrote {}\n", measured.width, measured.height,
@@ -91,15 +99,18 @@ void decode_and_write(const TofFlags& flags, const TofSample& raw,
 
 int run_tof(const TofFlags& flags) {
   check_tof_flags(flags);
-  const TofSample raw = load_raw(flags);
+  const RawInput input = load_raw(flags);
+  const TofSample& raw = input.raw;
   const TofCalibration calibration = {.depth_per_range = raw.depth_per_range,
                                       .is_illuminated = raw.is_illuminated};
   ThreadPool pool(flags.threads);
-  if (!flags.outputs.empty()) decode_and_write(flags, raw, calibration, pool);
+  std::string trace;  // before any file is written, because the pixel may be outside the image
   if (flags.explained) {
-    fmt::print("{}", format_tof_trace(explain_tof(raw.images, raw.options, *flags.explained,
-                                                  calibration, {.pool = &pool})));
+    trace = format_tof_trace(
+        explain_tof(raw.images, raw.options, *flags.explained, calibration, {.pool = &pool}));
   }
+  if (!flags.outputs.empty()) decode_and_write(flags, input, calibration, pool);
+  fmt::print("{}", trace);
   return kDone;
 }
 

@@ -4,7 +4,6 @@
 
 #include <apps/glidar/run/image_files.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/staged_files.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <fmt/format.h>
@@ -86,20 +85,17 @@ void check_fringe_outputs(std::span<const std::string> paths) {
   for (const std::string& path : paths) fringe_quantity(path);
 }
 
-void write_fringe_files(std::span<const std::string> paths, std::span<const std::string> read,
-                        const MeasuredFringes& measured, double depth_unit_m) {
-  StagedFiles files;
-  files.protect(read);
+void stage_fringe_files(std::span<const std::string> paths, const MeasuredFringes& measured,
+                        double depth_unit_m, StagedFiles& files) {
   for (const std::string& path : paths) {
     AtomicFile& file = files.add(path);
     write_fringe_file(path, measured, depth_unit_m, file);
     file.finish();
   }
-  files.commit();
 }
 
-std::vector<std::string> write_patterns(const std::string& folder, const FringePatterns& patterns) {
-  StagedFiles files;
+std::vector<std::string> stage_patterns(const std::string& folder, const FringePatterns& patterns,
+                                        StagedFiles& files) {
   files.add_folder(folder);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < image_count(patterns); ++i) {
@@ -112,7 +108,6 @@ std::vector<std::string> write_patterns(const std::string& folder, const FringeP
               file);
     file.finish();
   }
-  files.commit();
   return names;
 }
 

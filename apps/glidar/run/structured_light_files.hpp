@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/files/staged_files.hpp>
 #include <glidar/sensor/depth_camera/structured_light.hpp>
 
 #include <span>
@@ -20,12 +21,12 @@ struct MeasuredFringes {
 /// status, and .npy, or .png of depth and status.
 void check_fringe_outputs(std::span<const std::string> paths);
 
-/// Writes all files, which appear together. `read` are files that must not be overwritten. Throws
-/// Error.
-void write_fringe_files(std::span<const std::string> paths, std::span<const std::string> read,
-                        const MeasuredFringes& measured, double depth_unit_m);
+/// Adds files of the measurement to `files`. Throws Error.
+void stage_fringe_files(std::span<const std::string> paths, const MeasuredFringes& measured,
+                        double depth_unit_m, StagedFiles& files);
 
-/// Writes pattern_00.png ... to a folder, which is created. Returns their names.
-std::vector<std::string> write_patterns(const std::string& folder, const FringePatterns& patterns);
+/// Adds pattern_00.png ... in a folder, which is created. Returns their names.
+std::vector<std::string> stage_patterns(const std::string& folder, const FringePatterns& patterns,
+                                        StagedFiles& files);
 
 }  // namespace glidar::app

@@ -68,9 +68,9 @@ std::array<std::size_t, 3> ray_shape(const std::string& where, const NpyHead& he
   return shape;
 }
 
-Eigen::Vector3d vector_at(const char* data, std::size_t bytes) {
-  return {npy_number(data, bytes), npy_number(data + bytes, bytes),
-          npy_number(data + 2 * bytes, bytes)};
+Eigen::Vector3d vector_at(const char* data, const NpyHead& head) {
+  return {head.number_at(data), head.number_at(data + head.number_bytes),
+          head.number_at(data + 2 * head.number_bytes)};
 }
 
 }  // namespace
@@ -123,8 +123,8 @@ RayTable load_ray_npy(const fs::path& path) {
   for (std::size_t i = 0; i < rows * cols; ++i, at += width * head.number_bytes) {
     const bool with_origin = width == 6;
     const char* direction = with_origin ? at + 3 * head.number_bytes : at;
-    table.directions.push_back(vector_at(direction, head.number_bytes));
-    if (with_origin) table.origins_m.push_back(vector_at(at, head.number_bytes));
+    table.directions.push_back(vector_at(direction, head));
+    if (with_origin) table.origins_m.push_back(vector_at(at, head));
   }
   return table;
 }

@@ -4,14 +4,67 @@
 
 #include <glidar/core/error.hpp>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string_view>
 
 namespace glidar {
 namespace {
 
 constexpr std::size_t kMaxSizes = 5;
+
+template <typename T>
+T load(const char* data) {
+  T value{};
+  std::memcpy(&value, data, sizeof value);
+  return value;
+}
+
+template <typename T>
+double number_of(const char* data) {
+  return static_cast<double>(load<T>(data));
+}
+
+/// IEEE 754 binary16: a sign, 5 bits of exponent, 10 of fraction.
+double half_number(const char* data) {
+  constexpr int kFractionBits = 10;
+  constexpr int kMaxExponent = 31;
+  constexpr int kMinScale = -24;  // of the smallest number
+  const unsigned bits = load<std::uint16_t>(data);
+  const int exponent = static_cast<int>((bits >> kFractionBits) & 31U);
+  const int fraction = static_cast<int>(bits & 1023U);
+  double size = exponent == 0
+                    ? std::ldexp(fraction, kMinScale)
+                    : std::ldexp((1 << kFractionBits) + fraction, exponent - 1 + kMinScale);
+  if (exponent == kMaxExponent) {
+    size = fraction == 0 ? std::numeric_limits<double>::infinity()
+                         : std::numeric_limits<double>::quiet_NaN();
+  }
+  return bits >> 15U == 0 ? size : -size;
+}
+
+struct NpyType {
+  std::string_view name;
+  std::size_t bytes;
+  double (*number_at)(const char* data);
+};
+
+constexpr std::array<NpyType, 11> kNpyTypes = {{{"'<f8'", 8, number_of<double>},
+                                                {"'<f4'", 4, number_of<float>},
+                                                {"'<f2'", 2, half_number},
+                                                {"'|i1'", 1, number_of<std::int8_t>},
+                                                {"'|u1'", 1, number_of<std::uint8_t>},
+                                                {"'<i2'", 2, number_of<std::int16_t>},
+                                                {"'<u2'", 2, number_of<std::uint16_t>},
+                                                {"'<i4'", 4, number_of<std::int32_t>},
+                                                {"'<u4'", 4, number_of<std::uint32_t>},
+                                                {"'<i8'", 8, number_of<std::int64_t>},
+                                                {"'<u8'", 8, number_of<std::uint64_t>}}};
 
 /// The text after 'key': in the head's dictionary; empty when it is not there.
 std::string_view value_of(std::string_view head, std::string_view key) {
@@ -64,14 +117,18 @@ NpyHead read_npy_head(const std::string& where, const std::string& bytes) {
     throw Error({where, "the file ends in its head", "a whole .npy file", ""});
   }
   const std::string_view text = std::string_view(bytes).substr(0, head.data_at);
-  const std::string_view type = value_of(text, "'descr'");
-  if (type.starts_with("'<f8'")) head.number_bytes = sizeof(double);
-  if (type.starts_with("'<f4'")) head.number_bytes = sizeof(float);
+  const std::string_view name = value_of(text, "'descr'");
+  const auto type = std::find_if(kNpyTypes.begin(), kNpyTypes.end(), [&](const NpyType& known) {
+    return name.starts_with(known.name);
+  });
   const bool by_rows = value_of(text, "'fortran_order'").starts_with("False");
-  if (head.number_bytes == 0 || !by_rows) {
-    throw Error({where, "numbers of another type or order", "float32 or float64, row by row",
+  if (type == kNpyTypes.end() || !by_rows) {
+    throw Error({where, "an array of another type or order",
+                 "floats of 16 to 64 bits or integers, little-endian, row by row",
                  "numpy.save(file, numpy.ascontiguousarray(array, dtype='<f8'))"});
   }
+  head.number_bytes = type->bytes;
+  head.number_at = type->number_at;
   head.shape = shape_of(text);
   return head;
 }
@@ -84,17 +141,6 @@ void require_npy_numbers(const std::string& where, const NpyHead& head, const st
     }
     if (size > 0) there /= size;
   }
-}
-
-double npy_number(const char* data, std::size_t bytes) {
-  if (bytes == sizeof(float)) {
-    float value = 0.0F;
-    std::memcpy(&value, data, sizeof value);
-    return double{value};
-  }
-  double value = 0.0;
-  std::memcpy(&value, data, sizeof value);
-  return value;
 }
 
 }  // namespace glidar

@@ -10,12 +10,13 @@
 
 namespace glidar {
 
-/// The header of an .npy file of floats or doubles in C order. Source: numpy.lib.format ("Format
+/// The header of an .npy file of real numbers in C order. Source: numpy.lib.format ("Format
 /// Version 1.0" and "2.0").
 struct NpyHead {
-  std::size_t data_at = 0;         ///< offset of the first number
-  std::size_t number_bytes = 0;    ///< 4 or 8
-  std::vector<std::size_t> shape;  ///< at most five sizes
+  std::size_t data_at = 0;                          ///< offset of the first number
+  std::size_t number_bytes = 0;                     ///< 1 to 8
+  double (*number_at)(const char* data) = nullptr;  ///< reads a number of the file's type
+  std::vector<std::size_t> shape;                   ///< at most five sizes
 };
 
 /// Throws Error, with `where` as its place, for other contents.
@@ -23,8 +24,5 @@ NpyHead read_npy_head(const std::string& where, const std::string& bytes);
 
 /// Throws Error when the file has fewer numbers than the shape requires.
 void require_npy_numbers(const std::string& where, const NpyHead& head, const std::string& bytes);
-
-/// The number at `data`, of 4 or 8 bytes.
-double npy_number(const char* data, std::size_t bytes);
 
 }  // namespace glidar

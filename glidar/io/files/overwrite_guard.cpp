@@ -41,7 +41,7 @@ void refuse_overwrite_of_inputs(std::span<const std::string> read,
   };
   if (std::none_of(read.begin(), read.end(), is_it)) return;
   throw Error({.where = output.string(),
-               .found = "is an input file: the scene was read from it, or another output writes it",
+               .found = "is an input file, or another output writes it",
                .remedy = "choose another name"});
 }
 

@@ -4,6 +4,7 @@
 
 #include <glidar/io/files/folder_lock.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/unfinished_files.hpp>
 
 #include <optional>
 #include <system_error>
@@ -30,7 +31,10 @@ AtomicFile& StagedFiles::add(const std::filesystem::path& path) {
 
 void StagedFiles::add_folder(const std::filesystem::path& path) {
   std::error_code failure;
-  if (std::filesystem::create_directory(path, failure)) folders_.push_back(path);
+  if (std::filesystem::create_directory(path, failure)) {
+    const std::filesystem::path whole = std::filesystem::absolute(path);
+    folders_.push_back({whole, list_unfinished(whole.native())});
+  }
   if (!failure) return;
   throw Error({path.string(), "cannot create this folder: " + failure.message(), "",
                "write to another folder"});
@@ -44,7 +48,7 @@ void StagedFiles::commit() {
   removals_.clear();
   for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->commit();
   files_.clear();
-  folders_.clear();
+  unlist_folders();
 }
 
 void StagedFiles::clear() noexcept {
@@ -52,7 +56,12 @@ void StagedFiles::clear() noexcept {
   removals_.clear();
   std::error_code ignored;  // a folder that is in use by now stays
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
-    std::filesystem::remove(*folder, ignored);
+    std::filesystem::remove(folder->path, ignored);
+  unlist_folders();
+}
+
+void StagedFiles::unlist_folders() noexcept {
+  for (const NewFolder& folder : folders_) unlist_unfinished(folder.slot);
   folders_.clear();
 }
 

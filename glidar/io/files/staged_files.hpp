@@ -35,7 +35,8 @@ class StagedFiles {
   /// Removes a regular file at commit(), if it exists: one of an earlier output that does
   /// not belong to the new files.
   void remove(const std::filesystem::path& path) { removals_.push_back(path); }
-  /// Creates a folder unless it exists. Throws Error.
+  /// Creates a folder unless it exists. A signal that ends the program removes it again, if it is
+  /// empty. Throws Error.
   void add_folder(const std::filesystem::path& path);
   /// Removes outdated files, then renames the files, the first one last, so that
   /// the others exist when it appears. Programs that write the same files concurrently are
@@ -46,9 +47,16 @@ class StagedFiles {
   void clear() noexcept;
 
  private:
+  struct NewFolder {
+    std::filesystem::path path;
+    int slot;  ///< of list_unfinished()
+  };
+
+  void unlist_folders() noexcept;
+
   std::span<const std::string> protected_;
   std::list<AtomicFile> files_;  // an AtomicFile does not move
-  std::vector<std::filesystem::path> folders_;
+  std::vector<NewFolder> folders_;
   std::vector<std::filesystem::path> removals_;
   bool is_locked_ = false;
 };

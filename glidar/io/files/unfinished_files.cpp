@@ -60,9 +60,9 @@ void remove_unfinished_files() noexcept {
     int expected = kListed;
     if (slot.state.compare_exchange_strong(expected, kRemoving)) ::unlink(slot.path.data());
   }
-  // The folders are empty now; for files this fails.
-  for (Slot& slot : unfinished) {
-    if (slot.state.load() == kRemoving) ::rmdir(slot.path.data());
+  // Folders without other files are empty now, the innermost first; for files this fails.
+  for (std::size_t i = kSlots; i-- > 0;) {
+    if (unfinished[i].state.load() == kRemoving) ::rmdir(unfinished[i].path.data());
   }
   errno = saved_errno;
 }

@@ -97,7 +97,7 @@ TofImages load_tof_images(const std::filesystem::path& path) {
   images.level.resize(shape[0] * shape[1] * shape[2] * shape[3]);
   const char* at = bytes.data() + head.data_at;
   for (float& level : images.level) {
-    level = static_cast<float>(npy_number(at, head.number_bytes));
+    level = static_cast<float>(head.number_at(at));
     at += head.number_bytes;
   }
   return images;

@@ -15,7 +15,7 @@ Format ir_png_format();
 /// Frame::tof_images as a NumPy array of float32, frequencies x phase steps x rows x columns.
 Format tof_npy_format();
 
-/// Such an array, of float32 or float64. Throws Error naming the file.
+/// Such an array, of any real type. Throws Error naming the file.
 TofImages load_tof_images(const std::filesystem::path& path);
 
 }  // namespace glidar

@@ -5,13 +5,13 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/pose_keys.hpp>
+#include <glidar/core/sequence_time.hpp>
 
 #include <string>
 
 namespace glidar {
 namespace {
 
-constexpr double kMaxSequence_s = 4.0;  // times within a frame are 32 bits of nanoseconds
 constexpr std::uint64_t kMaxSequencePixels = std::uint64_t{1} << 28U;  // 1.6 GB
 
 /// Patterns have the size of the projector's image.

@@ -26,8 +26,8 @@ void check_sub_rays(const PinholeIntrinsics& image, std::uint32_t sub_rays) {
   constexpr double kMaxRays = 0x1p25;  // a few GiB with what they hit
   const double rays = static_cast<double>(image.width) * image.height * sub_rays * sub_rays;
   if (rays <= kMaxRays) return;
-  throw Error({.where = "depth_camera, sub_rays",
-               .found = "is " + std::to_string(sub_rays) + ", so that " +
+  throw Error({.where = "depth_camera",
+               .found = "sub_rays is " + std::to_string(sub_rays) + ", so that " +
                         std::to_string(image.width) + "x" + std::to_string(image.height) +
                         " pixels have too many rays",
                .allowed = "at most " + number_text(kMaxRays) + " rays",

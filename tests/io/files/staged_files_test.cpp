@@ -74,6 +74,20 @@ TEST(StagedFiles, ProtectedFilesAreNotOverwritten) {
   EXPECT_EQ(content(folder / "q.pcd.json"), "mine");
 }
 
+TEST(StagedFiles, ASignalRemovesNewFoldersAndKeepsOthers) {
+  const testing::TestFolder folder;
+  fs::create_directory(folder / "old");
+  StagedFiles done;
+  done.add_folder(folder / "done");
+  done.commit();
+  StagedFiles files;
+  for (const char* name : {"old", "new", "new/part", "new/part/deep"})
+    files.add_folder(folder / name);
+  files.add(folder / "new/part/deep/a").write("text");
+  remove_unfinished_files();  // what the signal handler calls
+  EXPECT_THAT(folder.names(), ElementsAre("done", "old"));
+}
+
 TEST(FolderLock, ExcludesOthersDuringItsLifetimeAndLeavesNoFile) {
   const testing::TestFolder folder;
   std::optional<FolderLock> first(std::in_place, folder.path());
