@@ -13,8 +13,6 @@ namespace {
 StructuredLight read_structured_light(const YamlField& root) {
   StructuredLight setup;
   read_struct(root, setup);
-  setup.patterns.width = setup.projector.intrinsics.width;
-  setup.patterns.height = setup.projector.intrinsics.height;
   return setup;
 }
 

@@ -41,5 +41,30 @@ TEST(StructuredLightFile, OfAnotherDepthCameraIsRefused) {
               HasSubstr("type: structured_light"));
 }
 
+const char* const kSetup =
+    "camera: {width: 8, height: 4, fx: 9, fy: 9}\n"
+    "projector: {width: 64, height: 4, fx: 9, fy: 9}\n"
+    "projector_from_camera: {position: [0.2, 0, 0]}\n"
+    "patterns: {steps: 4, period_px: 8}\n";
+
+std::string refusal_with(const std::string& from, const std::string& to) {
+  std::string text = kSetup;
+  text.replace(text.find(from), from.size(), to);
+  return error_text([&] { parse_structured_light(text); });
+}
+
+TEST(StructuredLightFile, OfASetupIsRefusedAtTheKeyThatDoesNotFit) {
+  EXPECT_EQ(image_count(parse_structured_light(kSetup).patterns), 12U);
+  EXPECT_THAT(refusal_with("steps: 4", "steps: 2"), HasSubstr("patterns.steps: 2; allowed: 0, or 3"));
+  EXPECT_THAT(refusal_with("steps: 4, period_px: 8", "steps: 0, period_px: 1000"),
+              HasSubstr("patterns.period_px: 1000"));
+  EXPECT_THAT(refusal_with("steps: 4", "steps: 0, has_inverses: false"),
+              HasSubstr("patterns.has_inverses"));
+  EXPECT_THAT(refusal_with("steps: 4", "min_level: 1"), HasSubstr("patterns: max_level: 1"));
+  EXPECT_THAT(refusal_with("[0.2, 0, 0]", "[0, 0, 0]"),
+              HasSubstr("projector_from_camera: the projector is at the position of the camera"));
+  EXPECT_THAT(refusal_with("width: 64", "width: 16385"), HasSubstr("at most 16384"));
+}
+
 }  // namespace
 }  // namespace glidar
