@@ -78,8 +78,10 @@ DepthImageSummary change_depth_images(const DepthImageFiles& files,
   }
   DepthImageSummary summary;
   summary.files = output_names(files);
+  std::vector<std::string> read = files.images;
+  if (!files.settings.empty()) read.push_back(files.settings);
   StagedFiles staged;
-  staged.protect(files.images);
+  staged.protect(read);
   if (writes_folder(files)) staged.add_folder(files.output);
   for (std::size_t i = 0; i < files.images.size(); ++i) {
     const DepthImage image = load_depth_image(files.images[i]);
