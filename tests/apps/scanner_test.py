@@ -97,3 +97,5 @@ class ScannerCommands(PngTest):
 
 if __name__ == "__main__":
     unittest.main()
+        self.assertIn("there is no surface", dark)
+        self.assertNotIn("lights the surface", dark)
