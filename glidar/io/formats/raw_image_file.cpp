@@ -20,6 +20,7 @@ constexpr const char* kPatternRemedy =
     "use a sensor file with a depth_camera of type structured_light and --depth-model physical";
 constexpr const char* kRemedy =
     "use a sensor with a depth_camera of type active_stereo and --depth-model physical, such as "
+constexpr const char* kPatternPrefix = "pattern_";
     "D435";
 
 /// The image of this name. Throws Error when the frame does not have it.
@@ -27,7 +28,11 @@ const GreyImage& find_image(const Frame& frame, const std::string& name, const A
   std::string names;
   for (const RawImage& image : frame.raw_images) {
     if (image.name == name) return image.grey;
-    names += (names.empty() ? "." : ", .") + image.name + ".png";
+    if (!image.name.starts_with(kPatternPrefix)) {
+      names += (names.empty() ? "." : ", .") + image.name + ".png";
+    } else if (names.empty()) {
+      names = ".patterns.npy";
+    }
   }
   const std::string found = "a frame without the raw image '" + name + "'";
   if (!names.empty()) throw Error({file.path().string(), found, names, "write one of these"});
@@ -59,7 +64,7 @@ void write_image(const CloudFile& job, const std::string& name, AtomicFile& file
 std::vector<const GreyImage*> find_patterns(const Frame& frame, const AtomicFile& file) {
   std::vector<const GreyImage*> patterns;
   for (const RawImage& image : frame.raw_images) {
-    if (image.name.starts_with("pattern_")) patterns.push_back(&image.grey);
+    if (image.name.starts_with(kPatternPrefix)) patterns.push_back(&image.grey);
   }
   if (!patterns.empty()) return patterns;
   throw Error({file.path().string(), "a frame without images of patterns",
