@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Structured-light cameras of sensor files: glidar render, explain and structured-light."""
 
+import math
+import statistics
 import struct
 import unittest
 from pathlib import Path
@@ -25,6 +27,15 @@ depth_camera:
 """
 RENDER = ("render", "builtin:sphere:radius=0.1", "--sensor-pose", "0,0,-0.8,1,0,0,0", "--sensor")
 IMAGES = 4 + 2 * 4
+
+
+def sphere_depth_m(u, v):
+    """Depth of the sphere along the boresight at a pixel of SCANNER, with the pose of RENDER; 0 beside it."""
+    focal = 32 / math.tan(math.radians(10))
+    x, y = (u + 0.5 - 32) / focal, (v + 0.5 - 24) / focal
+    squared = x * x + y * y + 1
+    root = 0.8**2 - squared * (0.8**2 - 0.1**2)
+    return (0.8 - math.sqrt(root)) / squared if root > 0 else 0.0
 
 
 class ScannerCommands(PngTest):
@@ -74,7 +85,17 @@ class ScannerCommands(PngTest):
         self.assertIn("miss", dark)
 
     def test_the_law_reports_the_true_depth_with_noise(self):
-        self.succeed(*RENDER, "scanner.yaml", "--depth-model", "law", "-o", "v.depth.png")
+        self.succeed(*RENDER, "scanner.yaml", "--depth-model", "law", "-o", "v.depth.png", "--depth-scale", "10000")
+        errors_mm = []
+        for v, row in enumerate(self.grey_rows("v.depth.png")):
+            for u, depth in enumerate(row):
+                true_m = sphere_depth_m(u, v)
+                self.assertEqual(depth > 0, true_m > 0, (u, v))
+                if depth > 0:
+                    errors_mm.append(depth * 0.1 - 1000 * true_m)
+        self.assertGreater(len(errors_mm), 1000)
+        self.assertLess(abs(statistics.mean(errors_mm)), 0.15)
+        self.assertAlmostEqual(statistics.pstdev(errors_mm), 1.0, delta=0.1)
         self.assertIn("without images of patterns",
                       self.refused(*RENDER, "scanner.yaml", "--depth-model", "law", "-o", "w.patterns.npy"))
         self.assertFalse(Path(self.folder, "w.patterns.npy").exists())
