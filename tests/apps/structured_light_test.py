@@ -6,6 +6,7 @@
 import math
 import struct
 import unittest
+from pathlib import Path
 
 from png_support import PngTest
 
@@ -62,7 +63,6 @@ class StructuredLightCommand(PngTest):
         status = self.bytes_of("part_status.npy")[-120:]
         self.assertEqual((status[6], status[7], status[9]), (0, 2, 1))
 
-    def test_errors_name_what_is_wrong(self):
     def test_no_file_is_written_unless_all_are(self):
         self.take_images()
         self.store("small.png", [[1] * 60] * 3)
@@ -89,6 +89,7 @@ class StructuredLightCommand(PngTest):
         self.write("none.yaml", SETUP.replace("steps: 4, period_px: 20", "steps: 0, period_px: 1000"))
         self.assertIn("patterns.period_px", self.refused("structured-light", "none.yaml", "--patterns", "out"))
 
+    def test_errors_name_what_is_wrong(self):
         self.take_images()
         self.write("bad.yaml", SETUP.replace("steps: 4", "steps: 2"))
         cases = (

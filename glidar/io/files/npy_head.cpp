@@ -45,7 +45,7 @@ std::vector<std::size_t> shape_of(std::string_view head) {
 
 }  // namespace
 
-NpyHead read_npy_head(const std::string& where, const std::string& bytes) {
+NpyHead read_npy_head(const std::string& where, const std::string& bytes, const NpyTypes& types) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   constexpr std::size_t kShortHead = 10;
   constexpr std::size_t kLongHead = 12;
@@ -65,12 +65,12 @@ NpyHead read_npy_head(const std::string& where, const std::string& bytes) {
   }
   const std::string_view text = std::string_view(bytes).substr(0, head.data_at);
   const std::string_view type = value_of(text, "'descr'");
-  if (type.starts_with("'<f8'")) head.number_bytes = sizeof(double);
-  if (type.starts_with("'<f4'")) head.number_bytes = sizeof(float);
+  for (const NpyType& known : types.types) {
+    if (type.starts_with(known.text)) head.number_bytes = known.bytes;
+  }
   const bool by_rows = value_of(text, "'fortran_order'").starts_with("False");
   if (head.number_bytes == 0 || !by_rows) {
-    throw Error({where, "numbers of another type or order", "float32 or float64, row by row",
-                 "numpy.save(file, numpy.ascontiguousarray(array, dtype='<f8'))"});
+    throw Error({where, "numbers of another type or order", types.allowed, types.remedy});
   }
   head.shape = shape_of(text);
   return head;
