@@ -213,7 +213,9 @@ void write_depth(TraceWriter& out, const StructuredLightPixelTrace& pixel) {
     electrons += fmt::format("{}{:.1f}", electrons.empty() ? "" : ", ", one);
   }
   out.line("photons", "electrons of each image, on average: {}", electrons);
-  if (std::isnan(pixel.true_projector_px)) {
+  if (!out.has_hit()) {
+    out.line("projector", "there is no surface for it to light");
+  } else if (std::isnan(pixel.true_projector_px)) {
     out.line("projector", "no pixel of its image lights the surface");
   } else {
     out.line("projector", "true coordinate {:.4f} px", pixel.true_projector_px);

@@ -5,16 +5,19 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
+#include <glidar/structured_light/pattern_size.hpp>
 
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace glidar {
 namespace {
 
-constexpr WholeRule kProjectorSide = {1, 16384};
+constexpr const char* kSideText = "a whole number from 1 to 16384";
 constexpr WholeRule kStepRule = {0, 64};
 constexpr NumberRule kPeriodRule = {2.0, 16384.0, false, "pixels from 2 to 16384"};
 constexpr NumberRule kGammaRule = {0.1, 10.0, false, "a number from 0.1 to 10"};
@@ -22,13 +25,51 @@ constexpr std::array<Named<FringeAxis>, 2> kAxisNames = {
     {{"columns", FringeAxis::columns}, {"rows", FringeAxis::rows}}};
 constexpr double kMaxGrey = 255.0;
 
-void require_pattern(bool holds, const char* key, double found, const std::string& allowed) {
-  const std::string where = std::string("fringe patterns, ") + key;
-  require_number(holds, where.c_str(), found, allowed.c_str());
-}
-
 bool within(const WholeRule& rule, std::uint32_t value) {
   return value >= rule.min && value <= rule.max;
+}
+
+ErrorParts fault_at(const char* key, double found, const std::string& allowed) {
+  return {key, number_text(found), allowed};
+}
+
+std::optional<ErrorParts> find_image_fault(const FringePatterns& patterns) {
+  if (!within(kPatternSideRule, patterns.width)) {
+    return fault_at("width", patterns.width, kSideText);
+  }
+  if (!within(kPatternSideRule, patterns.height)) {
+    return fault_at("height", patterns.height, kSideText);
+  }
+  const bool has_steps =
+      patterns.steps == 0 || (patterns.steps >= 3 && within(kStepRule, patterns.steps));
+  if (!has_steps) return fault_at("steps", patterns.steps, "0, or 3 to 64");
+  if (patterns.steps > 0 || patterns.has_inverses) return {};
+  return ErrorParts{"has_inverses", "is false without fringes, to which bits compare",
+                    "true with steps 0", "add inverses, or fringes"};
+}
+
+std::optional<ErrorParts> find_level_fault(const FringePatterns& patterns) {
+  if (!accepts(kPeriodRule, patterns.period_px)) {
+    return fault_at("period_px", patterns.period_px, kPeriodRule.allowed);
+  }
+  if (!accepts(kGammaRule, patterns.gamma)) {
+    return fault_at("gamma", patterns.gamma, kGammaRule.allowed);
+  }
+  if (!accepts(kZeroToOne, patterns.min_level)) {
+    return fault_at("min_level", patterns.min_level, kZeroToOne.allowed);
+  }
+  if (!accepts(kZeroToOne, patterns.max_level) || patterns.max_level <= patterns.min_level) {
+    return fault_at("max_level", patterns.max_level, "a number above min_level, up to 1");
+  }
+  if (image_count(patterns) > 0) return {};
+  return fault_at("period_px", patterns.period_px,
+                  "a stripe, half a period, narrower than the projector's image");
+}
+
+/// The first value that is not allowed, at its key; empty: none.
+std::optional<ErrorParts> find_fault(const FringePatterns& patterns) {
+  std::optional<ErrorParts> fault = find_image_fault(patterns);
+  return fault ? fault : find_level_fault(patterns);
 }
 
 /// Whether a stripe is bright in an image of the Gray code.
@@ -63,27 +104,19 @@ void describe(FringePatterns& patterns, FieldVisitor& visitor) {
                  patterns.min_level);
   visitor.number({"max_level", "greatest light, above `min_level`"}, kZeroToOne,
                  patterns.max_level);
+  if (!visitor.is_reading()) return;
+  const std::optional<ErrorParts> fault = find_fault(patterns);
+  if (!fault) return;
+  const char* key = fault->where.c_str();
+  const std::string name = visitor.has(key) ? "" : fault->where + ": ";  // a default does not fit
+  visitor.reject(key, name + fault->found, fault->allowed, fault->remedy);
 }
 
 void validate(const FringePatterns& patterns) {
-  require_pattern(within(kProjectorSide, patterns.width), "width", patterns.width, "1 to 16384");
-  require_pattern(within(kProjectorSide, patterns.height), "height", patterns.height, "1 to 16384");
-  require_pattern(patterns.steps == 0 || (patterns.steps >= 3 && within(kStepRule, patterns.steps)),
-                  "steps", patterns.steps, "0, or 3 to 64");
-  if (patterns.steps == 0 && !patterns.has_inverses) {
-    throw Error({"fringe patterns, has_inverses", "is false without fringes, to which bits compare",
-                 "true with steps 0", "add inverses, or fringes"});
-  }
-  require_pattern(accepts(kPeriodRule, patterns.period_px), "period_px", patterns.period_px,
-                  kPeriodRule.allowed);
-  require_pattern(accepts(kGammaRule, patterns.gamma), "gamma", patterns.gamma, kGammaRule.allowed);
-  require_pattern(accepts(kZeroToOne, patterns.min_level), "min_level", patterns.min_level,
-                  kZeroToOne.allowed);
-  require_pattern(
-      accepts(kZeroToOne, patterns.max_level) && patterns.max_level > patterns.min_level,
-      "max_level", patterns.max_level, "a number above min_level, up to 1");
-  require_pattern(image_count(patterns) > 0, "period_px", patterns.period_px,
-                  "a stripe, half a period, narrower than the projector's image");
+  std::optional<ErrorParts> fault = find_fault(patterns);
+  if (!fault) return;
+  fault->where = "fringe patterns, " + fault->where;
+  throw Error(*std::move(fault));
 }
 
 std::uint32_t encoded_size(const FringePatterns& patterns) {

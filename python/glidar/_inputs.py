@@ -42,9 +42,10 @@ def _fits(size: int, wanted: int | None) -> bool:
 
 
 def numbers(value: object, where: str, shape: Sequence[int | None], allowed: str = "") -> npt.NDArray[Any]:
-    """Converts to an array whatever NumPy can convert; errors list the shape, or `allowed`."""
+    """Converts to an array in native byte order whatever NumPy can convert; errors list the shape, or `allowed`."""
     try:
-        return np.asarray(value)
+        array = np.asarray(value)
+        return array if array.dtype.isnative else array.astype(array.dtype.newbyteorder("="))
     except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or in the memory of another device
         raise Error(where, f"not an array: {excerpt(problem)}", allowed or f"an array {shape_text(shape)}") from problem
 

@@ -3,7 +3,7 @@
 #include "convert.hpp"
 
 #include <glidar/io/config/structured_light_file.hpp>
-#include <glidar/structured_light/fringe_trace.hpp>
+#include <glidar/sensor/depth_camera/fringe_measurement.hpp>
 
 #include <nanobind/stl/string.h>
 
@@ -38,19 +38,18 @@ nb::object patterns(const StructuredLight& setup) {
 nb::dict decode(const StructuredLight& setup, const LevelStack& levels, std::uint32_t max_level,
                 unsigned threads) {
   const std::vector<GreyImage> images = grey_images(levels, max_level);
-  DecodedFringes decoded;
-  std::vector<float> depth_m;
+  MeasuredFringes measured;
   {
     const nb::gil_scoped_release unlocked;
     ThreadPool pool(threads);
-    decoded = decode_fringes(images, setup.patterns, setup.decoding, &pool);
-    depth_m = triangulate(decoded, setup);
+    measured = measure_fringes(images, setup, &pool);
   }
+  DecodedFringes& decoded = measured.decoded;
   const std::array<std::size_t, 2> shape = {decoded.height, decoded.width};
   std::vector<std::uint8_t> status;
   for (const FringeStatus one : decoded.status) status.push_back(static_cast<std::uint8_t>(one));
   nb::dict result;
-  result["depth_m"] = array_from(std::move(depth_m), shape);
+  result["depth_m"] = array_from(std::move(measured.depth_m), shape);
   result["coordinate_px"] = array_from(std::move(decoded.coordinate_px), shape);
   result["phase_rad"] = array_from(std::move(decoded.phase_rad), shape);
   result["modulation"] = array_from(std::move(decoded.modulation), shape);
@@ -61,8 +60,7 @@ nb::dict decode(const StructuredLight& setup, const LevelStack& levels, std::uin
 
 nb::dict explain(const StructuredLight& setup, const LevelStack& levels, std::uint32_t max_level,
                  std::uint32_t column, std::uint32_t row) {
-  FringeTrace trace = explain_fringes(grey_images(levels, max_level), setup.patterns,
-                                      setup.decoding, {column, row});
+  FringeTrace trace = explain_fringes(grey_images(levels, max_level), setup, {column, row});
   nb::list tests;
   for (const FringeTest& test : trace.tests) {
     tests.append(nb::make_tuple(to_string(test.failure), test.has_passed, test.finding));

@@ -38,6 +38,11 @@ class AlignCommand(PngTest):
         self.succeed("align", "d.png", "e.png", "--cameras", "cameras.yaml", "-o", "out", "--quiet")
         self.assertEqual(self.grey_rows("out/e.png"), [[1000] * 16] * 8)
 
+    def test_the_file_of_the_cameras_is_not_overwritten(self):
+        before = self.bytes_of("cameras.yaml")
+        self.refused("align", "d.png", "--cameras", "cameras.yaml", "-o", "cameras.yaml")
+        self.assertEqual(self.bytes_of("cameras.yaml"), before)
+
     def test_errors_name_what_is_wrong(self):
         self.store("small.png", [[1, 2]])
         self.write("bad.yaml", CAMERAS.replace("POSITION", "0, 0, 0").replace("colour:", "color:"))

@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Structured-light cameras of sensor files: glidar render, explain and structured-light."""
 
+import math
+import statistics
 import struct
 import unittest
 from pathlib import Path
@@ -25,6 +27,15 @@ depth_camera:
 """
 RENDER = ("render", "builtin:sphere:radius=0.1", "--sensor-pose", "0,0,-0.8,1,0,0,0", "--sensor")
 IMAGES = 4 + 2 * 4
+
+
+def sphere_depth_m(u, v):
+    """Depth of the sphere along the boresight at a pixel of SCANNER, with the pose of RENDER; 0 beside it."""
+    focal = 32 / math.tan(math.radians(10))
+    x, y = (u + 0.5 - 32) / focal, (v + 0.5 - 24) / focal
+    squared = x * x + y * y + 1
+    root = 0.8**2 - squared * (0.8**2 - 0.1**2)
+    return (0.8 - math.sqrt(root)) / squared if root > 0 else 0.0
 
 
 class ScannerCommands(PngTest):
@@ -56,6 +67,30 @@ class ScannerCommands(PngTest):
         for a, b in pairs:
             self.assertLessEqual(abs(a - b), 1)  # units of 0.1 mm
 
+    def test_the_array_of_all_images_decodes_to_the_rendered_depth(self):
+        self.succeed(*RENDER, "scanner.yaml", "-o", "v.patterns.npy", "-o", "v.depth.png", "--depth-scale", "10000")
+        self.succeed("structured-light", "scanner.yaml", "v.patterns.npy", "-o", "d.depth.png")
+        pairs = [pair for rows in zip(self.grey_rows("v.depth.png"), self.grey_rows("d.depth.png")) for pair in zip(*rows)]
+        self.assertGreater(sum(a > 0 for a, _ in pairs), 300)
+        self.assertTrue(all(abs(a - b) <= 1 for a, b in pairs if a > 0))
+
+    def test_arrays_of_another_kind_are_refused(self):
+        def array(name, description, shape, data):
+            head = f"{{'descr': '{description}', 'fortran_order': {name == 'columns.npy'}, 'shape': {shape}, }}".ljust(117) + "\n"
+            Path(self.folder, name).write_bytes(b"\x93NUMPY\1\0" + struct.pack("<H", len(head)) + head.encode() + data)
+        size = IMAGES * 48 * 64
+        array("floats.npy", "<f4", (IMAGES, 48, 64), bytes(4 * size))
+        array("columns.npy", "|u1", (IMAGES, 48, 64), bytes(size))
+        array("flat.npy", "|u1", (48, 64), bytes(48 * 64))
+        array("short.npy", "<u2", (IMAGES, 48, 64), bytes(size))
+        array("turned.npy", "|u1", (IMAGES, 64, 48), bytes(size))
+        array("few.npy", "|u1", (IMAGES - 1, 48, 64), bytes(size))
+        cases = (("floats.npy", "uint8 or uint16"), ("columns.npy", "row by row"), ("flat.npy", "images x rows x columns"),
+                 ("short.npy", "fewer numbers"), ("turned.npy", "64x48"), ("few.npy", "one for each pattern"))
+        for name, text in cases:
+            with self.subTest(name):
+                self.assertIn(text, self.refused("structured-light", "scanner.yaml", name, "-o", "d.depth.npy"))
+
     def test_explain_prints_the_images_and_tests_of_a_pixel(self):
         self.succeed(*RENDER, "scanner.yaml", "-o", "v.pcd", "-o", "v.patterns.npy")
         levels = self.patterns_of("v.patterns.npy")
@@ -72,9 +107,21 @@ class ScannerCommands(PngTest):
         dark = self.succeed("explain", "v.pcd", "--row", "0", "--col", "0").stdout
         self.assertIn("failed  low_modulation: ", dark)
         self.assertIn("miss", dark)
+        self.assertIn("there is no surface", dark)
+        self.assertNotIn("lights the surface", dark)
 
     def test_the_law_reports_the_true_depth_with_noise(self):
-        self.succeed(*RENDER, "scanner.yaml", "--depth-model", "law", "-o", "v.depth.png")
+        self.succeed(*RENDER, "scanner.yaml", "--depth-model", "law", "-o", "v.depth.png", "--depth-scale", "10000")
+        errors_mm = []
+        for v, row in enumerate(self.grey_rows("v.depth.png")):
+            for u, depth in enumerate(row):
+                true_m = sphere_depth_m(u, v)
+                self.assertEqual(depth > 0, true_m > 0, (u, v))
+                if depth > 0:
+                    errors_mm.append(depth * 0.1 - 1000 * true_m)
+        self.assertGreater(len(errors_mm), 1000)
+        self.assertLess(abs(statistics.mean(errors_mm)), 0.15)
+        self.assertAlmostEqual(statistics.pstdev(errors_mm), 1.0, delta=0.1)
         self.assertIn("without images of patterns",
                       self.refused(*RENDER, "scanner.yaml", "--depth-model", "law", "-o", "w.patterns.npy"))
         self.assertFalse(Path(self.folder, "w.patterns.npy").exists())

@@ -6,6 +6,7 @@
 import math
 import struct
 import unittest
+from pathlib import Path
 
 from png_support import PngTest
 
@@ -61,6 +62,32 @@ class StructuredLightCommand(PngTest):
         self.assertEqual(self.grey_rows("depth.png")[1][:10], [8000] * 7 + [0, 8000, 0])
         status = self.bytes_of("part_status.npy")[-120:]
         self.assertEqual((status[6], status[7], status[9]), (0, 2, 1))
+
+    def test_no_file_is_written_unless_all_are(self):
+        self.take_images()
+        self.store("small.png", [[1] * 60] * 3)
+        for arguments in ((*IMAGES[:11], "small.png"), IMAGES[1:]):
+            self.refused("structured-light", "setup.yaml", *arguments, "-o", "depth.npy", "--patterns", "out")
+            self.assertFalse(Path(self.folder, "out").exists())
+
+    def test_the_setup_is_not_overwritten(self):
+        self.write("pattern_00.png", SETUP)
+        self.refused("structured-light", "pattern_00.png", "--patterns", ".")
+        self.assertEqual(self.bytes_of("pattern_00.png").decode(), SETUP)
+        self.assertFalse(Path(self.folder, "pattern_01.png").exists())
+
+    def test_errors_about_images_name_the_file(self):
+        self.take_images()
+        self.store("small.png", [[1] * 60] * 3)
+        self.store("byte.png", [[1] * 60] * 2, bits=8)
+        odd_first = self.refused("structured-light", "setup.yaml", "small.png", *IMAGES[1:], "-o", "depth.npy")
+        self.assertIn("small.png: has 60x3 pixels; allowed: 60x2", odd_first)
+        mixed = self.refused("structured-light", "setup.yaml", *IMAGES[:11], "byte.png", "-o", "depth.npy")
+        self.assertIn("byte.png: 8 bits; allowed: 16 bits, as i_00.png", mixed)
+
+    def test_patterns_without_an_image_are_refused(self):
+        self.write("none.yaml", SETUP.replace("steps: 4, period_px: 20", "steps: 0, period_px: 1000"))
+        self.assertIn("patterns.period_px", self.refused("structured-light", "none.yaml", "--patterns", "out"))
 
     def test_errors_name_what_is_wrong(self):
         self.take_images()

@@ -121,6 +121,6 @@ def test_errors_name_what_is_wrong(frame, tmp_path):
         changed(projector_from_camera={"position": [0, 0, 0]})
     with pytest.raises(glidar.Error, match="0, or 3 to 64"):
         changed(patterns={"steps": 1})
-    with pytest.raises(glidar.Error, match="without the raw image 'ir_left'"):
+    with pytest.raises(glidar.Error, match=r"without the raw image 'ir_left'; allowed: \.patterns\.npy; "):
         frame.save(tmp_path / "a.ir_left.png")
     assert list(tmp_path.iterdir()) == []

@@ -84,6 +84,29 @@ def test_explain_agrees_with_the_decoder():
         scanner.explain(taken, column=96, row=0)
 
 
+def test_images_have_any_byte_order():
+    scanner = glidar.StructuredLight(SETUP)
+    taken = images(scanner.patterns(), projector_columns()[0])
+    native, big_endian = scanner.decode(taken), scanner.decode(taken.astype(">u2"))
+    assert np.array_equal(native.depth_m, big_endian.depth_m, equal_nan=True)
+    assert np.array_equal(native.status, big_endian.status)
+    pair = [taken[0].astype(">u2"), np.roll(taken[0], 2).astype(">u2")]
+    assert glidar.match_stereo(*pair, glidar.StereoOptions(disparities=32)).disparity_px.shape == taken[0].shape
+
+
+def test_a_pixel_is_valid_only_if_it_has_a_depth():
+    setup = {"camera": {"width": 64, "height": 4, "fx": 60, "fy": 60}, "projector": {"width": 64, "height": 4, "fx": 60, "fy": 60},
+             "projector_from_camera": {"position": [1, 0, 0]}, "patterns": {"period_px": 16}}
+    scanner = glidar.StructuredLight(setup)
+    taken = (np.roll(scanner.patterns(), 2, axis=2) * 0.9).astype(np.uint8)
+    found = scanner.decode(taken)
+    assert np.array_equal(found.status == glidar.FringeStatus.valid, ~np.isnan(found.depth_m))
+    assert (found.status == glidar.FringeStatus.inconsistent).sum() > 200
+    assert scanner.explain(taken, column=30, row=1).status == found.status[1, 30]
+    with pytest.raises(glidar.Error, match="position of the camera"):
+        glidar.StructuredLight({**setup, "projector_from_camera": {"position": [0, 0, 0]}})
+
+
 def test_files_and_dicts_are_the_same(tmp_path):
     path = tmp_path / "setup.yaml"
     path.write_text(str(SETUP).replace("'", ""), encoding="utf-8")

@@ -38,7 +38,7 @@ int run_align(const AlignFlags& flags) {
   DepthAlignment alignment = load_depth_alignment(flags.cameras);
   alignment.keeps_depth = alignment.keeps_depth || flags.keeps_depth;
   DepthImageFiles files = flags.files;
-  files.settings = {flags.cameras};
+  files.settings = flags.cameras;
   files.unit_mm = alignment.unit_m / kMillimetre_m;
   const DepthAligner aligner(alignment);
   const DepthImageSummary summary = change_depth_images(

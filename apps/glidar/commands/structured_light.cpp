@@ -3,17 +3,16 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/structured_light_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/status_shares.hpp>
 #include <apps/glidar/run/structured_light_files.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/structured_light_file.hpp>
-#include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +27,8 @@ Examples:
   glidar structured-light examples/scanner.yaml --patterns patterns/
 With your own files, the images in the order of the patterns:
   glidar structured-light setup.yaml image_*.png -o depth.npy -o status.png -o phase.npy
+With the images of a simulated scanner, as one NumPy array:
+  glidar structured-light examples/scanner.yaml view.patterns.npy -o depth.npy
 
 setup.yaml is a sensor file with a depth_camera of type structured_light, which glidar render
 simulates, or has the keys of pinhole optics in sensor files:
@@ -55,58 +56,37 @@ void check_structured_light_flags(const StructuredLightFlags& flags) {
   throw Error({"--output", "there are images but no output", "", "add -o depth.npy, for example"});
 }
 
-/// "76.2 % valid, 11.3 % low_modulation ...": every status that occurs.
-std::string fringe_share_text(const DecodedFringes& decoded) {
-  std::array<std::size_t, kFringeStatusCount> counts{};
-  for (const FringeStatus status : decoded.status) ++counts[static_cast<std::size_t>(status)];
-  std::string text;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0) continue;
-    text += fmt::format(
-        "{}{:.1f} % {}", text.empty() ? "" : ", ",
-        100.0 * static_cast<double>(counts[i]) / static_cast<double>(decoded.status.size()),
-        to_string(static_cast<FringeStatus>(i)));
-  }
-  return text;
-}
-
-MeasuredFringes decode_images(const StructuredLightFlags& flags, const StructuredLight& setup) {
-  std::vector<GreyImage> images;
-  for (const std::string& path : flags.images) images.push_back(load_grey_image(path));
+MeasuredFringes measure_images(const StructuredLightFlags& flags, const StructuredLight& setup) {
   ThreadPool pool(flags.threads);
-  MeasuredFringes measured;
-  measured.decoded = decode_fringes(images, setup.patterns, setup.decoding, &pool);
-  measured.depth_m = triangulate(measured.decoded, setup);
-  return measured;
+  return measure_fringes(load_camera_images(flags.images, setup), setup, &pool);
 }
 
-/// "60x2 pixels: 76.2 % valid ..." and the files.
-std::string summary_text(const StructuredLightFlags& flags, const DecodedFringes& decoded) {
-  return fmt::format("{}x{} pixels: {}\nwrote {}\n", decoded.width, decoded.height,
-                     fringe_share_text(decoded), fmt::join(flags.outputs, " "));
+void print_summary(const StructuredLightFlags& flags, const std::vector<std::string>& patterns,
+                   const DecodedFringes& decoded) {
+  if (!patterns.empty()) {
+    fmt::print("wrote {} to {} ({} files)\n", patterns.front(), patterns.back(), patterns.size());
+  }
+  if (flags.outputs.empty()) return;
+  fmt::print("{}x{} pixels: {}\nwrote {}\n", decoded.width, decoded.height,
+             status_shares(decoded.status, kFringeStatusCount), fmt::join(flags.outputs, " "));
 }
 
-/// Patterns and results appear together, so that an error leaves none.
 int run_structured_light(const StructuredLightFlags& flags) {
   check_structured_light_flags(flags);
   const StructuredLight setup = load_structured_light(flags.setup);
+  MeasuredFringes measured;
+  if (!flags.outputs.empty()) measured = measure_images(flags, setup);
   std::vector<std::string> read = flags.images;
   read.push_back(flags.setup);
   StagedFiles files;
   files.protect(read);
-  std::string summary;
+  std::vector<std::string> patterns;
   if (!flags.pattern_folder.empty()) {
-    const std::vector<std::string> names =
-        stage_patterns(flags.pattern_folder, setup.patterns, files);
-    summary = fmt::format("wrote {} to {} ({} files)\n", names.front(), names.back(), names.size());
+    patterns = add_patterns(flags.pattern_folder, setup.patterns, files);
   }
-  if (!flags.outputs.empty()) {
-    const MeasuredFringes measured = decode_images(flags, setup);
-    stage_fringe_files(flags.outputs, measured, flags.depth_unit_mm * kMillimetre_m, files);
-    summary += summary_text(flags, measured.decoded);
-  }
+  add_fringe_files(flags.outputs, measured, flags.depth_unit_mm * kMillimetre_m, files);
   files.commit();
-  if (!flags.quiet) fmt::print("{}", summary);
+  if (!flags.quiet) print_summary(flags, patterns, measured.decoded);
   return kDone;
 }
 

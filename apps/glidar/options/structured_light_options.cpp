@@ -13,7 +13,9 @@ void add_structured_light_options(CLI::App& command, StructuredLightFlags& flags
   command.add_option("SETUP", flags.setup, "Camera, projector and patterns (YAML)")
       ->required()
       ->type_name("");
-  command.add_option("IMAGE", flags.images, "Images of the camera, one for each pattern")
+  command
+      .add_option("IMAGE", flags.images,
+                  "Images of the camera, one for each pattern (.png), or one array of them (.npy)")
       ->type_name("");
   const OptionGroup output(command, "Output");
   output.add_repeatable("-o,--output", "FILE",

@@ -79,7 +79,7 @@ DepthImageSummary change_depth_images(const DepthImageFiles& files,
   DepthImageSummary summary;
   summary.files = output_names(files);
   std::vector<std::string> read = files.images;
-  read.insert(read.end(), files.settings.begin(), files.settings.end());
+  if (!files.settings.empty()) read.push_back(files.settings);
   StagedFiles staged;
   staged.protect(read);
   if (writes_folder(files)) staged.add_folder(files.output);

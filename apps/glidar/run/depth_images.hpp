@@ -17,7 +17,7 @@ namespace glidar::app {
 /// several, or if it is a folder, a folder for files of the same names.
 struct DepthImageFiles {
   std::vector<std::string> images;
-  std::vector<std::string> settings;  ///< other files that must not be overwritten
+  std::string settings = {};  ///< a further file that must not be overwritten; empty: none
   std::string output;
   double unit_mm = 1.0;
 };

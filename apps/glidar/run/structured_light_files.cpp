@@ -4,11 +4,14 @@
 
 #include <apps/glidar/run/image_files.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/formats/grey_image_file.hpp>
+#include <glidar/io/formats/raw_image_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <fmt/format.h>
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -79,14 +82,45 @@ void write_fringe_file(const std::string& path, const MeasuredFringes& measured,
                       "depth in units of " + number_text(depth_unit_m) + " m, 0: none", size, file);
 }
 
+void require_size(const std::string& path, const GreyImage& image,
+                  const PinholeIntrinsics& camera) {
+  if (image.width == camera.width && image.height == camera.height) return;
+  throw Error({path, fmt::format("has {}x{} pixels", image.width, image.height),
+               fmt::format("{}x{}, as the camera of the setup", camera.width, camera.height),
+               "use images of this camera, or change 'width' and 'height' of the setup"});
+}
+
+std::string bits_text(const GreyImage& image) {
+  return fmt::format("{} bits", std::bit_width(image.max_level));
+}
+
 }  // namespace
 
 void check_fringe_outputs(std::span<const std::string> paths) {
   for (const std::string& path : paths) fringe_quantity(path);
 }
 
-void stage_fringe_files(std::span<const std::string> paths, const MeasuredFringes& measured,
-                        double depth_unit_m, StagedFiles& files) {
+std::vector<GreyImage> load_camera_images(std::span<const std::string> paths,
+                                          const StructuredLight& setup) {
+  if (paths.size() == 1 && paths.front().ends_with(".npy")) {
+    std::vector<GreyImage> images = load_pattern_images(paths.front());
+    require_size(paths.front(), images.front(), setup.camera.intrinsics);
+    return images;
+  }
+  std::vector<GreyImage> images;
+  for (const std::string& path : paths) {
+    images.push_back(load_grey_image(path));
+    require_size(path, images.back(), setup.camera.intrinsics);
+    if (images.back().max_level == images.front().max_level) continue;
+    throw Error({path, bits_text(images.back()),
+                 bits_text(images.front()) + ", as " + paths.front(),
+                 "use images of the same number of bits"});
+  }
+  return images;
+}
+
+void add_fringe_files(std::span<const std::string> paths, const MeasuredFringes& measured,
+                      double depth_unit_m, StagedFiles& files) {
   for (const std::string& path : paths) {
     AtomicFile& file = files.add(path);
     write_fringe_file(path, measured, depth_unit_m, file);
@@ -94,8 +128,8 @@ void stage_fringe_files(std::span<const std::string> paths, const MeasuredFringe
   }
 }
 
-std::vector<std::string> stage_patterns(const std::string& folder, const FringePatterns& patterns,
-                                        StagedFiles& files) {
+std::vector<std::string> add_patterns(const std::string& folder, const FringePatterns& patterns,
+                                      StagedFiles& files) {
   files.add_folder(folder);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < image_count(patterns); ++i) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/io/files/staged_files.hpp>
-#include <glidar/sensor/depth_camera/structured_light.hpp>
+#include <glidar/sensor/depth_camera/fringe_measurement.hpp>
 
 #include <span>
 #include <string>
@@ -11,22 +11,22 @@
 
 namespace glidar::app {
 
-/// Decoded images and their depths.
-struct MeasuredFringes {
-  DecodedFringes decoded;
-  std::vector<float> depth_m;
-};
-
 /// Throws Error unless every name states its content: depth, coordinate, phase, modulation or
 /// status, and .npy, or .png of depth and status.
 void check_fringe_outputs(std::span<const std::string> paths);
 
-/// Adds files of the measurement to `files`. Throws Error.
-void stage_fringe_files(std::span<const std::string> paths, const MeasuredFringes& measured,
-                        double depth_unit_m, StagedFiles& files);
+/// The images of the patterns by the camera of `setup`: PNG images in their order, or one NumPy
+/// array of them. Throws Error naming the file: it cannot be read, or has another size than the
+/// camera, or another type than the first image.
+std::vector<GreyImage> load_camera_images(std::span<const std::string> paths,
+                                          const StructuredLight& setup);
 
-/// Adds pattern_00.png ... in a folder, which is created. Returns their names.
-std::vector<std::string> stage_patterns(const std::string& folder, const FringePatterns& patterns,
-                                        StagedFiles& files);
+/// Writes all outputs. Throws Error.
+void add_fringe_files(std::span<const std::string> paths, const MeasuredFringes& measured,
+                      double depth_unit_m, StagedFiles& files);
+
+/// Writes pattern_00.png ... to a folder, which is created. Returns their names. Throws Error.
+std::vector<std::string> add_patterns(const std::string& folder, const FringePatterns& patterns,
+                                      StagedFiles& files);
 
 }  // namespace glidar::app

@@ -5,6 +5,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 
+#include <cstdint>
 #include <variant>
 
 namespace glidar {
@@ -13,8 +14,6 @@ namespace {
 StructuredLight read_structured_light(const YamlField& root) {
   StructuredLight setup;
   read_struct(root, setup);
-  setup.patterns.width = setup.projector.intrinsics.width;
-  setup.patterns.height = setup.projector.intrinsics.height;
   return setup;
 }
 
@@ -23,9 +22,20 @@ bool is_sensor(const YamlField& root) {
   return root.node["depth_camera"].IsDefined();
 }
 
+/// Levels of 9 to 15 bits are stored as 16 bits, whose greatest level they do not reach.
+void set_saturation_level(const Imager& imager, FringeDecoding& decoding) {
+  const bool fills_its_type = imager.bits == 8 || imager.bits == 16;
+  if (decoding.saturation_level > 0 || fills_its_type) return;
+  decoding.saturation_level = (std::uint32_t{1} << imager.bits) - 1;
+}
+
 StructuredLight setup_of_sensor(const std::string& source, const Sensor& sensor) {
   const auto* camera = std::get_if<StructuredLightCamera>(&*sensor.depth_camera);
-  if (camera != nullptr) return setup_of(*camera, std::get<Pinhole>(sensor.optics));
+  if (camera != nullptr) {
+    StructuredLight setup = setup_of(*camera, std::get<Pinhole>(sensor.optics));
+    set_saturation_level(camera->imager, setup.decoding);
+    return setup;
+  }
   throw Error({.where = source + ": depth_camera",
                .found = "a sensor that projects no patterns",
                .allowed = "type: structured_light",

@@ -52,15 +52,16 @@ struct NpyType {
   std::string_view name;
   std::size_t bytes;
   double (*number_at)(const char* data);
+  bool is_grey_level = false;
 };
 
 constexpr std::array<NpyType, 11> kNpyTypes = {{{"'<f8'", 8, number_of<double>},
                                                 {"'<f4'", 4, number_of<float>},
                                                 {"'<f2'", 2, half_number},
                                                 {"'|i1'", 1, number_of<std::int8_t>},
-                                                {"'|u1'", 1, number_of<std::uint8_t>},
+                                                {"'|u1'", 1, number_of<std::uint8_t>, true},
                                                 {"'<i2'", 2, number_of<std::int16_t>},
-                                                {"'<u2'", 2, number_of<std::uint16_t>},
+                                                {"'<u2'", 2, number_of<std::uint16_t>, true},
                                                 {"'<i4'", 4, number_of<std::int32_t>},
                                                 {"'<u4'", 4, number_of<std::uint32_t>},
                                                 {"'<i8'", 8, number_of<std::int64_t>},
@@ -98,7 +99,7 @@ std::vector<std::size_t> shape_of(std::string_view head) {
 
 }  // namespace
 
-NpyHead read_npy_head(const std::string& where, const std::string& bytes) {
+NpyHead read_npy_head(const std::string& where, const std::string& bytes, NpyNumbers accepted) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   constexpr std::size_t kShortHead = 10;
   constexpr std::size_t kLongHead = 12;
@@ -119,13 +120,16 @@ NpyHead read_npy_head(const std::string& where, const std::string& bytes) {
   const std::string_view text = std::string_view(bytes).substr(0, head.data_at);
   const std::string_view name = value_of(text, "'descr'");
   const auto type = std::find_if(kNpyTypes.begin(), kNpyTypes.end(), [&](const NpyType& known) {
-    return name.starts_with(known.name);
+    return name.starts_with(known.name) && (known.is_grey_level || accepted == NpyNumbers::real);
   });
   const bool by_rows = value_of(text, "'fortran_order'").starts_with("False");
   if (type == kNpyTypes.end() || !by_rows) {
+    const bool is_real = accepted == NpyNumbers::real;
     throw Error({where, "an array of another type or order",
-                 "floats of 16 to 64 bits or integers, little-endian, row by row",
-                 "numpy.save(file, numpy.ascontiguousarray(array, dtype='<f8'))"});
+                 is_real ? "floats of 16 to 64 bits or integers, little-endian, row by row"
+                         : "uint8 or uint16, little-endian, row by row",
+                 std::string("numpy.save(file, numpy.ascontiguousarray(array, dtype='") +
+                     (is_real ? "<f8" : "<u2") + "'))"});
   }
   head.number_bytes = type->bytes;
   head.number_at = type->number_at;

@@ -10,6 +10,12 @@
 
 namespace glidar {
 
+/// Types of numbers that a reader accepts.
+enum class NpyNumbers {
+  real,         ///< floats of 16 to 64 bits, integers
+  grey_levels,  ///< uint8 and uint16
+};
+
 /// The header of an .npy file of real numbers in C order. Source: numpy.lib.format ("Format
 /// Version 1.0" and "2.0").
 struct NpyHead {
@@ -20,7 +26,8 @@ struct NpyHead {
 };
 
 /// Throws Error, with `where` as its place, for other contents.
-NpyHead read_npy_head(const std::string& where, const std::string& bytes);
+NpyHead read_npy_head(const std::string& where, const std::string& bytes,
+                      NpyNumbers accepted = NpyNumbers::real);
 
 /// Throws Error when the file has fewer numbers than the shape requires.
 void require_npy_numbers(const std::string& where, const NpyHead& head, const std::string& bytes);

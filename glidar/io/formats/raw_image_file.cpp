@@ -3,11 +3,15 @@
 #include <glidar/io/formats/raw_image_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/input_file.hpp>
+#include <glidar/io/files/npy_head.hpp>
 #include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
 #include <vector>
 
 namespace glidar {
@@ -16,6 +20,7 @@ namespace {
 using Reference = ActiveStereo::Reference;
 
 constexpr std::uint32_t kMaxByte = 255;
+constexpr const char* kPatternPrefix = "pattern_";
 constexpr const char* kPatternRemedy =
     "use a sensor file with a depth_camera of type structured_light and --depth-model physical";
 constexpr const char* kRemedy =
@@ -27,7 +32,11 @@ const GreyImage& find_image(const Frame& frame, const std::string& name, const A
   std::string names;
   for (const RawImage& image : frame.raw_images) {
     if (image.name == name) return image.grey;
-    names += (names.empty() ? "." : ", .") + image.name + ".png";
+    if (!image.name.starts_with(kPatternPrefix)) {
+      names += (names.empty() ? "." : ", .") + image.name + ".png";
+    } else if (names.empty()) {
+      names = ".patterns.npy";
+    }
   }
   const std::string found = "a frame without the raw image '" + name + "'";
   if (!names.empty()) throw Error({file.path().string(), found, names, "write one of these"});
@@ -59,7 +68,7 @@ void write_image(const CloudFile& job, const std::string& name, AtomicFile& file
 std::vector<const GreyImage*> find_patterns(const Frame& frame, const AtomicFile& file) {
   std::vector<const GreyImage*> patterns;
   for (const RawImage& image : frame.raw_images) {
-    if (image.name.starts_with("pattern_")) patterns.push_back(&image.grey);
+    if (image.name.starts_with(kPatternPrefix)) patterns.push_back(&image.grey);
   }
   if (!patterns.empty()) return patterns;
   throw Error({file.path().string(), "a frame without images of patterns",
@@ -79,6 +88,19 @@ void write_patterns(const CloudFile& job, AtomicFile& file) {
       file.write(std::as_bytes(std::span(image->level)));
     }
   }
+}
+
+/// Reads levels of one or two bytes. Returns the end of what is read.
+const char* read_levels(const char* from, std::size_t number_bytes, std::span<std::uint16_t> to) {
+  for (std::uint16_t& level : to) {
+    if (number_bytes == 1) {
+      level = static_cast<std::uint8_t>(*from);
+    } else {
+      std::memcpy(&level, from, sizeof(level));
+    }
+    from += number_bytes;
+  }
+  return from;
 }
 
 /// What a sensor without such images lacks; `is_second`: an image that the left one is matched
@@ -158,6 +180,30 @@ Format patterns_npy_format() {
           .write = write_patterns,
           .pixels = "grey levels, images x rows x columns",
           .misfit = pattern_misfit};
+}
+
+std::vector<GreyImage> load_pattern_images(const std::filesystem::path& path) {
+  constexpr std::size_t kMaxImages = 1024;  // more than the sequences of any patterns
+  static const InputFileKind kKind = {"an NPY array of images", 1024, ""};
+  const std::string bytes = read_input_file(path, kKind);
+  const NpyHead head = read_npy_head(path.string(), bytes, NpyNumbers::grey_levels);
+  const std::vector<std::size_t>& shape = head.shape;
+  if (shape.size() != 3 || shape[0] > kMaxImages ||
+      std::find(shape.begin(), shape.end(), 0U) != shape.end()) {
+    throw Error({path.string(), "an array of another shape",
+                 "images x rows x columns, at most 1024 images",
+                 "numpy.stack the images in the order of the patterns"});
+  }
+  require_npy_numbers(path.string(), head, bytes);
+  const char* at = bytes.data() + head.data_at;
+  std::vector<GreyImage> images(shape[0]);
+  for (GreyImage& image : images) {
+    image = {static_cast<std::uint32_t>(shape[2]), static_cast<std::uint32_t>(shape[1]),
+             head.number_bytes == 1 ? kMaxByte : std::numeric_limits<std::uint16_t>::max()};
+    image.level.resize(shape[1] * shape[2]);
+    at = read_levels(at, head.number_bytes, image.level);
+  }
+  return images;
 }
 
 }  // namespace glidar

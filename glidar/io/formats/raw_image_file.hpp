@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/grey_image.hpp>
 #include <glidar/io/formats/format.hpp>
+
+#include <filesystem>
+#include <vector>
 
 namespace glidar {
 
@@ -14,5 +18,8 @@ Format ir_reference_png_format();
 /// Frame::raw_images "pattern_00" ... of a structured-light camera as a NumPy array of uint8 or
 /// uint16, images x rows x columns.
 Format patterns_npy_format();
+
+/// Such an array. Throws Error naming the file.
+std::vector<GreyImage> load_pattern_images(const std::filesystem::path& path);
 
 }  // namespace glidar

@@ -3,16 +3,17 @@
 #include <glidar/sensor/depth_camera/ambient_light.hpp>
 
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/sensor/depth_camera/light_power.hpp>
 
 namespace glidar {
 
 void describe(AmbientLight& light, FieldVisitor& visitor) {
   visitor.number({"ambient_w_per_m2",
                   "irradiance of every surface by light from all sides, within the passband, W/m²"},
-                 kFromZero, light.ambient_w_per_m2);
+                 kLightPowerRule, light.ambient_w_per_m2);
   visitor.number(
       {"sun_w_per_m2", "irradiance of a surface that faces the sun, within the passband, W/m²"},
-      kFromZero, light.sun_w_per_m2);
+      kLightPowerRule, light.sun_w_per_m2);
   Eigen::Vector3d direction = light.sun_direction;
   if (visitor.vector(
           {"sun_direction", "towards the sun, in the world frame", kNoUnit, false, "[0, 0, 1]"},

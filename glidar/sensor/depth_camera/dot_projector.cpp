@@ -7,6 +7,7 @@
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/gamma.hpp>
 #include <glidar/math/random.hpp>
+#include <glidar/sensor/depth_camera/light_power.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -190,7 +191,7 @@ void describe(DotProjector& projector, FieldVisitor& visitor) {
                      kOrigin, true, origin_m)) {
     projector.origin_m = origin_m;
   }
-  visitor.number({"power_w", "optical power of the whole pattern, W"}, kFromZero,
+  visitor.number({"power_w", "optical power of the whole pattern, W"}, kLightPowerRule,
                  projector.power_w);
   visitor.number({"fov_x_deg", "angle that the pattern covers along the width", kUnitDegree},
                  kPatternAngle, projector.fov_x_rad);

@@ -17,6 +17,8 @@ namespace glidar {
 namespace {
 
 constexpr double kPlanckConstant = 6.62607015e-34;  // in J s, exact
+/// More than all full wells; in min(kMaxMean_e, light) also the value for light of NaN.
+constexpr double kMaxMean_e = 1e300;
 constexpr FieldUnit kUnitMillisecond = {"ms", 1e-3};
 
 double greatest_level(const Imager& imager) {
@@ -108,13 +110,14 @@ PixelReading read_pixel(const Imager& imager, double levels_per_electron, double
   const double poisson_uniform = uniform(random_words(key)[0]);
   ++key.block;
   if (light.projector_e > 0.0) reading.speckle = sample_gamma(speckle_contrast, key);
-  const double mean_e = light.projector_e * reading.speckle + light.ambient_e;
+  const double mean_e = std::min(kMaxMean_e, light.projector_e * reading.speckle + light.ambient_e);
   reading.electrons =
       std::min(sample_poisson(mean_e, poisson_uniform, normal[0]), imager.full_well_e);
   reading.read_noise_e = imager.read_noise_e * normal[2];
   const double level = levels_per_electron * (reading.electrons + reading.read_noise_e);
-  reading.level =
-      static_cast<std::uint16_t>(std::clamp(std::floor(level + 0.5), 0.0, greatest_level(imager)));
+  // max() with 0 first also turns NaN, of an infinite gain without electrons, into 0.
+  reading.level = static_cast<std::uint16_t>(
+      std::min(std::max(0.0, std::floor(level + 0.5)), greatest_level(imager)));
   return reading;
 }
 

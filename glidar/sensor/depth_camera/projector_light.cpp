@@ -5,6 +5,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
+#include <glidar/sensor/depth_camera/light_power.hpp>
 #include <glidar/sensor/depth_camera/point_spread.hpp>
 
 #include <cmath>
@@ -41,7 +42,7 @@ std::vector<float> blurred(const std::vector<double>& line, double blur_px) {
 }  // namespace
 
 void describe(ProjectorLight& light, FieldVisitor& visitor) {
-  visitor.number({"power_w", "optical power of an image of the greatest level, W"}, kFromZero,
+  visitor.number({"power_w", "optical power of an image of the greatest level, W"}, kLightPowerRule,
                  light.power_w);
   visitor.number({"gamma",
                   "light of a level: level^gamma, both as shares of the greatest; `patterns.gamma` "

@@ -4,8 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
-#include <glidar/core/pose_keys.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/depth_camera/projector_keys.hpp>
 #include <glidar/sensor/optics/projection.hpp>
 
 #include <cmath>
@@ -84,16 +84,11 @@ void require_size(const DecodedFringes& decoded, const PinholeIntrinsics& camera
 
 void describe(StructuredLight& setup, FieldVisitor& visitor) {
   visit_object(visitor, {"camera", "as `optics` of a sensor", kNoUnit, kRequired}, setup.camera);
-  visit_object(visitor,
-               {"projector",
-                "as `optics` of a sensor: a camera reversed; its width and height are those of "
-                "the patterns",
-                kNoUnit, kRequired},
-               setup.projector);
-  visit_pose(visitor,
-             {"projector_from_camera", "the camera in the optical frame of the projector", kNoUnit,
-              kRequired},
-             true, setup.projector_from_camera);
+  visit_projector(
+      visitor,
+      "as `optics` of a sensor: a camera reversed; its width and height, at most 16384, "
+      "are those of the patterns",
+      setup.projector, setup.projector_from_camera, setup.patterns);
   visit_object(visitor, {"patterns", "the projected images"}, setup.patterns);
   visit_object(visitor, {"decoding", "thresholds of the decoder"}, setup.decoding);
 }

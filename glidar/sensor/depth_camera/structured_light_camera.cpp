@@ -4,8 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
-#include <glidar/core/pose_keys.hpp>
 #include <glidar/core/sequence_time.hpp>
+#include <glidar/sensor/depth_camera/projector_keys.hpp>
 
 #include <string>
 
@@ -14,25 +14,25 @@ namespace {
 
 constexpr std::uint64_t kMaxSequencePixels = std::uint64_t{1} << 28U;  // 1.6 GB
 
-/// Patterns have the size of the projector's image.
-void set_pattern_size(StructuredLightCamera& camera) {
-  camera.patterns.width = camera.projector.intrinsics.width;
-  camera.patterns.height = camera.projector.intrinsics.height;
+double sequence_s(const StructuredLightCamera& camera) {
+  return static_cast<double>(image_count(camera.patterns)) * camera.image_interval_s;
+}
+
+constexpr const char* kSequenceAllowed = "seconds from 0 to 4";
+
+bool is_sequence_allowed(const StructuredLightCamera& camera) {
+  const double time_s = sequence_s(camera);
+  return time_s >= 0.0 && time_s <= kMaxSequence_s;
 }
 
 }  // namespace
 
 void describe(StructuredLightCamera& camera, FieldVisitor& visitor) {
-  visit_object(visitor,
-               {"projector",
-                "as pinhole [optics](optics.md): a camera reversed; its width and height are those "
-                "of the patterns",
-                kNoUnit, kRequired},
-               camera.projector);
-  visit_pose(visitor,
-             {"projector_from_camera", "the camera in the optical frame of the projector", kNoUnit,
-              kRequired},
-             true, camera.projector_from_camera);
+  visit_projector(
+      visitor,
+      "as pinhole [optics](optics.md): a camera reversed; its width and height, at most "
+      "16384, are those of the patterns",
+      camera.projector, camera.projector_from_camera, camera.patterns);
   visit_object(visitor, {"light", "of the projector"}, camera.light);
   visit_object(visitor, {"patterns", "the projected images"}, camera.patterns);
   visit_object(visitor, {"decoding", "thresholds of the decoder"}, camera.decoding);
@@ -43,13 +43,12 @@ void describe(StructuredLightCamera& camera, FieldVisitor& visitor) {
   visitor.number({"image_interval_s",
                   "from the start of an image to the next, while the scene moves", kUnitSecond},
                  kFromZero, camera.image_interval_s);
-  if (!visitor.is_reading()) return;
-  set_pattern_size(camera);
-  try {
-    validate(camera);
-  } catch (const Error& error) {
-    const ErrorParts& parts = error.parts();
-    visitor.reject("type", parts.where + ": " + parts.found, parts.allowed, parts.remedy);
+  if (visitor.is_reading() && !is_sequence_allowed(camera)) {
+    visitor.reject("image_interval_s",
+                   "{}, so that " + std::to_string(image_count(camera.patterns)) + " images take " +
+                       number_text(sequence_s(camera)) + " s",
+                   std::string(kSequenceAllowed) + " for all images",
+                   "use a shorter interval, or fewer images");
   }
 }
 
@@ -72,17 +71,10 @@ void validate(const StructuredLightCamera& camera) {
                             std::to_string(projector.height) + ", as the projector",
                  .remedy = ""});
   }
-  const double sequence_s =
-      static_cast<double>(image_count(camera.patterns)) * camera.image_interval_s;
-  require_number(sequence_s >= 0.0 && sequence_s <= kMaxSequence_s,
-                 "structured_light, image_interval_s times the number of images", sequence_s,
-                 "seconds from 0 to 4");
-  if (camera.projector_from_camera.translation().isZero(0.0)) {
-    throw Error({.where = "structured_light, projector_from_camera",
-                 .found = "the projector is at the position of the camera",
-                 .allowed = "a distance between them, from which depths are triangulated",
-                 .remedy = "write a position other than [0, 0, 0]"});
-  }
+  require_number(is_sequence_allowed(camera),
+                 "structured_light, image_interval_s times the number of images",
+                 sequence_s(camera), kSequenceAllowed);
+  validate_baseline("structured_light", camera.projector_from_camera);
 }
 
 void check_image(const StructuredLightCamera& camera, const PinholeIntrinsics& image) {

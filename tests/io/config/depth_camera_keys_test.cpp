@@ -84,10 +84,15 @@ TEST(DepthCameraKeys, OfStructuredLightRefuseWhatDoesNotFit) {
     text.replace(text.find(from), from.size(), to);
     return refusal(text);
   };
-  EXPECT_THAT(changed("steps: 5", "steps: 2"), HasSubstr("0, or 3 to 64"));
-  EXPECT_THAT(changed("[-0.2, 0.01, 0.02]", "[0, 0, 0]"), HasSubstr("position of the camera"));
+  EXPECT_THAT(changed("steps: 5", "steps: 2"),
+              HasSubstr("depth_camera.patterns.steps: 2; allowed: 0, or 3 to 64"));
+  EXPECT_THAT(changed("[-0.2, 0.01, 0.02]", "[0, 0, 0]"),
+              HasSubstr("depth_camera.projector_from_camera: the projector is at the position"));
   EXPECT_THAT(changed("image_interval_s: 0.01", "image_interval_s: 1"),
-              HasSubstr("seconds from 0 to 4"));
+              HasSubstr("depth_camera.image_interval_s: 1, so that"));
+  EXPECT_THAT(changed("power_w: 2", "power_w: 1e40"), HasSubstr("a number from 0 to 1e6"));
+  EXPECT_THAT(changed("ambient_w_per_m2: 0.2", "ambient_w_per_m2: 1e40"),
+              HasSubstr("a number from 0 to 1e6"));
   EXPECT_THAT(changed("sub_rays: 2", "sub_rays: 17"), HasSubstr("1 to 16"));
   EXPECT_THAT(changed("light: {power_w: 2,", "light: {power: 2,"), HasSubstr("power_w"));
   EXPECT_THAT(refusal("depth_camera: {type: structured_light, projector_from_camera: {position: "
@@ -116,6 +121,8 @@ TEST(DepthCameraKeys, RefuseWhatDoesNotFit) {
               HasSubstr("wider than the image"));
   EXPECT_THAT(refusal("depth_camera: {type: active_stereo, projector: {picture: none.png}}\n"),
               HasSubstr("none.png"));
+  EXPECT_THAT(refusal("depth_camera: {type: active_stereo, projector: {power_w: 1e40}}\n"),
+              HasSubstr("a number from 0 to 1e6"));
   EXPECT_THAT(refusal("depth_camera: {type: active_stereo, illumination: {sun_direction: [0, 0, "
                       "0]}}\n"),
               HasSubstr("without direction"));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace glidar {
@@ -54,6 +55,16 @@ TEST(Imager, HasAVarianceOverMeanEqualToItsGain) {
     });
     EXPECT_NEAR(level.mean, gain * mean_e, 0.01 * gain * mean_e) << mean_e;
     EXPECT_NEAR((level.variance - 1.0 / 12.0) / level.mean, gain, 0.01 * gain) << mean_e;
+  }
+}
+
+TEST(Imager, ReadsTheGreatestLevelForLightBeyondAllNumbers) {
+  const Imager imager = quiet_imager();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    const PixelLight light = {.projector_e = infinity};
+    EXPECT_EQ(read_pixel(imager, 1.0, 0.0, light, pixel_key(i)).electrons, imager.full_well_e) << i;
+    EXPECT_EQ(read_pixel(imager, infinity, 0.0, {}, pixel_key(i)).level, 0U) << i;
   }
 }
 

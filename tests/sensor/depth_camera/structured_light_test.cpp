@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/sensor/depth_camera/fringe_measurement.hpp>
 #include <glidar/sensor/optics/projection.hpp>
 #include <support/error_text.hpp>
 
@@ -71,6 +72,45 @@ TEST(StructuredLight, CoordinatesWithoutIntersectionHaveNoDepth) {
   EXPECT_TRUE(std::isnan(depth_m[5]));
   EXPECT_FALSE(std::isnan(depth_m[8]));
   EXPECT_TRUE(std::isnan(depth_m[6]) || std::isnan(depth_m[7]));
+}
+
+/// Images of a scene that shows the camera each pattern, displaced by some pixels.
+std::vector<GreyImage> displaced_patterns(const StructuredLight& setup, std::uint32_t shift_px) {
+  const PinholeIntrinsics& k = setup.camera.intrinsics;
+  std::vector<GreyImage> images;
+  for (std::size_t i = 0; i < image_count(setup.patterns); ++i) {
+    const std::vector<std::uint16_t> line = pattern_line(setup.patterns, i);
+    GreyImage image = {k.width, k.height};
+    for (std::uint32_t pixel = 0; pixel < k.width * k.height; ++pixel) {
+      const std::uint32_t level = line[(pixel % k.width + shift_px) % line.size()];
+      image.level.push_back(static_cast<std::uint16_t>(level * 9 / 10));  // none is saturated
+    }
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+TEST(StructuredLight, PixelsAreValidOnlyIfTheyHaveADepth) {
+  StructuredLight setup;
+  setup.camera.intrinsics = {
+      .width = 64, .height = 2, .fx = 60.0, .fy = 60.0, .cx = 32.0, .cy = 1.0};
+  setup.projector = setup.camera;
+  setup.projector_from_camera.translation().x() = 1.0;
+  setup.patterns = {.width = 64, .height = 2, .period_px = 16.0};
+  const std::vector<GreyImage> images = displaced_patterns(setup, 62);
+  ThreadPool pool(2);
+  const MeasuredFringes measured = measure_fringes(images, setup, &pool);
+  std::size_t inconsistent = 0;
+  for (std::uint32_t i = 0; i < measured.depth_m.size(); ++i) {
+    const FringeStatus status = measured.decoded.status[i];
+    EXPECT_EQ(status == FringeStatus::valid, !std::isnan(measured.depth_m[i])) << i;
+    EXPECT_EQ(status == FringeStatus::valid, !std::isnan(measured.decoded.coordinate_px[i])) << i;
+    EXPECT_EQ(explain_fringes(images, setup, {i % 64, i / 64}).status, status) << i;
+    inconsistent += status == FringeStatus::inconsistent ? 1U : 0U;
+  }
+  EXPECT_GT(inconsistent, 100U);
+  EXPECT_THAT(format_fringe_trace(explain_fringes(images, setup, {30, 1})),
+              HasSubstr("failed  inconsistent: the coordinate leads to no depth"));
 }
 
 TEST(StructuredLight, ImagesOfAnotherSizeAreAnError) {
