@@ -9,6 +9,7 @@
 #endif
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #ifdef __x86_64__
 #include <immintrin.h>
 #endif
@@ -27,32 +28,38 @@ constexpr std::size_t kWords = kVectorBytes / sizeof(std::int16_t);
 
 using Words = std::int16_t __attribute__((vector_size(kVectorBytes)));
 using Bytes = std::uint8_t __attribute__((vector_size(kVectorBytes)));
-using LooseWords = std::int16_t __attribute__((vector_size(kVectorBytes), aligned(2), may_alias));
-using LooseBytes = std::uint8_t __attribute__((vector_size(kVectorBytes), aligned(1), may_alias));
-using HalfBytes =
-    std::uint8_t __attribute__((vector_size(kVectorBytes / 2), aligned(1), may_alias));
+using HalfBytes = std::uint8_t __attribute__((vector_size(kVectorBytes / 2)));
 
 #define GLIDAR_INLINE [[gnu::always_inline]] inline
 
+/// A vector from any address: one instruction, without the alignment that a reference requires.
+template <class Vector>
+GLIDAR_INLINE Vector load_unaligned(const void* from) {
+  Vector value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
 GLIDAR_INLINE Words load(const std::int16_t* from) {
-  return *reinterpret_cast<const LooseWords*>(from);
+  return load_unaligned<Words>(from);
 }
 GLIDAR_INLINE void store(std::int16_t* to, Words value) {
-  *reinterpret_cast<LooseWords*>(to) = value;
+  std::memcpy(to, &value, sizeof value);
 }
 GLIDAR_INLINE Bytes load(const std::uint8_t* from) {
-  return *reinterpret_cast<const LooseBytes*>(from);
+  return load_unaligned<Bytes>(from);
 }
 GLIDAR_INLINE void store(std::uint8_t* to, Bytes value) {
-  *reinterpret_cast<LooseBytes*>(to) = value;
+  std::memcpy(to, &value, sizeof value);
 }
 /// kWords bytes as words.
 GLIDAR_INLINE Words load_widened(const std::uint8_t* from) {
-  return __builtin_convertvector(*reinterpret_cast<const HalfBytes*>(from), Words);
+  return __builtin_convertvector(load_unaligned<HalfBytes>(from), Words);
 }
 /// The low bytes of words.
 GLIDAR_INLINE void store_narrowed(std::uint8_t* to, Words value) {
-  *reinterpret_cast<HalfBytes*>(to) = __builtin_convertvector(value, HalfBytes);
+  const HalfBytes low = __builtin_convertvector(value, HalfBytes);
+  std::memcpy(to, &low, sizeof low);
 }
 
 GLIDAR_INLINE Words broadcast(int value) {

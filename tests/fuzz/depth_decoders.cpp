@@ -56,7 +56,9 @@ TofImages tof_images(const Input& input, const TofOptions& options) {
   TofImages images{number(input, 0), number(input, 1),
                    static_cast<std::uint32_t>(options.frequencies_hz.size()), options.taps};
   images.level.resize(input.data.size() / sizeof(float));
-  std::memcpy(images.level.data(), input.data.data(), images.level.size() * sizeof(float));
+  if (!images.level.empty()) {
+    std::memcpy(images.level.data(), input.data.data(), images.level.size() * sizeof(float));
+  }
   return images;
 }
 

@@ -20,14 +20,19 @@ namespace glidar {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
 
+/// Byte `index` of a number, counted from the lowest; 0 above its eight bytes.
+inline std::byte byte_of(std::uint64_t value, std::size_t index) {
+  return index < sizeof value ? static_cast<std::byte>(value >> (8 * index)) : std::byte{0};
+}
+
 /// Appends the low `count` bytes of a number, the lowest first.
 inline void put_little(Bytes& bytes, std::uint64_t value, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
+  for (std::size_t i = 0; i < count; ++i) bytes.push_back(byte_of(value, i));
 }
 
 /// Appends the low `count` bytes of a number, the highest first.
 inline void put_big(Bytes& bytes, std::uint64_t value, std::size_t count) {
-  for (std::size_t i = count; i-- > 0;) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
+  for (std::size_t i = count; i-- > 0;) bytes.push_back(byte_of(value, i));
 }
 
 inline void put_float(Bytes& bytes, float value) {

@@ -199,7 +199,7 @@ PointCloud to_point_cloud(const PointCloud2& message) {
       cloud.columns.push_back(column_of(field, view));
       continue;
     }
-    copy_axis(field, view, xyz.data() + axis);
+    copy_axis(field, view, xyz.empty() ? nullptr : xyz.data() + axis);
     ++axes;
   }
   if (axes < 3) reject_cloud("no x, y and z", "all three coordinates");
