@@ -103,6 +103,12 @@ TEST(HostileYaml, ValuesHaveALimit) {
               HasSubstr("more than 1000000 values"));
 }
 
+TEST(HostileYaml, DocumentsHaveALimit) {
+  EXPECT_EQ(error_text([] { check_yaml_budget("f", repeated("---\n1\n", 100)); }), "no error");
+  EXPECT_THAT(error_text([] { check_yaml_budget("f", repeated("---\n1\n", 101)); }),
+              HasSubstr("more than 100 YAML documents; allowed: one"));
+}
+
 TEST(HostileYaml, ManyMaterialsOfManyAliasedModelsAreRejected) {
   std::string text = "models:\n- &a\n  model: builtin:box\n  materials:\n";
   for (int i = 0; i < 3000; ++i) text += "    m" + std::to_string(i) + ": {opacity: 1}\n";

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxValues = 1'000'000;
 constexpr std::size_t kMaxValuesPerByte = 2;
+constexpr std::size_t kMaxDocuments = 100;  // yaml-cpp reads endless ones after some invalid bytes
 
 /// Counts values as the parser meets them, without keeping any.
 class Counter : public YAML::EventHandler {
@@ -25,7 +26,8 @@ class Counter : public YAML::EventHandler {
   Counter(const std::string& file, std::size_t bytes)
       : file_(file), max_written_out_(kMaxValues + kMaxValuesPerByte * bytes) {}
 
-  void OnDocumentStart(const YAML::Mark& /*mark*/) override {
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > kMaxDocuments) fail(mark, "more than 100 YAML documents", "one", "");
     sizes_.clear();
     open_.clear();
   }
@@ -92,6 +94,7 @@ class Counter : public YAML::EventHandler {
 
   const std::string& file_;
   std::size_t max_written_out_;
+  std::size_t documents_ = 0;
   std::size_t built_ = 0;
   std::size_t written_out_ = 0;
   std::vector<std::size_t> sizes_;                            ///< by anchor
