@@ -61,7 +61,7 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"pcap", {"two", "big_endian", "pcapng", "fragments", "cut"}},
       {"tof", {"two_frequencies", "eight_frequencies", "kinect", "infinite", "one_pixel"}},
       {"stereo", {"shifted", "paths_4", "flat", "narrow"}},
-      {"tof_npy", {"floats", "doubles", "version_2"}},
+      {"tof_npy", {"floats", "doubles", "integers", "version_2"}},
   };
   for (const testing::FileDecoder& decoder : testing::file_decoders()) {
     std::size_t files = 0;

@@ -35,8 +35,8 @@ class StructuredLightCommand(PngTest):
         super().setUp()
         self.write("setup.yaml", SETUP)
 
-    def take_images(self):
-        for i, name in enumerate(IMAGES):
+    def take_images(self, names=IMAGES):
+        for i, name in enumerate(names):
             row = [round(2000 + 40000 * light(i, x + DISPARITY_PX)) for x in range(60)]
             row[7] = 2000  # a shadow
             row[9] = 65535
@@ -109,8 +109,9 @@ class StructuredLightCommand(PngTest):
                 self.assertIn(text, self.refused("structured-light", *arguments))
 
     def test_patterns_do_not_replace_images(self):
-        self.succeed("structured-light", "setup.yaml", "--patterns", "out")
         patterns = [f"out/pattern_{i:02}.png" for i in range(len(IMAGES))]
+        Path(self.folder, "out").mkdir()
+        self.take_images(patterns)
         before = self.bytes_of(patterns[0])
         command = ("structured-light", "setup.yaml", *patterns, "-o", "phase.npy", "--patterns", "out")
         self.assertIn("out/pattern_00.png: is an input file", self.refused(*command))
