@@ -111,6 +111,7 @@ TEST_F(ConnectionGuardTest, CutsOffAMessageThatNeverEndsAndServesOthers) {
     endless.send(parts);
     return endless.is_closed();
   }));
+  EXPECT_TRUE(becomes_fault("peer cut off"));
   EXPECT_THAT(said("peer cut off"), HasSubstr("allowed are 100000"));
   EXPECT_TRUE(serves_a_new_client());
 }
@@ -156,6 +157,7 @@ TEST_F(ConnectionGuardTest, CountsDeliveredBytesIfConfigured) {
     }
     return talker.is_closed();
   }));
+  EXPECT_TRUE(becomes_fault("peer cut off"));
   EXPECT_THAT(said("peer cut off"), HasSubstr("bytes; allowed are 10000"));
   EXPECT_TRUE(serves_a_new_client());
 }
