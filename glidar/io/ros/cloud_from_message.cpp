@@ -101,6 +101,7 @@ Stored load_number(const std::byte* from, bool is_bigendian) {
 template <class Stored, class Number>
 void copy_numbers(const FieldView& view, Number* to, std::size_t stride) {
   const PointCloud2& message = view.message;
+  if (message.width == 0) return;  // a message may claim billions of empty rows
   for (std::uint32_t row = 0; row < message.height; ++row) {
     const std::byte* from = view.data.data() + std::size_t{row} * message.row_step + view.offset;
     for (std::uint32_t col = 0; col < message.width; ++col) {
@@ -188,7 +189,8 @@ PointCloud to_point_cloud(const PointCloud2& message) {
   const std::vector<std::byte> copy =
       message.data.bytes().empty() ? message.data.to_vector() : std::vector<std::byte>{};
   const std::span<const std::byte> data = copy.empty() ? message.data.bytes() : copy;
-  PointCloud cloud{message.height, message.width, message.header.frame_id, Pose::Identity(), {}};
+  const std::uint32_t rows = message.width == 0 ? std::min(message.height, 1U) : message.height;
+  PointCloud cloud{rows, message.width, message.header.frame_id, Pose::Identity(), {}};
   std::vector<double> xyz(3 * cloud.size());
   std::size_t axes = 0;
   cloud.columns.push_back({"xyz", {"x", "y", "z"}, {}});

@@ -192,6 +192,19 @@ TEST(CloudFromMessage, ReadsAllTypesOffsetsStepsAndByteOrders) {
   }
 }
 
+TEST(CloudFromMessage, RowsWithoutPointsTakeNoTime) {
+  PointCloud2 message = mixed_message(false);
+  message.width = 0;
+  message.height = 0xFFFFFFFF;
+  message.data = Payload();
+  const PointCloud cloud = to_point_cloud(message);
+  EXPECT_EQ(cloud.rows, 1U);
+  EXPECT_EQ(cloud.size(), 0U);
+  message.height = 0;
+  message.width = 0xFFFFFFFF;
+  EXPECT_EQ(to_point_cloud(message).size(), 0U);
+}
+
 TEST(CloudFromMessage, ContradictingSizesAreErrors) {
   const auto refused = [](const auto& change) {
     PointCloud2 message = mixed_message(false);
