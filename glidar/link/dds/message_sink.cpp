@@ -78,7 +78,7 @@ void MessageSink::report_other_publishers() {
     if (!others_.of(writer->name()).empty()) contested.push_back(writer->name());
   }
   if (contested.size() > contested_.size()) {
-    // a kind of its own: advice for the participant may just have been printed
+    // A kind of its own: advice for the participant may just have been printed
     participant_.errors().report("ROS 2 topics",
                                  "another program also publishes " + comma_separated(contested) +
                                      ", so nodes receive both; end it, or use another "

@@ -25,14 +25,12 @@ MeasuredFringes measure_fringes(std::span<const GreyImage> images, const Structu
 FringeTrace explain_fringes(std::span<const GreyImage> images, const StructuredLight& setup,
                             std::array<std::uint32_t, 2> column_row) {
   FringeTrace trace = explain_fringes(images, setup.patterns, setup.decoding, column_row);
+  if (trace.status != FringeStatus::valid) return trace;
   DecodedFringes decoded = {images.front().width, images.front().height};
   decoded.coordinate_px.assign(images.front().level.size(), kNaNf);
   const std::size_t pixel = std::size_t{trace.row} * decoded.width + trace.column;
-  if (trace.status == FringeStatus::valid) {
-    decoded.coordinate_px[pixel] = static_cast<float>(trace.coordinate_px);
-  }
-  const bool has_depth = !std::isnan(triangulate(decoded, setup)[pixel]);
-  if (trace.status != FringeStatus::valid || has_depth) return trace;
+  decoded.coordinate_px[pixel] = static_cast<float>(trace.coordinate_px);
+  if (!std::isnan(triangulate(decoded, setup)[pixel])) return trace;
   trace.status = FringeStatus::inconsistent;
   trace.tests.push_back({FringeStatus::inconsistent, false,
                          "the coordinate leads to no depth in front of camera and projector"});
