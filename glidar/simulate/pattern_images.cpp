@@ -36,7 +36,7 @@ void light_scene(const Simulation& s, const PreparedStructuredLight& prepared,
                    .time_ns = time_ns},
                   memory.left);
   memory.projector_px.resize(memory.projector.size());
-  const int axis = prepared.camera.patterns.axis == FringeAxis::columns ? 0 : 1;
+  const int axis = axis_index(prepared.camera.patterns);
   for_rays(s, [&](std::size_t ray) {
     memory.projector_px[ray] = kNaNf;
     if (!(memory.projector[ray] > 0.0F)) return;

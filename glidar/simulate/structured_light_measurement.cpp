@@ -119,7 +119,7 @@ StructuredLightPixelTrace trace_pixel(const Simulation& s, const PreparedStructu
   StructuredLightPixelTrace trace{.exposure = s.workspace.infrared.exposure};
   for (const RawImage& image : images) trace.electrons.push_back(double{image.electrons[pixel]});
   const auto lit_by = true_pixel(s, prepared, pixel);
-  const int axis = prepared.camera.patterns.axis == FringeAxis::columns ? 0 : 1;
+  const int axis = axis_index(prepared.camera.patterns);
   trace.true_projector_px = lit_by ? (*lit_by)[axis] : kNaN;
   trace.decoded = explain_fringes(pixel_images(images, pixel), prepared.setup.patterns,
                                   prepared.setup.decoding, {0, 0});

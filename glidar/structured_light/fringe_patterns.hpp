@@ -36,6 +36,11 @@ void describe(FringePatterns& patterns, FieldVisitor& visitor);
 /// Throws Error naming the first value that is not allowed.
 void validate(const FringePatterns& patterns);
 
+/// The encoded coordinate of a pixel (column, row): 0 or 1.
+inline int axis_index(const FringePatterns& patterns) {
+  return patterns.axis == FringeAxis::columns ? 0 : 1;
+}
+
 /// Pixels of the projector along the encoded axis.
 std::uint32_t encoded_size(const FringePatterns& patterns);
 

@@ -101,7 +101,7 @@ std::vector<float> triangulate(const DecodedFringes& decoded, const StructuredLi
                                const Beams& camera_rays, ThreadPool* pool) {
   require_size(decoded, setup.camera.intrinsics);
   const PinholeProjection projection(setup.projector);
-  const int axis = setup.patterns.axis == FringeAxis::columns ? 0 : 1;
+  const int axis = axis_index(setup.patterns);
   const Eigen::Matrix3d rotation = setup.projector_from_camera.linear();
   std::vector<float> depth_m(decoded.coordinate_px.size(), kNaNf);
   const auto find_depth = [&](std::size_t i) {
