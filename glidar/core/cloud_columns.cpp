@@ -12,15 +12,26 @@ namespace {
 
 using Vectors = std::vector<Eigen::Vector3d>;
 
-/// The points at these ranges on the beams.
+/// The points at these ranges on the beams; NaN where there is no range.
 void fill_points(const ColumnSource& s, const std::vector<double>& ranges_m,
                  const Vectors& directions, const Vectors& origins_m, Column& column) {
+  const Eigen::Vector3d no_point = Eigen::Vector3d::Constant(kNaN);
+  const auto in_sensor = [&](std::size_t i) -> Eigen::Vector3d {
+    const Eigen::Vector3d from_origin = ranges_m[i] * directions[i];
+    return origins_m.empty() ? from_origin : Eigen::Vector3d(from_origin + origins_m[i]);
+  };
+  if (s.cloud_from_sensor.matrix() == Eigen::Matrix4d::Identity()) {
+    // The sum makes zeros positive, as the general case does.
+    return fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
+      if (std::isnan(ranges_m[i])) return no_point;
+      return in_sensor(i) + Eigen::Vector3d::Zero();
+    });
+  }
   const Eigen::Matrix3d rotation = s.cloud_from_sensor.linear();
   const Eigen::Vector3d translation = s.cloud_from_sensor.translation();
   fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
-    Eigen::Vector3d in_sensor = ranges_m[i] * directions[i];
-    if (!origins_m.empty()) in_sensor += origins_m[i];
-    return rotation * in_sensor + translation;
+    if (std::isnan(ranges_m[i])) return no_point;
+    return rotation * in_sensor(i) + translation;
   });
 }
 

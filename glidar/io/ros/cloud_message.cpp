@@ -142,10 +142,16 @@ std::int64_t first_firing_ns(const Frame& frame, const Beams& beams) {
 std::vector<std::uint32_t> message_points(const PointCloud& cloud, const Beams& beams,
                                           const CloudMessageOptions& options) {
   std::vector<std::uint32_t> points(cloud.size());
-  std::iota(points.begin(), points.end(), 0U);
   if (options.dense) {
     const std::vector<double>& xyz = coordinates_of(cloud);
-    std::erase_if(points, [&](std::uint32_t i) { return std::isnan(xyz[3 * std::size_t{i}]); });
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {  // without branches
+      points[count] = static_cast<std::uint32_t>(i);
+      count += std::isnan(xyz[3 * i]) ? 0U : 1U;
+    }
+    points.resize(count);
+  } else {
+    std::iota(points.begin(), points.end(), 0U);
   }
   const auto times = options.firing_order ? times_of(cloud, beams) : std::span<std::uint32_t>{};
   if (!times.empty()) sort_by_time(times, points);
