@@ -20,13 +20,34 @@ namespace glidar {
 
 struct SampleRecorder;
 
+// clang-format off
 /// One step of a sensor's noise. A sensor has an ordered list of steps; step k, from 0, uses random
 /// numbers of the purpose first_noise_step + k, so that steps share none.
-using NoiseStep = std::variant<RangeGaussian, RangeSnr, RangeCrlb, RangeShotNoise, RangeUniform,
-                               RangeQuantization, RangeBias, RangeDrift, Dropout, Crosstalk,
-                               FalseAlarms, DisparityQuantization, KinectV1, Khoshelham,
-                               NguyenAxial, NguyenLateral, IclKinect, Stereo, ContinuousWave,
-                               IntensityGaussian, IntensityScale, PointingJitter, EncoderError>;
+using NoiseStep = std::variant<
+    RangeGaussian,
+    RangeSnr,
+    RangeCrlb,
+    RangeShotNoise,
+    RangeUniform,
+    RangeQuantization,
+    RangeBias,
+    RangeDrift,
+    Dropout,
+    Crosstalk,
+    FalseAlarms,
+    DisparityQuantization,
+    KinectV1,
+    Khoshelham,
+    NguyenAxial,
+    NguyenLateral,
+    IclKinect,
+    Stereo,
+    ContinuousWave,
+    IntensityGaussian,
+    IntensityScale,
+    PointingJitter,
+    EncoderError>;
+// clang-format on
 
 /// Maximum number of steps in a list, because purposes have 8 bits.
 inline constexpr std::size_t kMaxNoiseSteps = 224;
