@@ -3,6 +3,7 @@
 """Files are byte-identical to those of the command line."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -126,3 +127,17 @@ def test_input_files_are_not_overwritten(tmp_path):
         with pytest.raises(glidar.Error, match="is an input file"):
             frame.save(tmp_path / ".." / tmp_path.name / "m.ply")
     assert model.read_bytes() == before
+
+
+SUFFIX = re.compile(r"(?<![\w.])\.[a-z_]+[0-9]?(?:\.[a-z]+)*")
+BAGS = {".mcap", ".bag", ".rosbag2"}  # written by other code than single files
+ONLY_BY_THE_PROGRAM = {".framebuffer.png"}  # needs its option --quantized-framebuffer
+
+
+def test_the_documentation_lists_every_suffix(scene_file, tmp_path):
+    frame = glidar.simulate(glidar.load_scene(scene_file))
+    with pytest.raises(glidar.Error) as caught:
+        frame.save(tmp_path / "a.unknown")
+    allowed = set(SUFFIX.findall(str(caught.value).split("allowed:")[1]))
+    documented = set(SUFFIX.findall(glidar.Frame.save.__doc__.split("Args:")[0]))
+    assert documented - BAGS == allowed - ONLY_BY_THE_PROGRAM
