@@ -16,22 +16,24 @@ using Vectors = std::vector<Eigen::Vector3d>;
 void fill_points(const ColumnSource& s, const std::vector<double>& ranges_m,
                  const Vectors& directions, const Vectors& origins_m, Column& column) {
   const Eigen::Vector3d no_point = Eigen::Vector3d::Constant(kNaN);
-  const auto in_sensor = [&](std::size_t i) -> Eigen::Vector3d {
-    const Eigen::Vector3d from_origin = ranges_m[i] * directions[i];
-    return origins_m.empty() ? from_origin : Eigen::Vector3d(from_origin + origins_m[i]);
+  const auto fill = [&](const auto& to_cloud) {
+    fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
+      if (std::isnan(ranges_m[i])) return no_point;
+      Eigen::Vector3d in_sensor = ranges_m[i] * directions[i];
+      if (!origins_m.empty()) in_sensor += origins_m[i];
+      return to_cloud(in_sensor);
+    });
   };
   if (s.cloud_from_sensor.matrix() == Eigen::Matrix4d::Identity()) {
     // The sum makes zeros positive, as the general case does.
-    return fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
-      if (std::isnan(ranges_m[i])) return no_point;
-      return in_sensor(i) + Eigen::Vector3d::Zero();
+    return fill([](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+      return point + Eigen::Vector3d::Zero();
     });
   }
   const Eigen::Matrix3d rotation = s.cloud_from_sensor.linear();
   const Eigen::Vector3d translation = s.cloud_from_sensor.translation();
-  fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
-    if (std::isnan(ranges_m[i])) return no_point;
-    return rotation * in_sensor(i) + translation;
+  fill([&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+    return rotation * point + translation;
   });
 }
 

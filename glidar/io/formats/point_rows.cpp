@@ -38,7 +38,7 @@ template <class To, std::size_t kCount, class From, class Convert>
 void store_each(const From* from, std::size_t step, const Places& to, Convert convert) {
   std::byte* place = to.first;
   for (std::size_t i = 0; i < to.count; ++i, from += step, place += to.stride) {
-    // One by one: what is stored in parts is slow to load as a whole.
+    // One by one: a copy of the array as a whole would wait for the stores of its numbers.
     for (std::size_t c = 0; c < kCount; ++c) {
       const To value = convert(from + c);
       std::memcpy(place + c * sizeof(To), &value, sizeof(To));

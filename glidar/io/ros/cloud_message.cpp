@@ -145,7 +145,7 @@ std::vector<std::uint32_t> message_points(const PointCloud& cloud, const Beams& 
   if (options.dense) {
     const std::vector<double>& xyz = coordinates_of(cloud);
     std::size_t count = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {  // without branches
+    for (std::size_t i = 0; i < cloud.size(); ++i) {  // no branch, as misses are irregular
       points[count] = static_cast<std::uint32_t>(i);
       count += std::isnan(xyz[3 * i]) ? 0U : 1U;
     }
