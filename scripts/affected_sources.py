@@ -8,8 +8,8 @@ import subprocess
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.MULTILINE)
-# A change of one of these may change what any source means.
-SETTINGS = re.compile(r"(^|/)\.clang-tidy$|(^|/)CMakeLists\.txt$|^CMakePresets\.json$|^cmake/")
+# A change of one of these may change the findings of any source.
+SETTINGS = re.compile(r"(^|/)\.clang-tidy$")
 
 
 def changed_since(root, commit):
@@ -37,24 +37,22 @@ def included_by(root, file):
     return found
 
 
+def with_includes(root, source, includes):
+    """A source and the project's files that it includes, also indirectly. `includes` keeps what was read."""
+    seen, waiting = {source}, [source]
+    while waiting:
+        file = waiting.pop()
+        if file not in includes:
+            includes[file] = included_by(root, file)
+        new = includes[file] - seen
+        seen |= new
+        waiting += new
+    return seen
+
+
 def affected(root, sources, changed):
     """The paths among `sources` that the changed files, named relative to `root`, affect."""
     if any(SETTINGS.search(name) for name in changed):
         return set(sources)
-    changed = {root / name for name in changed}
-    includes = {}
-
-    def reaches_change(source):
-        seen, waiting = {source}, [source]
-        while waiting:
-            file = waiting.pop()
-            if file in changed:
-                return True
-            if file not in includes:
-                includes[file] = included_by(root, file)
-            new = includes[file] - seen
-            seen |= new
-            waiting += new
-        return False
-
-    return {source for source in sources if reaches_change(source)}
+    changed, includes = {root / name for name in changed}, {}
+    return {source for source in sources if changed & with_includes(root, source, includes)}

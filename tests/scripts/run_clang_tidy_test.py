@@ -20,8 +20,11 @@ BAD = "namespace glidar {{\nint {0}(int count, int unused) {{\n  return count;\n
 class Grouping(unittest.TestCase):
     def setUp(self):
         self.root = Path(self.enterContext(tempfile.TemporaryDirectory()))
-        self.addCleanup(setattr, run_clang_tidy, "ROOT", run_clang_tidy.ROOT)
-        run_clang_tidy.ROOT = self.root
+        self.build = self.root / "build"
+        for name, value in (("ROOT", self.root), ("CACHE", self.root / "cache")):
+            self.addCleanup(setattr, run_clang_tidy, name, getattr(run_clang_tidy, name))
+            setattr(run_clang_tidy, name, value)
+        run_clang_tidy.CACHE.mkdir()
         shutil.copy(ROOT / ".clang-tidy", self.root)
 
     def source(self, name, text, options="-O2"):
@@ -69,32 +72,45 @@ class Grouping(unittest.TestCase):
                    self.source("glidar/b.cpp", "using ::testing::Eq;\nint size(B b) {\n  const int row = 1;\n}\n")]
         self.assertEqual(self.names(sources), [["a", "b"]])
 
+    def check(self, sources):
+        """The findings, and which sources have stamps."""
+        self.write_database(sources)
+        stamps = run_clang_tidy.stamps_of(sources)
+        text = run_clang_tidy.findings(self.build, sources, stamps)
+        return text, [file.stem for file, stamp in stamps.items() if stamp.exists()]
+
     @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
     def test_a_fault_of_one_source_is_told_of_it_and_good_ones_pass(self):
-        build = self.root / "build"
-        (build / "tidy").mkdir(parents=True)
         good = [self.source(f"glidar/{name}.cpp", GOOD.format(name)) for name in "ab"]
-        self.assertEqual(run_clang_tidy.check(build, good, "0"), "")
-        self.assertTrue((build / "tidy/0").exists())
+        self.assertEqual(self.check(good), ("", ["a", "b"]))
         bad = self.source("glidar/c.cpp", BAD.format("c"))
-        self.write_database(build, [*good, bad])
-        reported = run_clang_tidy.check(build, [*good, bad], "1")
-        self.assertRegex(reported, r"glidar/c\.cpp:2:22: error: parameter 'unused' is unused")
-        self.assertFalse((build / "tidy/1").exists())
+        text, passed = self.check([*good, bad])
+        self.assertRegex(text, r"glidar/c\.cpp:2:22: error: parameter 'unused' is unused")
+        self.assertEqual(passed, ["a", "b"])
 
     @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
     def test_sources_that_do_not_compile_together_are_checked_apart(self):
-        build = self.root / "build"
-        (build / "tidy").mkdir(parents=True)
         both = [self.source("glidar/a.cpp", "namespace {\nint hidden;\n}\nint glidar_a = hidden;\n"),
                 self.source("glidar/b.cpp", "namespace {\nlong hidden;\n}\nlong glidar_b = hidden;\n")]
-        self.write_database(build, both)
-        self.assertFalse(run_clang_tidy.check_together(build, both, "2"))
-        self.assertEqual(run_clang_tidy.check(build, both, "2"), "")
+        self.write_database(both)
+        self.assertFalse(run_clang_tidy.check_together(self.build, both))
+        self.assertEqual(self.check(both), ("", ["a", "b"]))
 
-    def write_database(self, build, sources):
+    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
+    def test_a_source_is_checked_again_when_what_it_includes_or_its_options_change(self):
+        header = self.root / "glidar/a.hpp"
+        source = self.source("glidar/a.cpp", "#include <glidar/a.hpp>\n")
+        header.write_text("", encoding="utf-8")
+        before = run_clang_tidy.stamps_of([source])[source[0]]
+        self.assertEqual(run_clang_tidy.stamps_of([source])[source[0]], before)
+        self.assertNotEqual(run_clang_tidy.stamps_of([self.source("glidar/a.cpp", source[0].read_text(), "-O1")])[source[0]], before)
+        header.write_text("// changed\n", encoding="utf-8")
+        self.assertNotEqual(run_clang_tidy.stamps_of([source])[source[0]], before)
+
+    def write_database(self, sources):
+        self.build.mkdir(exist_ok=True)
         entries = [{"directory": folder, "command": command, "file": str(file)} for file, folder, command in sources]
-        (build / "compile_commands.json").write_text(run_clang_tidy.json.dumps(entries), encoding="utf-8")
+        (self.build / "compile_commands.json").write_text(run_clang_tidy.json.dumps(entries), encoding="utf-8")
 
 
 if __name__ == "__main__":
