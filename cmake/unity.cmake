@@ -55,3 +55,20 @@ function(glidar_unity_build size)
     endforeach()
   endforeach()
 endfunction()
+
+# glidar_group_sources(SIZE TARGET...): up to SIZE sources of each target as one: those that do not define the same names.
+function(glidar_group_sources size)
+  find_program(PYTHON3_PROGRAM python3 REQUIRED)
+  foreach(target IN LISTS ARGN)
+    get_target_property(sources ${target} SOURCES)
+    list(FILTER sources INCLUDE REGEX "^${PROJECT_SOURCE_DIR}/.*\\.cpp$")
+    execute_process(COMMAND ${PYTHON3_PROGRAM} -B ${PROJECT_SOURCE_DIR}/scripts/source_groups.py ${size} ${sources}
+                    OUTPUT_VARIABLE groups OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+    string(REGEX REPLACE ";" "," groups "${groups}")
+    string(REPLACE "\n" ";" groups "${groups}")
+    glidar_compile_together(${target} ${groups})
+    # a source that newly defines a name of its neighbour needs another group
+    get_target_property(folder ${target} SOURCE_DIR)
+    set_property(DIRECTORY ${folder} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${sources})
+  endforeach()
+endfunction()

@@ -11,12 +11,14 @@ import re
 import sys
 from pathlib import Path
 
-# Constants and types by name, functions by the line that they begin with.
+# Constants and types by name, functions by the line that they begin with; those of unnamed namespaces by name, because
+# one overload may take the calls of another.
 DEFINITIONS = re.compile(
     r"^(?:(?:static |inline )*const(?:expr|init)? [^(={;\n]*?(\w+)(?:\[\w*\])? ?[={;]|(?:struct|class|enum class) (\w+)|using (\w+) ="
     r"|(\w[^;=\n]* [&*]?\w+\([^;\n]*[{,]$))", re.MULTILINE)
-# Constants of functions; in another source of the group they must not shadow a definition.
-LOCAL_CONSTANTS = re.compile(r"^\s+(?:static )?const(?:expr)? [^(={;\n]*?(\w+)(?:\[\w*\])? ?[={]", re.MULTILINE)
+HIDDEN = re.compile(r"^namespace \{$.*?^\}  // namespace$", re.MULTILINE | re.DOTALL)
+# Constants and names of types in functions; in another source of the group they must not shadow a definition.
+LOCALS = re.compile(r"^\s+(?:(?:static )?const(?:expr)? [^(={;\n]*?(\w+)(?:\[\w*\])? ?[={]|using (\w+) =)", re.MULTILINE)
 
 
 def signature(line):
@@ -31,8 +33,9 @@ def signature(line):
 def definitions(text):
     """The names that a source defines at namespace scope."""
     found = DEFINITIONS.findall(text)
+    hidden = [function for *_, function in DEFINITIONS.findall("".join(HIDDEN.findall(text))) if function]
     return {next(filter(None, names)) for *names, _ in found if any(names)} - {"namespace"} | {
-        signature(function) for *_, function in found if function}
+        signature(function) for *_, function in found if function} | {signature(function).split("(")[0] for function in hidden}
 
 
 def groups(sources, size, kind_of):
@@ -41,7 +44,7 @@ def groups(sources, size, kind_of):
     found = []
     for source in sources:
         kind, text = kind_of(source), source[0].read_text(encoding="utf-8")
-        names, constants = definitions(text), set(LOCAL_CONSTANTS.findall(text))
+        names, constants = definitions(text), {first or second for first, second in LOCALS.findall(text)}
         for other_kind, members, taken, shadowing in found:
             if other_kind == kind and len(members) < size and not (names & (taken | shadowing) or constants & taken):
                 members.append(source)

@@ -12,13 +12,13 @@
 namespace glidar {
 namespace {
 
-Sensor load(const std::string& content) {
+Sensor sensor_of(const std::string& content) {
   const TestFolder folder;
   return load_sensor_file(folder.write("s.yaml", content));
 }
 
 TEST(LidarFile, ReadsEveryKeyOfSpinningOptics) {
-  const Sensor sensor = load(R"(
+  const Sensor sensor = sensor_of(R"(
 rate_hz: 20
 wavelength_nm: 905
 limits: {near_m: 0.5, far_m: 50, along: depth}
@@ -57,7 +57,7 @@ optics:
 }
 
 TEST(LidarFile, ReadsRastersAndPrisms) {
-  const Sensor sensor = load(
+  const Sensor sensor = sensor_of(
       "rate_hz: 15\noptics: {type: line_scan, azimuth_deg: {from: -1, to: 1, count: 3}, "
       "elevation_deg: [5, 6], point_us: 10, line_us: 100, bidirectional: true}\n");
   const auto& raster = std::get<LineScan>(sensor.optics);
@@ -67,7 +67,7 @@ TEST(LidarFile, ReadsRastersAndPrisms) {
   EXPECT_DOUBLE_EQ(raster.elevations_rad[1], 6 * kDegree);
   EXPECT_EQ(raster.line_ns, 100'000.0);
   EXPECT_TRUE(raster.bidirectional);
-  const Sensor livox = load(
+  const Sensor livox = sensor_of(
       "optics: {type: prism, pulse_hz: 1000, incidence_deg: [1, 2], prisms: "
       "[{rotation_hz: -3, apex_deg: 20, phase_deg: 90, refractive_index: 1.4, slope: exit}]}\n");
   const auto& prism = std::get<Prism>(livox.optics);
