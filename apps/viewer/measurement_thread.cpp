@@ -227,7 +227,8 @@ void MeasurementThread::prepare(const MeasureRequest& request, Snapshot& snapsho
   snapshot.motion = with_moves(active.motion, request);
   snapshot.frame.number = request.number;
   snapshot.frame.sensor_id = active.id;
-  snapshot.frame.stamp_ns = frame_interval(*snapshot.sensor, request.number).start_ns;
+  snapshot.frame.stamp_ns =
+      open_scene_->prepared->start_ns + frame_interval(*snapshot.sensor, request.number).start_ns;
   snapshot.frame.seed = request.seed;
 }
 

@@ -3,6 +3,8 @@
 #include <glidar/motion/motion.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/time_text.hpp>
+#include <glidar/motion/times.hpp>
 
 #include <string>
 #include <type_traits>
@@ -148,8 +150,40 @@ bool is_linear(const Trajectory& trajectory) {
 }
 
 std::string seconds_text(std::int64_t t_ns) {
-  return std::to_string(static_cast<double>(t_ns) / 1e9) + " s";
+  return decimal_seconds(t_ns) + " s";
 }
+
+/// The motion with each of its times shifted from one clock to another.
+struct Retimed {
+  std::int64_t from_ns;
+  std::int64_t to_ns;
+
+  [[nodiscard]] std::int64_t time(std::int64_t t_ns) const {
+    return shifted_time_ns(t_ns, from_ns, to_ns);
+  }
+  ConstantPose operator()(const ConstantPose& constant) const { return constant; }
+  ConstantTwist operator()(ConstantTwist twist) const {
+    twist.t0_ns = time(twist.t0_ns);
+    return twist;
+  }
+  Spin operator()(Spin spin) const {
+    spin.t0_ns = time(spin.t0_ns);
+    return spin;
+  }
+  TimedPoses operator()(TimedPoses timed) const {
+    timed.shift_times(from_ns, to_ns);
+    return timed;
+  }
+  TorqueFreeRotation operator()(const TorqueFreeRotation& tumbling) const {
+    InitialRotation start = tumbling.start();
+    start.t0_ns = time(start.t0_ns);
+    return TorqueFreeRotation(start);
+  }
+  Mounted operator()(Mounted mounted) const {
+    std::visit([this](auto& carrier) { carrier = (*this)(carrier); }, mounted.carrier);
+    return mounted;
+  }
+};
 
 }  // namespace
 
@@ -228,6 +262,11 @@ Motion make_motion(const Scene& scene, const Trajectory& world_from_sensor,
 
 Trajectory transformed(const Pose& moved_from_world, const Trajectory& trajectory) {
   return std::visit([&](const auto& kind) { return moved_by(moved_from_world, kind); }, trajectory);
+}
+
+Trajectory retimed(const Trajectory& trajectory, std::int64_t from_ns, std::int64_t to_ns) {
+  const Retimed retime{from_ns, to_ns};
+  return std::visit([&](const auto& kind) -> Trajectory { return retime(kind); }, trajectory);
 }
 
 Trajectory compose_extrinsic(const Trajectory& world_from_body, const Pose& body_from_part) {

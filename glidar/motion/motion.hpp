@@ -75,6 +75,10 @@ Motion make_motion(const Scene& scene, const Trajectory& world_from_sensor,
 /// The trajectory in another world frame: moved_from_world * pose_at(trajectory, t).
 Trajectory transformed(const Pose& moved_from_world, const Trajectory& trajectory);
 
+/// The trajectory at other times: its pose at `to_ns` is that at `from_ns`, bit for bit. Throws
+/// Error if a time leaves the range of nanoseconds.
+Trajectory retimed(const Trajectory& trajectory, std::int64_t from_ns, std::int64_t to_ns);
+
 /// The trajectory of a part that is fixed to a body: pose_at(world_from_body, t) * body_from_part.
 Trajectory compose_extrinsic(const Trajectory& world_from_body, const Pose& body_from_part);
 

@@ -50,7 +50,7 @@ std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPos
   const double length = next.orientation.norm();
   if (!(std::abs(length - 1.0) <= kQuaternionTolerance)) {
     return TimedPoseError{Part::orientation, "a quaternion of length " + std::to_string(length),
-                          "length 1 to within 0.001"};
+                          "length 1 to within 0.01"};
   }
   return std::nullopt;
 }
@@ -80,6 +80,13 @@ TimedPoses TimedPoses::restored(std::vector<TimedPose> poses, Interpolation inte
   result.poses_ = std::move(poses);
   result.set_interpolation(interpolation);
   return result;
+}
+
+void TimedPoses::shift_times(std::int64_t from_ns, std::int64_t to_ns) {
+  // the ends first: nothing changes if one of them is out of range
+  (void)shifted_time_ns(first_ns(), from_ns, to_ns);
+  (void)shifted_time_ns(last_ns(), from_ns, to_ns);
+  for (TimedPose& pose : poses_) pose.t_ns = shifted_time_ns(pose.t_ns, from_ns, to_ns);
 }
 
 std::size_t TimedPoses::next_after(std::int64_t t_ns) const {

@@ -32,9 +32,9 @@ struct TimedPoseError {
   std::string allowed;
 };
 
-/// Maximum deviation of a quaternion's length from 1: files with four decimals are valid, a missing
+/// Maximum deviation of a quaternion's length from 1: files with two decimals are valid, a missing
 /// or misplaced component is not.
-inline constexpr double kQuaternionTolerance = 1e-3;
+inline constexpr double kQuaternionTolerance = 1e-2;
 
 /// The first error of `next`, if any; `before` is the previous pose, nullptr for the first.
 std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPose& next);
@@ -63,6 +63,10 @@ class TimedPoses {
   /// one is not normalised.
   static TimedPoses restored(std::vector<TimedPose> poses,
                              Interpolation interpolation = Interpolation::linear);
+
+  /// Shifts all times, so that `from_ns` becomes `to_ns`. Throws Error if one leaves the range of
+  /// nanoseconds.
+  void shift_times(std::int64_t from_ns, std::int64_t to_ns);
 
   [[nodiscard]] Pose pose_at(std::int64_t t_ns) const;
 

@@ -15,11 +15,11 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import MAX_UINT32, MAX_UINT64, FloatArray, floats, path_of, whole
+from ._inputs import MAX_UINT32, MAX_UINT64, FloatArray, floats, path_of, times_ns, whole
 from ._scene import Scene
 from ._sensor import plain
 from ._state import Immutable, part, restoring, make_state
-from ._trajectory import PoseLike, Trajectory, trajectories
+from ._trajectory import PoseLike, Trajectory, first_time_ns, trajectories
 
 _MAX_TIME_S = 9.2e9
 #: Acceleration of free fall in a world whose z axis points up, m/s^2.
@@ -145,13 +145,23 @@ def _ns(value_s: float, where: str) -> int:
     return round(seconds * 1e9)
 
 
+def _chosen_ns(name: str, time_s: float | None, time_ns: int | None, default_ns: int) -> int:
+    if time_s is not None and time_ns is not None:
+        raise Error(f"{name}_s and {name}_ns", "both are given", "one of them")
+    if time_s is not None:
+        return _ns(time_s, f"{name}_s")
+    return default_ns if time_ns is None else int(times_ns([time_ns], f"{name}_ns")[0])
+
+
 def simulate_imu(
     imu: Imu | str | os.PathLike[str],
     trajectory: PoseLike,
     duration_s: float,
     *,
-    start_s: float = 0.0,
+    start_s: float | None = None,
     turned_on_s: float | None = None,
+    start_ns: int | None = None,
+    turned_on_ns: int | None = None,
     seed: int = 1,
     number: int = 0,
     gravity_m_s2: npt.ArrayLike = STANDARD_GRAVITY,
@@ -164,8 +174,9 @@ def simulate_imu(
     Args:
         imu: an IMU, the name of a preset or the path of a file.
         trajectory: world_from_imu: a Trajectory, or a pose (4, 4).
-        start_s: time of the first sample, s.
-        turned_on_s: time of sample 0, when random walks are 0; None: start_s.
+        start_s: time of the first sample, s; None: the first time of timed poses, else 0.
+        turned_on_s: time of sample 0, when random walks are 0; None: that of the first sample.
+        start_ns, turned_on_ns: the same in whole nanoseconds, which are exact for times since 1970.
         seed: seed of random numbers; number: of the IMU on the rig, which selects its random numbers.
         gravity_m_s2: acceleration of free fall in the world, (3,); zeros in space.
 
@@ -173,23 +184,31 @@ def simulate_imu(
         Error: an argument is invalid, or there are more than 10 million samples.
     """
     run = _core.ImuRun()
-    run.from_ns = _ns(start_s, "start_s")
+    motion = trajectories(trajectory, "trajectory")
+    run.from_ns = _chosen_ns("start", start_s, start_ns, first_time_ns(motion))
     run.until_ns = run.from_ns + _ns(duration_s, "duration_s")
-    run.start_ns = run.from_ns if turned_on_s is None else _ns(turned_on_s, "turned_on_s")
+    run.start_ns = _chosen_ns("turned_on", turned_on_s, turned_on_ns, run.from_ns)
     run.seed = whole(seed, "seed", MAX_UINT64)
     run.imu = whole(number, "number", MAX_UINT32)
     run.gravity_m_s2 = floats(gravity_m_s2, "gravity_m_s2", (3,))
     chosen = imu if isinstance(imu, Imu) else load_imu(imu)
-    arrays = _core.simulate_imu(chosen._core, trajectories(trajectory, "trajectory"), run)
+    arrays = _core.simulate_imu(chosen._core, motion, run)
     arrays["t_ns"] = arrays["t_ns"].reshape(-1)
     arrays["world_from_imu"] = arrays["world_from_imu"].reshape(-1, 4, 4)
     return ImuSamples(**arrays)
 
 
 def simulate_imus(
-    scene: Scene, duration_s: float, *, pose: PoseLike | None = None, start_s: float = 0.0, seed: int = 1
+    scene: Scene,
+    duration_s: float,
+    *,
+    pose: PoseLike | None = None,
+    start_s: float | None = None,
+    start_ns: int | None = None,
+    seed: int = 1,
 ) -> dict[str, ImuSamples]:
-    """The samples of every IMU of a scene file by name; all are turned on at time 0.
+    """The samples of every IMU of a scene file by name; all are turned on at the first time of timed poses of the
+    rig, else at 0.
 
     Args:
         pose: the rig's pose, (4, 4), or Trajectory; None: that of the scene file.
@@ -208,7 +227,8 @@ def simulate_imus(
             Trajectory(_core.mounted(rig, np.ascontiguousarray(one.rig_from_imu)[None])),
             duration_s,
             start_s=start_s,
-            turned_on_s=0.0,
+            start_ns=start_ns,
+            turned_on_ns=first_time_ns(rig),
             seed=seed,
             number=one.number,
             gravity_m_s2=scene._core.gravity_m_s2,

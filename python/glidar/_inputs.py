@@ -20,6 +20,7 @@ from ._errors import Error, excerpt, shown
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 MAX_UINT32 = 2**32 - 1
 MAX_UINT64 = 2**64 - 1
+MAX_TIME_NS = 9_200_000_000_000_000_000
 MAX_PATH_LENGTH = 4096
 _NOT_ENCODABLE = re.compile("[\0\ud800-\udfff]")
 
@@ -83,6 +84,16 @@ def whole(value: object, where: str, maximum: int) -> int:
     if not 0 <= number <= maximum:
         raise Error(where, shown(value), f"a whole number from 0 to {maximum}")
     return number
+
+
+def times_ns(value: object, where: str) -> npt.NDArray[np.int64]:
+    """Times (N,) in whole nanoseconds."""
+    given = numbers(value, where, (None,))
+    if given.ndim != 1 or given.size == 0 or given.dtype.kind not in "iu":
+        raise Error(where, f"an array {shape_text(given.shape)} of {given.dtype}", "an array n of whole numbers")
+    if max(-int(given.min()), int(given.max())) > MAX_TIME_NS:
+        raise Error(where, f"{given[np.abs(given.astype(float)).argmax()]}", "nanoseconds from -9.2e18 to 9.2e18")
+    return np.ascontiguousarray(given, np.int64)
 
 
 def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArray[Any]:

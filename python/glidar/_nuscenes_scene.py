@@ -7,9 +7,11 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import datetime, timezone
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from . import _nuscenes_tables as tables
@@ -22,11 +24,12 @@ from ._object_box import ObjectBox
 from ._scene import Scene
 from ._scene_data import RigSensor
 from ._simulator import Simulator
-from ._trajectory import Trajectory
+from ._trajectory import Trajectory, first_time_ns
 
 TOP = "LIDAR_TOP"  # the devkit requires it
 KEY_PERIOD_NS = 500_000_000  # from one sample to the next: 2 Hz
 NS_PER_US = 1000
+FIRST_DATE_NS = 315_964_800 * 10**9  # 1980-01-06: later stamps are dates
 COLUMNS = ("xyz", "intensity", "range", "ring", "instance", "class")
 CAMERA_COLUMNS = ("colour", "incidence")
 FULL_INTENSITY = np.float32(255.0)
@@ -90,7 +93,8 @@ class SceneWriter:
     version: str
     name: str
     seed: int
-    start_us: int
+    start_us: int  # of the first frame, unless its stamp is a date that is kept
+    keeps_dates: bool
     rig: _core.Trajectories
     categories: Mapping[str, str]  # by the name of a class
     indices: Mapping[str, int]  # of categories in files of lidarseg
@@ -103,8 +107,7 @@ class SceneWriter:
     def write(self, scene: Scene, channels: list[Channel], duration_s: float) -> None:
         """Measures and writes all frames."""
         self._ego = Trajectory(self.rig)
-        times_s = np.append(np.arange(0.0, duration_s, STEP_S), duration_s)
-        self._map = GroundMap(self._ego.poses_at(times_s)[:, :3, 3])
+        self._steps_ns = np.rint(1e9 * np.append(np.arange(0.0, duration_s, STEP_S), duration_s)).astype(np.int64)
         self._category_indices = np.array([self.indices[self.categories[one]] for one in scene.class_names])
         if self._category_indices.max() > MAX_LABEL:
             raise Error("class", f"{self._category_indices.max() + 1} categories", f"up to {MAX_LABEL + 1}, which fit 8 bits")
@@ -121,7 +124,17 @@ class SceneWriter:
         return token(self.name, self.seed, *parts)
 
     def _us(self, stamp_ns: int) -> int:
-        return self.start_us + stamp_ns // NS_PER_US
+        return self._offset_us + stamp_ns // NS_PER_US
+
+    def _ego_poses(self, since_start_ns: npt.ArrayLike) -> FloatArray:
+        return self._ego.poses_at_ns(first_time_ns(self.rig) + np.asarray(since_start_ns))
+
+    def _begin(self, start_ns: int) -> None:
+        """The first frame of LIDAR_TOP states the start."""
+        self._start_ns = start_ns
+        is_kept = self.keeps_dates and start_ns >= FIRST_DATE_NS
+        self._offset_us = 0 if is_kept else self.start_us - start_ns // NS_PER_US
+        self._map = GroundMap(self._ego_poses(self._steps_ns)[:, :3, 3])
 
     def _in_global(self, world_from_body: FloatArray) -> Record:
         pose = world_from_body.copy()
@@ -143,12 +156,14 @@ class SceneWriter:
         pose = Trajectory(_core.mounted(self.rig, sensor.rig_from_sensor[None]))
         columns = CAMERA_COLUMNS if channel.is_camera else COLUMNS
         frame = channel.simulator.simulate(pose, seed=self.seed, frame=number, sensor_id=sensor.number, columns=columns)
-        if channel.name == TOP and frame.stamp_ns >= len(self.samples) * KEY_PERIOD_NS:
+        if not self.samples:
+            self._begin(frame.stamp_ns)
+        if channel.name == TOP and frame.stamp_ns - self._start_ns >= len(self.samples) * KEY_PERIOD_NS:
             self._add_sample(frame.stamp_ns)
         sample, is_key = self._sample_of(channel, frame.stamp_ns)
         data = self._data_record(channel, frame, sample, is_key)
         self.tables["ego_pose"].append({"token": data["ego_pose_token"], "timestamp": data["timestamp"],
-                                        **self._in_global(self._ego.pose_at(1e-9 * frame.stamp_ns))})  # fmt: skip
+                                        **self._in_global(self._ego_poses([frame.stamp_ns - self._start_ns])[0])})  # fmt: skip
         if is_key and channel.name == TOP:
             self._annotate(frame, sample)
         if is_key and channel.is_camera:
@@ -258,8 +273,9 @@ class SceneWriter:
     def _add_scene(self, scene: Scene) -> None:
         log, image = token("log", self.name), f"maps/{token('map', self.name)}.png"
         offset = ", ".join(f"{one:g}" for one in self._map.offset_m)
-        self.tables["log"].append({"token": log, "logfile": self.name, "vehicle": "glidar", "date_captured": "2020-01-01",
-                                   "location": self.name})  # fmt: skip
+        start = datetime.fromtimestamp(self.samples[0]["timestamp"] / 1e6, timezone.utc)
+        self.tables["log"].append({"token": log, "logfile": self.name, "vehicle": "glidar",
+                                   "date_captured": start.strftime("%Y-%m-%d"), "location": self.name})  # fmt: skip
         self.tables["scene"].append(
             {"token": token("scene", self.name), "log_token": log, "nbr_samples": len(self.samples),
              "first_sample_token": self.samples[0]["token"], "last_sample_token": self.samples[-1]["token"],

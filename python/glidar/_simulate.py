@@ -35,6 +35,7 @@ def simulate(
     objects: PoseLike | Sequence[PoseLike] | None = None,
     columns: str | Iterable[str] | None = None,
     sensor_id: int = 0,
+    start_ns: int | None = None,
     renderer: str = "auto",
     threads: int = 0,
 ) -> Frame:
@@ -49,12 +50,15 @@ def simulate(
         pose: the sensor's pose: world_from_sensor (4, 4), m, or a Trajectory; None: that of the scene file,
             else a pose from which the whole scene is visible.
         seed: seed of all random numbers, 0 to 2**64 - 1.
-        frame: number of the frame. It starts at frame / rate_hz and selects the random numbers.
+        frame: number of the frame. It starts at start_ns + frame / rate_hz and selects the random numbers.
         objects: poses of all objects of the scene (k, 4, 4), or a list of k poses and trajectories;
             None: as the scene specifies.
         columns: columns that clouds of the frame can have: names, "all", or None for xyz, intensity, range,
             normal, instance, class. Ground truth that no column needs is not computed.
         sensor_id: number of the sensor in its rig; it selects the random numbers.
+        start_ns: start of the run, ns: the stamp of frame 0. None: the first time of the pose's trajectory, of
+            objects' trajectories with times since 1970, or else 0. Trajectories are sampled as on the command
+            line (docs/files/motion.md).
         renderer, threads: as for ``Simulator``.
 
     Raises:
@@ -62,7 +66,7 @@ def simulate(
     """
     simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate(
-        pose, seed=seed, frame=frame, objects=objects, columns=columns, sensor_id=sensor_id
+        pose, seed=seed, frame=frame, objects=objects, columns=columns, sensor_id=sensor_id, start_ns=start_ns
     )
 
 
@@ -76,6 +80,7 @@ def simulate_batch(
     objects: PoseLike | Sequence[PoseLike] | None = None,
     columns: str | Iterable[str] | None = None,
     sensor_id: int = 0,
+    start_ns: int | None = None,
     renderer: str = "auto",
     threads: int = 0,
 ) -> list[Frame]:
@@ -93,7 +98,7 @@ def simulate_batch(
     """
     simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate_batch(
-        poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id
+        poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id, start_ns=start_ns
     )
 
 
@@ -107,6 +112,7 @@ def simulate_iter(
     objects: PoseLike | Sequence[PoseLike] | Iterator[Sequence[PoseLike]] | None = None,
     columns: str | Iterable[str] | None = None,
     sensor_id: int = 0,
+    start_ns: int | None = None,
     renderer: str = "auto",
     threads: int = 0,
     batch: int = 8,
@@ -132,7 +138,14 @@ def simulate_iter(
     """
     simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate_iter(
-        poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id, batch=batch
+        poses,
+        seeds,
+        frames=frames,
+        objects=objects,
+        columns=columns,
+        sensor_id=sensor_id,
+        start_ns=start_ns,
+        batch=batch,
     )
 
 
@@ -144,6 +157,7 @@ def simulate_rig(
     frame: int = 0,
     objects: PoseLike | Sequence[PoseLike] | None = None,
     columns: str | Iterable[str] | None = None,
+    start_ns: int | None = None,
     renderer: str = "auto",
     threads: int = 0,
 ) -> dict[str, Frame]:
@@ -170,6 +184,7 @@ def simulate_rig(
             objects=objects,
             columns=columns,
             sensor_id=sensor.number,
+            start_ns=start_ns,
         )
         for sensor, simulator in simulators
     }

@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._errors import Error, shown
-from ._inputs import MAX_UINT32, MAX_UINT64, column_list, one_of, whole, whole_numbers
+from ._inputs import MAX_TIME_NS, MAX_UINT32, MAX_UINT64, column_list, one_of, whole, whole_numbers
 from ._frame import Frame
 from ._frame_inputs import DEFAULT_SEED, FrameInputs, FrameBatch
 from ._origin import Origin, SceneSource
@@ -20,7 +21,15 @@ from ._sensor import Sensor
 from ._state import Immutable, refuse_pickle
 from ._trajectory import PoseLike, object_trajectories, trajectories
 
+#: The number of the sensor, and the start of the run.
+_RunKeys: TypeAlias = "tuple[int, int | None]"
+
 _RENDERERS = ("auto", "rays", "raster", "opengl")
+
+
+def _run_keys(sensor_id: int, start_ns: int | None) -> _RunKeys:
+    start = None if start_ns is None else whole(start_ns, "start_ns", MAX_TIME_NS)
+    return whole(sensor_id, "sensor_id", MAX_UINT32), start
 
 
 class Simulator(Immutable):
@@ -74,6 +83,7 @@ class Simulator(Immutable):
         objects: PoseLike | Sequence[PoseLike] | None = None,
         columns: str | Iterable[str] | None = None,
         sensor_id: int = 0,
+        start_ns: int | None = None,
     ) -> Frame:
         """Measures once; see ``glidar.simulate``."""
         sensor = self._sensors(pose)
@@ -83,7 +93,7 @@ class Simulator(Immutable):
             self._core.simulate_one(
                 sensor,
                 object_trajectories(objects, 1, self._core.objects),
-                (whole(seed, "seed", MAX_UINT64), whole(frame, "frame", MAX_UINT32), whole(sensor_id, "sensor_id", MAX_UINT32)),
+                (whole(seed, "seed", MAX_UINT64), whole(frame, "frame", MAX_UINT32), *_run_keys(sensor_id, start_ns)),
                 self._hit_columns(columns),
             ),
             self._origin,
@@ -98,9 +108,12 @@ class Simulator(Immutable):
         objects: PoseLike | Sequence[PoseLike] | None = None,
         columns: str | Iterable[str] | None = None,
         sensor_id: int = 0,
+        start_ns: int | None = None,
     ) -> list[Frame]:
         """Measures at many poses in one call; see ``glidar.simulate_batch``."""
-        return self._measure(self._sensors(poses), objects, seeds, frames, columns, sensor_id)
+        return self._measure(
+            self._sensors(poses), objects, (seeds, frames), columns, _run_keys(sensor_id, start_ns)
+        )
 
     def simulate_iter(
         self,
@@ -111,6 +124,7 @@ class Simulator(Immutable):
         objects: PoseLike | Sequence[PoseLike] | Iterator[Sequence[PoseLike]] | None = None,
         columns: str | Iterable[str] | None = None,
         sensor_id: int = 0,
+        start_ns: int | None = None,
         batch: int = 8,
     ) -> Iterator[Frame]:
         """Measures and yields one frame after the other; see ``glidar.simulate_iter``."""
@@ -118,36 +132,36 @@ class Simulator(Immutable):
         together = whole(batch, "batch", MAX_UINT32)
         if together == 0:
             raise Error("batch", "0", "a whole number from 1")
-        return self._iterate(inputs, self._hit_columns(columns), whole(sensor_id, "sensor_id", MAX_UINT32), together)
+        return self._iterate(inputs, self._hit_columns(columns), _run_keys(sensor_id, start_ns), together)
 
-    def _iterate(self, inputs: FrameInputs, hit_columns: _core.HitColumnMask, sensor_id: int, batch: int) -> Iterator[Frame]:
+    def _iterate(self, inputs: FrameInputs, hit_columns: _core.HitColumnMask, run: _RunKeys, batch: int) -> Iterator[Frame]:
         while True:
             batch_inputs, error = inputs.take(batch)
-            yield from self._frames_of(batch_inputs, hit_columns, sensor_id)
+            yield from self._frames_of(batch_inputs, hit_columns, run)
             if error is not None:
                 raise error
             if len(batch_inputs.sensors) < batch:
                 return
 
-    def _frames_of(self, batch_inputs: FrameBatch, hit_columns: _core.HitColumnMask, sensor_id: int) -> Iterator[Frame]:
+    def _frames_of(self, batch_inputs: FrameBatch, hit_columns: _core.HitColumnMask, run: _RunKeys) -> Iterator[Frame]:
         """The frames of a batch. Each is released here when it is yielded."""
         if not batch_inputs.sensors:
             return
         try:
-            measured = self._measured(batch_inputs, hit_columns, sensor_id)
+            measured = self._measured(batch_inputs, hit_columns, run)
         except Error as error:
             if len(batch_inputs.sensors) == 1:
                 raise Error(f"frame {batch_inputs.first}, {error.where}", error.found, error.allowed, error.remedy) from error
             for k in range(len(batch_inputs.sensors)):  # find the frame that fails
-                yield from self._frames_of(batch_inputs.sliced(k), hit_columns, sensor_id)
+                yield from self._frames_of(batch_inputs.sliced(k), hit_columns, run)
             return
         measured.reverse()
         while measured:
             yield Frame(measured.pop(), self._origin)
 
-    def _measured(self, batch_inputs: FrameBatch, hit_columns: _core.HitColumnMask, sensor_id: int) -> list[_core.Frame]:
+    def _measured(self, batch_inputs: FrameBatch, hit_columns: _core.HitColumnMask, run: _RunKeys) -> list[_core.Frame]:
         objects = None if batch_inputs.objects is None else _core.joined(batch_inputs.objects)
-        keys = (np.array(batch_inputs.seeds, np.uint64), np.array(batch_inputs.numbers, np.uint32), sensor_id)
+        keys = (np.array(batch_inputs.seeds, np.uint64), np.array(batch_inputs.numbers, np.uint32), *run)
         return self._core.simulate(_core.joined(batch_inputs.sensors), objects, keys, hit_columns)
 
     def _sensors(self, poses: PoseLike | Sequence[PoseLike] | None) -> _core.Trajectories:
@@ -162,19 +176,19 @@ class Simulator(Immutable):
         self,
         sensors: _core.Trajectories,
         objects: PoseLike | Sequence[PoseLike] | None,
-        seeds: int | npt.ArrayLike | None,
-        numbers: int | npt.ArrayLike,
+        frames: tuple[int | npt.ArrayLike | None, int | npt.ArrayLike],
         columns: str | Iterable[str] | None,
-        sensor_id: int,
+        run: _RunKeys,
     ) -> list[Frame]:
         count = len(sensors)
+        seeds, numbers = frames
         measured = self._core.simulate(
             sensors,
             object_trajectories(objects, count, self._core.objects),
             (
                 whole_numbers(DEFAULT_SEED + np.arange(count) if seeds is None else seeds, "seed", count, 64),
                 whole_numbers(numbers, "frame", count, 32),
-                whole(sensor_id, "sensor_id", MAX_UINT32),
+                *run,
             ),
             self._hit_columns(columns),
         )

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._errors import Error
 from ._inputs import FloatArray, floats, numbers, one_of, path_of, shape_text
+from ._inputs import times_ns as whole_times_ns
 from ._state import Immutable, key_of, part, restoring, make_state
 
 _MAX_TIME_S = 9.2e9
@@ -40,8 +41,8 @@ def _is_spline(interpolation: str) -> bool:
 class Trajectory(Immutable):
     """A pose as a pure function of time: of a sensor (world_from_sensor) or an object (world_from_object).
 
-    Poses are (4, 4), m. Times are seconds from -9.2e9 to 9.2e9, rounded to nanoseconds. Trajectories are
-    immutable. Two are equal when they have the same type and bit-identical numbers; they can be hashed, copied
+    Poses are (4, 4), m. Times are seconds from -9.2e9 to 9.2e9, rounded to nanoseconds; those since 1970 are exact as
+    whole nanoseconds only, because a float has steps of 238 ns there. Trajectories are immutable. Two are equal when they have the same type and bit-identical numbers; they can be hashed, copied
     and pickled. Every constructor raises Error for a wrong shape or a number that is not finite.
     """
 
@@ -99,14 +100,23 @@ class Trajectory(Immutable):
         return Trajectory(_core.twist(start, angular, linear, in_world, _ns(t0_s, "t0_s")))
 
     @staticmethod
-    def timed(times_s: npt.ArrayLike, poses: npt.ArrayLike, *, interpolation: str = "linear") -> Trajectory:
+    def timed(
+        times_s: npt.ArrayLike | None,
+        poses: npt.ArrayLike,
+        *,
+        times_ns: npt.ArrayLike | None = None,
+        interpolation: str = "linear",
+    ) -> Trajectory:
         """Poses (N, 4, 4) at increasing times (N,), s. The first and last pose are held outside the interval.
 
         Args:
+            times_ns: the times in whole nanoseconds, if times_s is None.
             interpolation: "linear": positions linearly, rotations by slerp; "spline": twice continuously
                 differentiable, as IMUs need.
         """
-        times = _times_ns(times_s, "times_s")
+        if (times_s is None) == (times_ns is None):
+            raise Error("times_s and times_ns", "both" if times_ns is not None else "neither", "one of them")
+        times = _times_ns(times_s, "times_s") if times_s is not None else whole_times_ns(times_ns, "times_ns")
         return Trajectory(_core.timed(times, floats(poses, "poses", (len(times), 4, 4)), _is_spline(interpolation)))
 
     @staticmethod
@@ -146,7 +156,7 @@ class Trajectory(Immutable):
         start_s: float | None = None,
         interpolation: str = "linear",
     ) -> Trajectory:
-        """Timed poses from a TUM, KITTI or CSV file. The first row determines the format.
+        """Timed poses from a TUM, KITTI, EuRoC or CSV file. The first row determines the format.
 
         Args:
             rate_hz: poses per second of a KITTI file, the first at 0. Or:
@@ -172,11 +182,26 @@ class Trajectory(Immutable):
         """The poses (N, 4, 4) at times (N,), s."""
         return self._core.poses_at(_times_ns(times_s, "times_s"))
 
+    def poses_at_ns(self, times_ns: npt.ArrayLike) -> FloatArray:
+        """The poses (N, 4, 4) at times (N,), whole nanoseconds, such as ``Frame.stamp_ns``."""
+        return self._core.poses_at(whole_times_ns(times_ns, "times_ns"))
+
     @property
     def known_s(self) -> tuple[float, float]:
         """First and last time, s, for which the pose is known; about -9.2e9 and 9.2e9 when it is known always."""
         first, last = self._core.valid_interval()
         return first / 1e9, last / 1e9
+
+    @property
+    def known_ns(self) -> tuple[int, int]:
+        """The same in nanoseconds; the least and greatest int64 when it is known always."""
+        return self._core.valid_interval()
+
+
+def first_time_ns(core: _core.Trajectories) -> int:
+    """The first time of timed poses, else 0."""
+    first, _ = core.valid_interval()
+    return 0 if first == np.iinfo(np.int64).min else first
 
 
 #: A pose, (4, 4), or a trajectory.

@@ -43,7 +43,8 @@ class NuscenesWriter:
         folder: the data set's root; created, or an empty folder.
         version: name of the folder of tables, such as "v1.0-mini"; the devkit's splits depend on it.
         categories: nuScenes' category of each class that has another name; added to those of docs/files/nuscenes.md.
-        start_us: time of the first frame of the first scene, µs since 1970; scenes follow each other.
+        start_us: time of the first frame of the first scene, µs since 1970; scenes follow each other. None: the dates
+            of scenes whose trajectories have them; others follow each other from 2020-01-01 on.
 
     Raises:
         Error: a folder that is not empty, or an argument of another type.
@@ -55,14 +56,15 @@ class NuscenesWriter:
         *,
         version: str = "v1.0-mini",
         categories: Mapping[str, str] | None = None,
-        start_us: int = START_US,
+        start_us: int | None = None,
     ) -> None:
         self._root = Path(path_of(folder, "folder"))
         if self._root.exists() and (not self._root.is_dir() or any(self._root.iterdir())):
             raise Error(str(self._root), "it is not an empty folder", "a new or empty folder", "choose another name")
         self._version = version
         self._categories = tables.CATEGORIES | dict(categories or {})
-        self._next_us = whole(start_us, "start_us", MAX_UINT64)
+        self._keeps_dates = start_us is None
+        self._next_us = START_US if start_us is None else whole(start_us, "start_us", MAX_UINT64)
         self._tables = tables.fixed_tables()
         self._indices = {"noise": 0}  # of categories, in lidarseg files
         self._scenes: set[str] = set()
@@ -123,8 +125,8 @@ class NuscenesWriter:
         if rig is None:
             raise Error("trajectory", "the scene file places no rig", "a trajectory", "add rig_pose and rig_motion to the file")
         categories = {one: self._category(one) for one in scene.class_names}
-        writer = SceneWriter(self._root, self._version, title, whole(seed, "seed", MAX_UINT64), self._next_us, rig,
-                             categories, self._indices, self._tables)  # fmt: skip
+        writer = SceneWriter(self._root, self._version, title, whole(seed, "seed", MAX_UINT64), self._next_us,
+                             self._keeps_dates, rig, categories, self._indices, self._tables)  # fmt: skip
         writer.write(scene, channels_of(scene, channels or {}, renderer, threads), length)
         self._scenes.add(title)
         self._next_us += round(length * 1e6)

@@ -5,6 +5,7 @@
 #include "report.hpp"
 
 #include <glidar/core/point_cloud.hpp>
+#include <glidar/motion/run_clock.hpp>
 #include <glidar/sensor/lidar_placement.hpp>
 #include <glidar/sensor/view_placement.hpp>
 #include <glidar/simulate/simulator.hpp>
@@ -58,6 +59,7 @@ struct Batch {
   std::span<const std::uint64_t> seeds;
   std::span<const std::uint32_t> numbers;
   std::uint32_t sensor_id;
+  std::optional<std::int64_t> start_ns;
   const HitColumnMask& hit_columns;
 
   [[nodiscard]] std::size_t size() const { return sensors.all.size(); }
@@ -82,7 +84,6 @@ std::unique_ptr<Measured> start(const SimulatorHandle& handle, const Batch& batc
   measured->beams = handle.sensor->beams(batch.numbers[k]);
   Frame& frame = measured->frame;
   frame.number = batch.numbers[k];
-  frame.stamp_ns = frame_interval(handle.sensor->sensor(), frame.number).start_ns;
   frame.seed = batch.seeds[k];
   frame.sensor_id = batch.sensor_id;
   return measured;
@@ -94,8 +95,11 @@ void measure_run(const SimulatorHandle& handle, const Batch& batch, std::size_t 
   std::vector<Motion> motions;
   std::vector<Frame> frames;
   for (std::size_t k = 0; k < run.size(); ++k) {
-    motions.push_back(motion_of(handle, batch, first + k));
-    frames.push_back(std::move(run[k]->frame));
+    Motion& motion = motions.emplace_back(motion_of(handle, batch, first + k));
+    Frame& frame = frames.emplace_back(std::move(run[k]->frame));
+    frame.stamp_ns = set_run_clock({.time_ns = batch.start_ns}, motion.world_from_sensor,
+                                   motion.world_from_instance) +
+                     frame_interval(handle.sensor->sensor(), frame.number).start_ns;
   }
   handle.simulator->simulate_batch(motions, batch.hit_columns, frames, watch.progress());
   for (std::size_t k = 0; k < run.size(); ++k) {
@@ -116,19 +120,21 @@ Frames measure_all(const SimulatorHandle& handle, const Batch& batch, Watch& wat
   return frames;
 }
 
-/// Seeds, numbers of the frames, and which sensor of a rig it is: what random numbers depend on.
-using Keys = std::tuple<Numbers<std::uint64_t>, Numbers<std::uint32_t>, std::uint32_t>;
-using Key = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>;
+/// Seeds, numbers of the frames, which sensor of a rig it is, and the start of the run.
+using Keys = std::tuple<Numbers<std::uint64_t>, Numbers<std::uint32_t>, std::uint32_t,
+                        std::optional<std::int64_t>>;
+using Key = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t, std::optional<std::int64_t>>;
 
 nb::list simulate_all(const SimulatorHandle& handle, const Trajectories& sensors,
                       const std::optional<Trajectories>& objects, const Keys& keys,
                       const HitColumnMask& hit_columns) {
-  const auto& [seeds, numbers, sensor_id] = keys;
+  const auto& [seeds, numbers, sensor_id, start_ns] = keys;
   const Batch batch{.sensors = sensors,
                     .objects = objects,
                     .seeds = {seeds.data(), seeds.shape(0)},
                     .numbers = {numbers.data(), numbers.shape(0)},
                     .sensor_id = sensor_id,
+                    .start_ns = start_ns,
                     .hit_columns = hit_columns};
   Frames frames = unlocked([&](Watch& watch) { return measure_all(handle, batch, watch); });
   nb::list result;
@@ -142,12 +148,13 @@ nb::list simulate_all(const SimulatorHandle& handle, const Trajectories& sensors
 std::unique_ptr<Measured> simulate_one(const SimulatorHandle& handle, const Trajectories& sensor,
                                        const std::optional<Trajectories>& objects, const Key& key,
                                        const HitColumnMask& hit_columns) {
-  const auto& [seed, number, sensor_id] = key;
+  const auto& [seed, number, sensor_id, start_ns] = key;
   const Batch batch{.sensors = sensor,
                     .objects = objects,
                     .seeds = {&seed, 1},
                     .numbers = {&number, 1},
                     .sensor_id = sensor_id,
+                    .start_ns = start_ns,
                     .hit_columns = hit_columns};
   return std::move(
       unlocked([&](Watch& watch) { return measure_all(handle, batch, watch); }).front());
@@ -195,8 +202,8 @@ void bind_simulator(nb::module_& module) {
       .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(), nb::arg("keys"),
            nb::arg("hit_columns"),
            nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, keys: "
-                   "tuple[numpy.ndarray, numpy.ndarray, int], hit_columns: HitColumnMask) -> "
-                   "list[Frame]"))
+                   "tuple[numpy.ndarray, numpy.ndarray, int, int | None], hit_columns: "
+                   "HitColumnMask) -> list[Frame]"))
       .def("simulate_one", simulate_one, nb::arg("sensor"), nb::arg("objects").none(),
            nb::arg("key"), nb::arg("hit_columns"))
       .def("usual_motion", usual_motion)

@@ -46,6 +46,7 @@ RenderFlags flags_of(const Sidecar& sidecar) {
     add_stream_options(command, flags);
     parse_recorded(arguments, "stream", sidecar.path.string(), command);
     flags.render.duration_s.reset();
+    flags.render.motion.to.reset();
     return flags.render;
   }
   RenderFlags flags;
@@ -125,7 +126,7 @@ int run_explain(const ExplainFlags& flags) {
   check_models(sidecar, prepared.scene);
   Frame frame;
   const ActiveSensor& active = only_sensor(prepared);
-  set_frame_header(render, sidecar.frame, active, frame);
+  set_frame_header(render, prepared, active, sidecar.frame, frame);
   const auto pick = [&](const Frame& repeated) {
     check_frame(sidecar, repeated);
     return entry_of(flags, sidecar, repeated, *active.simulator->beams(repeated.number));

@@ -142,7 +142,7 @@ OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs,
                      const ActiveSensor& active, std::uint32_t frame) {
   const std::string label = label_of(flags, active);
   const OutputFlags files = label.empty() ? outputs : labelled(outputs, label);
-  return flags.duration_s ? numbered(files, frame) : files;
+  return is_sequence(flags) ? numbered(files, frame) : files;
 }
 
 /// The files of a frame; none if only recordings are written.
@@ -203,14 +203,14 @@ void measure_and_write(Job& job, const SensorFrame& which, Console& console,
       plan_frame(flags, files_of(flags, job.files[which.sensor_index], active, which.number),
                  context, console);
   refuse_overwrite_of_inputs(prepared.files, outputs);
-  set_frame_header(flags, which.number, active, measured.frame);
+  set_frame_header(flags, prepared, active, which.number, measured.frame);
   measure(active, needed_hit_columns(job, which.sensor_index, outputs), console, measured.frame);
   if (which.number == 0) print_advice(view_advice(view), console);
   record(job, measured, console);
   write(flags, view, outputs, console);
   if (flags.fisher.is_requested) {
     std::optional<std::uint32_t> number;
-    if (flags.duration_s) number = which.number;
+    if (is_sequence(flags)) number = which.number;
     write_fisher(flags.fisher, measured.frame, *measured.beams,
                  fisher_neighbour(flags, active, outputs), number, result_stream(flags));
   }
@@ -231,9 +231,9 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
   Console console(flags.quiet);
   check_fisher(flags);
   check_imu_outputs(flags);
-  if (flags.duration_s) numbered(flags.output, 0);  // for its errors only
-  const CommandRecord command = {.arguments = reproducible_arguments(arguments),
-                                 .folder = std::filesystem::current_path()};
+  if (is_sequence(flags)) numbered(flags.output, 0);  // for its errors only
+  CommandRecord command = {.arguments = reproducible_arguments(arguments),
+                           .folder = std::filesystem::current_path()};
   PreparedScene prepared;
   const ActiveSensor unknown;
   std::vector<Output> outputs;  // to report errors before the work begins
@@ -248,6 +248,7 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
   check_layout(flags.output);
   prepare_scene(
       flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
+  set_start_time(prepared.recorded_start, command);
   refuse_unused_output_options(flags.output, prepared, {});
   refuse_unused_imu(flags, prepared, {}, PoseOrigin::motion);
   Job job{flags, command, prepared, outputs_by_sensor(flags, prepared, console),
@@ -256,7 +257,7 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
     measure_all(job, console);
     finish_recordings(job);
     if (!flags.output.imu_paths.empty()) {
-      write_imu_outputs(flags, prepared, imu_end_ns(flags, prepared), console, job.written);
+      write_imu_outputs(flags, prepared, imu_end_ns(prepared), console, job.written);
     }
   } catch (const Error& error) {
     if (job.written.empty()) throw;

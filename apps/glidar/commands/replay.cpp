@@ -50,6 +50,9 @@ StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
   flags.render.renderer.threads = chosen.render.renderer.threads;
   flags.render.quiet = chosen.render.quiet;
   flags.render.duration_s.reset();
+  flags.render.motion.to.reset();
+  flags.render.motion.stamp_origin =
+      has_pose_source(recorded) || flags.replays_requests ? StampOrigin::source : StampOrigin::zero;
   return flags;
 }
 

@@ -70,6 +70,8 @@ Command add_stream(CLI::App& program, const std::vector<std::string>& arguments)
   add_stream_options(command, *flags);
   return [flags, arguments, &command] {
     check(command, *flags);
+    if (has_pose_source(*flags) || !flags->lockstep.empty())
+      flags->render.motion.stamp_origin = StampOrigin::source;
     flags->command = {.arguments = reproducible_arguments(arguments),
                       .folder = std::filesystem::current_path()};
     return run_stream(*flags);

@@ -4,8 +4,9 @@
 
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
+#include <glidar/core/time_text.hpp>
 
-#include <cmath>
+#include <string_view>
 
 namespace glidar::app {
 namespace {
@@ -17,32 +18,51 @@ Eigen::Vector3d parse_angular_rate(const std::string& text) {
   return rate;
 }
 
-std::int64_t parse_start_ns(const std::string& text) {
-  constexpr double kMaxStart_s = 9.2e9;
-  return std::llround(number(-kMaxStart_s, kMaxStart_s, "seconds up to 9.2e9")(text) * 1e9);
+/// Recorded commands have "now=SECONDS".
+void parse_start_time(const std::string& text, MotionFlags& flags) {
+  constexpr std::string_view kNowAt = "now=";
+  flags.start_time_ns.reset();
+  flags.starts_now = text == "now" || text.starts_with(kNowAt);
+  if (text == "trajectory" || text == "now") return;
+  const std::string time = flags.starts_now ? text.substr(kNowAt.size()) : text;
+  flags.start_time_ns = time.ends_with('Z') ? parse_date_ns(time) : parse_seconds_ns(time);
+  if (flags.start_time_ns && *flags.start_time_ns >= 0) return;
+  refuse_value(text, "seconds since 1970, a date in UTC, now or trajectory",
+               "for example 1767225600.5 or 2026-01-01T00:00:00.5Z");
+}
+
+TrajectoryTime parse_trajectory_time(const std::string& text) {
+  const std::optional<std::int64_t> t_ns =
+      text.ends_with('Z') ? parse_date_ns(text) : parse_seconds_ns(text);
+  if (t_ns) return {*t_ns, text.starts_with('+')};
+  refuse_value(text, "a time of the trajectory in seconds or as a date in UTC, or + and seconds",
+               "for example 1767225600.5, or +2.5 after the first pose");
 }
 
 }  // namespace
 
 void add_motion_options(CLI::App& command, MotionFlags& flags) {
   const OptionGroup motion(command, "Motion");
-  motion.add("--trajectory", "FILE", "Poses of the sensor over time: TUM, KITTI, CSV",
+  motion.add("--trajectory", "FILE", "Poses of the sensor over time: TUM, KITTI, EuRoC, CSV",
              flags.trajectory);
   motion.add("--trajectory-rate", "HZ", "Poses per second of a KITTI file, Hz",
              flags.trajectory_rate_hz, parse_number);
   motion.add("--trajectory-times", "FILE", "Times of the poses of a KITTI file, one per line",
              flags.trajectory_times);
-  motion.add("--trajectory-start", "S", "Time of the first pose, s [as in the file]",
-             flags.trajectory_start_ns, parse_start_ns);
   motion.add("--trajectory-interpolation", "NAME",
              "Between poses: linear, or spline, as IMUs need [linear]",
              flags.trajectory_interpolation,
              one_of<Interpolation>(
                  {{"linear", Interpolation::linear}, {"spline", Interpolation::spline}}));
-  require_option(command,
-                 {"--trajectory-rate", "--trajectory-times", "--trajectory-start",
-                  "--trajectory-interpolation"},
+  require_option(command, {"--trajectory-rate", "--trajectory-times", "--trajectory-interpolation"},
                  "--trajectory");
+  motion.add("--from", "T", "Start here on the trajectory: its time, or +S after the first pose",
+             [&flags](const std::string& text) { flags.from = parse_trajectory_time(text); });
+  motion.add("--to", "T", "End here on the trajectory, instead of --duration",
+             [&flags](const std::string& text) { flags.to = parse_trajectory_time(text); });
+  motion.add("--start-time", "T",
+             "Time of the start: s since 1970, a date, now, trajectory [trajectory]",
+             [&flags](const std::string& text) { parse_start_time(text, flags); });
   motion.add("--object-rate", "X,Y,Z", "Angular rate of the model about its axes, rad/s",
              flags.object_rate_rad_s, parse_angular_rate);
   motion.add("--sensor-rate", "X,Y,Z", "Angular rate of the sensor about left, up, forward, rad/s",

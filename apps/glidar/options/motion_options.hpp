@@ -14,6 +14,20 @@
 
 namespace glidar::app {
 
+/// Where the stamps of frames come from, if the start of the run is not given.
+enum class StampOrigin : std::uint8_t {
+  outputs,  ///< a date if bags or packet captures are written, else zero
+  zero,
+  date,
+  source,  ///< poses or requests state the stamps; trajectories keep their times
+};
+
+/// A time on the sensor's trajectory.
+struct TrajectoryTime {
+  std::int64_t t_ns = 0;
+  bool is_after_first = false;  ///< counted from the first pose
+};
+
 /// How the sensor and the model move; empty: not given.
 struct MotionFlags {
   std::optional<Eigen::Vector3d> object_rate_rad_s = {};
@@ -21,8 +35,12 @@ struct MotionFlags {
   std::string trajectory = {};
   std::optional<double> trajectory_rate_hz = {};
   std::string trajectory_times = {};
-  std::optional<std::int64_t> trajectory_start_ns = {};
   Interpolation trajectory_interpolation = Interpolation::linear;
+  std::optional<std::int64_t> start_time_ns = {};
+  bool starts_now = false;  ///< at start_time_ns or now, whatever the times of the trajectory
+  std::optional<TrajectoryTime> from = {};
+  std::optional<TrajectoryTime> to = {};
+  StampOrigin stamp_origin = StampOrigin::outputs;
 };
 
 /// The options of poses come first: some of them exclude these.

@@ -73,6 +73,7 @@ void add_render_options(CLI::App& command, RenderFlags& flags) {
           whole<std::uint64_t>(0, std::numeric_limits<std::uint64_t>::max()));
   run.add("--duration", "S", "Write numbered frames, NAME_000000 ..., for S seconds",
           flags.duration_s, parse_number);
+  forbid_together(command, {"--duration"}, {"--to"});
   run.add_flag("--quiet", "No summary and no progress, only warnings", flags.quiet);
   add_legacy_output_option(command, flags.output);
   add_woods2016_pose_options(command, flags.pose);

@@ -39,9 +39,14 @@ struct RenderFlags {
   RendererOptions renderer;
   bool quantized_framebuffer = false;
   std::uint64_t seed = 1;
-  std::optional<double> duration_s;  ///< of a sequence of frames; empty: a single one
+  std::optional<double> duration_s;  ///< of a sequence of frames; empty: see is_sequence()
   bool quiet = false;
 };
+
+/// Whether there are numbered frames; else a single one.
+inline bool is_sequence(const RenderFlags& flags) {
+  return flags.duration_s || flags.motion.to;
+}
 
 /// The renderer as sidecars name it.
 std::string renderer_name(const RenderFlags& flags);

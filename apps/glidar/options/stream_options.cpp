@@ -70,6 +70,7 @@ void add_timing_options(CLI::App& command, StreamFlags& flags) {
             });
   group.add("--duration", "S", "End after S seconds [none]", flags.render.duration_s,
             positive_seconds());
+  forbid_together(command, {"--duration"}, {"--to"});
   add_end_options(group, "End after N frames [none]", flags);
   group.add("--record", "FILE", "Keep poses, seeds and command for glidar replay", flags.record);
   group.add_flag("--durable", "Sync the finished --record file to the disk [off]",
@@ -212,10 +213,27 @@ void add_lockstep_options(CLI::App& command, StreamFlags& flags) {
             flags.curve_keys);
   require_option(command, {"--curve-keys"}, "--lockstep");
   forbid_together(command, {"--lockstep"},
-                  {"--port", "--foxglove", "--udp", "--ros2", "--pose-source", "--trajectory",
-                   "--object-rate", "--sensor-rate", "--frames", "--duration", "--subscribers",
-                   "--subscription-timeout", "--publish-every", "--publish-latest",
-                   "--publish-queue", "--format", "--legacy-output", "--imu"});
+                  {"--port",
+                   "--foxglove",
+                   "--udp",
+                   "--ros2",
+                   "--pose-source",
+                   "--trajectory",
+                   "--from",
+                   "--to",
+                   "--start-time",
+                   "--object-rate",
+                   "--sensor-rate",
+                   "--frames",
+                   "--duration",
+                   "--subscribers",
+                   "--subscription-timeout",
+                   "--publish-every",
+                   "--publish-latest",
+                   "--publish-queue",
+                   "--format",
+                   "--legacy-output",
+                   "--imu"});
   forbid_together(command, {"--lockstep"}, options_under(command, kOutputHeading));
 }
 
@@ -227,11 +245,13 @@ void add_limit_option(CLI::App& command, StreamFlags& flags) {
 
 /// The clock of ROS 2 gives times only.
 void check_motion(const CLI::App& command, const StreamFlags& flags) {
-  if (!has_pose_source(flags) || follows_ros_clock(flags.ros2)) return;
-  for (const char* name : {"--trajectory", "--object-rate", "--sensor-rate"}) {
+  if (!has_pose_source(flags)) return;
+  OptionNames others = {"--start-time", "--from", "--to"};
+  if (!follows_ros_clock(flags.ros2))
+    others.insert(others.end(), {"--trajectory", "--object-rate", "--sensor-rate"});
+  for (const std::string& name : others) {
     if (command.count(name) == 0) continue;
-    throw Error(
-        {std::string("--pose-source and ") + name, "both are given", "", "give one of them"});
+    throw Error({"--pose-source and " + name, "both are given", "", "give one of them"});
   }
 }
 

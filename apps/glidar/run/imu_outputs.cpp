@@ -18,18 +18,18 @@ namespace {
 ImuRun run_of(const RenderFlags& flags, const PreparedScene& prepared, std::size_t imu) {
   return {.seed = flags.seed,
           .imu = static_cast<std::uint32_t>(imu),
-          .start_ns = 0,
+          .start_ns = prepared.start_ns,
           .gravity_m_s2 = prepared.gravity_m_s2};
 }
 
 }  // namespace
 
-std::int64_t imu_end_ns(const RenderFlags& flags, const PreparedScene& prepared) {
-  std::int64_t end = std::llround(*flags.duration_s * 1e9);
+std::int64_t imu_end_ns(const PreparedScene& prepared) {
+  std::int64_t end = std::llround(prepared.duration_s.value_or(0.0) * 1e9);
   for (const ActiveSensor& active : prepared.sensors) {
     end = std::max(end, frame_interval(active.sensor, active.frames - 1).end_ns);
   }
-  return end;
+  return prepared.start_ns + end;
 }
 
 namespace {
@@ -51,7 +51,7 @@ void print_samples(const RenderFlags& flags, const RigImu& imu, std::size_t samp
 }  // namespace
 
 void check_imu_outputs(const RenderFlags& flags) {
-  if (flags.output.imu_paths.empty() || flags.duration_s) return;
+  if (flags.output.imu_paths.empty() || is_sequence(flags)) return;
   throw Error({"--output, " + flags.output.imu_paths.front(), "samples of IMUs without a duration",
                "this output with --duration", "add --duration 1, for example"});
 }
@@ -91,7 +91,7 @@ void write_imu_outputs(const RenderFlags& flags, const PreparedScene& prepared, 
   const RigImuSampler sample = imu_sampler(flags, prepared);
   for (std::size_t i = 0; i < prepared.imus.size(); ++i) {
     const RigImu& on_rig = prepared.imus[i];
-    const ImuSamples samples = sample(i, 0, end_ns + 1);
+    const ImuSamples samples = sample(i, prepared.start_ns, end_ns + 1);
     const ImuDescription description{.name = on_rig.name,
                                      .imu = on_rig.imu,
                                      .run = run_of(flags, prepared, i),

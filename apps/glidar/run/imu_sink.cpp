@@ -22,7 +22,8 @@ class ImuSink final : public FrameSink {
   }
   void write(const MeasuredFrame& measured) override {
     const Sensor& sensor = prepared_.sensors[measured.sensor_index].sensor;
-    const std::int64_t end_ns = frame_interval(sensor, measured.frame.number).end_ns;
+    const FrameInterval interval = frame_interval(sensor, measured.frame.number);
+    const std::int64_t end_ns = measured.frame.stamp_ns + (interval.end_ns - interval.start_ns);
     end_ns_ = std::max(end_ns_.value_or(end_ns), end_ns);
   }
   void finish() override {

@@ -181,11 +181,12 @@ nlohmann::ordered_json LockstepRun::description() const {
                        {"returns", active.beams.returns},
                        {"rate_hz", active.sensor.rate_hz},
                        {"frame_id", active.beams.frame_id},
-                       {"world_from_sensor", json_of(pose_at(active.motion.world_from_sensor, 0))},
+                       {"world_from_sensor",
+                        json_of(pose_at(active.motion.world_from_sensor, prepared_.start_ns))},
                        {"rig_from_sensor", json_of(active.rig_from_sensor)}});
   }
   return {{"sensors", sensors},
-          {"world_from_rig", json_of(pose_at(prepared_.motion.world_from_rig, 0))},
+          {"world_from_rig", json_of(pose_at(prepared_.motion.world_from_rig, prepared_.start_ns))},
           {"objects", objects},
           {"columns",
            std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};

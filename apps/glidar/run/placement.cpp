@@ -84,10 +84,9 @@ Pose woods2016_pose(const PoseFlags& flags) {
 }
 
 TimedPoses load_sensor_poses(const MotionFlags& flags) {
-  TrajectoryFileOptions options{.rate_hz = flags.trajectory_rate_hz,
-                                .times_file = flags.trajectory_times,
-                                .interpolation = flags.trajectory_interpolation};
-  if (flags.trajectory_start_ns) options.start_ns = *flags.trajectory_start_ns;
+  const TrajectoryFileOptions options{.rate_hz = flags.trajectory_rate_hz,
+                                      .times_file = flags.trajectory_times,
+                                      .interpolation = flags.trajectory_interpolation};
   return load_trajectory_file(flags.trajectory, options);
 }
 

@@ -2,17 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/prepared_scene.hpp>
 
+#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/placement.hpp>
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/time_text.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/packets/packet_writer.hpp>
+#include <glidar/motion/run_clock.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace glidar::app {
@@ -71,13 +77,13 @@ std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& l
   return files;
 }
 
-/// The number of frames in the requested duration; 1 without.
-std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
-  if (!flags.duration_s) return 1;
+/// The number of frames in the duration; 1 without.
+std::uint32_t frame_count(const std::optional<double>& duration_s, const Sensor& sensor) {
+  if (!duration_s) return 1;
   constexpr double kMaxFrames = 1e6;
   constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
-  const double frames = std::ceil(*flags.duration_s * sensor.rate_hz - kRounding);
-  require_number(*flags.duration_s > 0.0 && frames <= kMaxFrames, "--duration", *flags.duration_s,
+  const double frames = std::ceil(*duration_s * sensor.rate_hz - kRounding);
+  require_number(*duration_s > 0.0 && frames <= kMaxFrames, "--duration", *duration_s,
                  "seconds above 0, up to a million frames");
   return static_cast<std::uint32_t>(std::max(1.0, frames));
 }
@@ -168,11 +174,75 @@ std::int64_t last_firing_ns(const ActiveSensor& active) {
   return start_ns + *std::max_element(active.beams.times_ns.begin(), active.beams.times_ns.end());
 }
 
+/// Whether outputs need dates.
+bool are_stamps_dates(const RenderFlags& flags) {
+  const auto needs_dates = [](const std::string& path) {
+    return bags::is_bag_name(path) || is_capture_name(path);
+  };
+  const StampOrigin origin = flags.motion.stamp_origin;
+  return origin == StampOrigin::date ||
+         (origin == StampOrigin::outputs &&
+          std::ranges::any_of(flags.output.recording_paths, needs_dates));
+}
+
+std::int64_t now_ns() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+/// A time of the command line in the times of the trajectory.
+std::int64_t own_time_ns(const TrajectoryTime& time, const TimeInterval& known) {
+  return time.is_after_first ? known.first_ns + time.t_ns : time.t_ns;
+}
+
+/// The duration of the run until --to; `known` are the trajectory's own times.
+double duration_until(const TrajectoryTime& end, const TimeInterval& known,
+                      const PreparedScene& prepared) {
+  const std::int64_t first_ns = valid_interval(prepared.motion.world_from_rig).first_ns;
+  const std::int64_t start_ns = known.first_ns + (prepared.start_ns - first_ns);
+  const std::int64_t end_ns = own_time_ns(end, known);
+  if (end_ns > start_ns && end_ns <= known.last_ns)
+    return 1e-9 * static_cast<double>(end_ns - start_ns);
+  throw Error({"--to", decimal_seconds(end_ns) + " s",
+               "after " + decimal_seconds(start_ns) + " s, where the run starts, up to " +
+                   decimal_seconds(known.last_ns) + " s"});
+}
+
+/// Sets the start and duration of the run, and the motion of everything at the times of stamps.
+void set_times(const RenderFlags& flags, PreparedScene& prepared) {
+  const MotionFlags& given = flags.motion;
+  RigMotion& motion = prepared.motion;
+  prepared.duration_s = flags.duration_s;
+  if (given.stamp_origin == StampOrigin::source) return;
+  const bool has_dates = are_stamps_dates(flags);
+  const TimeInterval known = valid_interval(motion.world_from_rig);
+  RunStart run{.time_ns = given.start_time_ns,
+               .origin_ns = has_dates ? kDefaultDate_ns : 0,
+               .moves_trajectory = given.starts_now};
+  if (given.starts_now && !run.time_ns) run.time_ns = now_ns();
+  if (given.from) {
+    run.from_ns = own_time_ns(*given.from, known);
+  } else if (given.to) {
+    run.from_ns = known.first_ns;
+  }
+  const bool is_segment = run.from_ns.has_value();
+  with_option_name(is_segment ? (given.from ? "--from" : "--to") : "--start-time", [&] {
+    prepared.start_ns = set_run_clock(run, motion.world_from_rig, motion.world_from_instance);
+  });
+  if (given.to) prepared.duration_s = duration_until(*given.to, known, prepared);
+  if (given.starts_now || (has_dates && !given.start_time_ns))
+    prepared.recorded_start = (given.starts_now ? "now=" : "") + decimal_seconds(prepared.start_ns);
+  for (std::size_t i = 0; i < motion.world_from_instance.size(); ++i) {
+    prepared.scene.instances[i].world_from_object =
+        pose_at(motion.world_from_instance[i], prepared.start_ns);
+  }
+}
+
 /// Warns of times outside a trajectory.
 void warn_extrapolation(const PreparedScene& prepared, const Report& report) {
-  TimeInterval requested{.first_ns = 0, .last_ns = 0};
+  TimeInterval requested{.first_ns = prepared.start_ns, .last_ns = prepared.start_ns};
   for (const ActiveSensor& active : prepared.sensors) {
-    requested.last_ns = std::max(requested.last_ns, last_firing_ns(active));
+    requested.last_ns = std::max(requested.last_ns, prepared.start_ns + last_firing_ns(active));
   }
   glidar::warn_extrapolation(prepared.motion.world_from_rig, "sensor", requested, report);
   for (std::size_t i = 0; i < prepared.motion.world_from_instance.size(); ++i) {
@@ -200,12 +270,12 @@ void check_target(const RenderFlags& flags) {
 void place_sensors(const RenderFlags& flags, const SceneFile& loaded, Console& console,
                    PreparedScene& prepared) {
   const ProgressScope progress(console, "aiming the sensor");
-  for (ActiveSensor& active : prepared.sensors) {
-    active.beams = make_beams(active.sensor);
-    active.frames = frame_count(flags, active.sensor);
-  }
+  for (ActiveSensor& active : prepared.sensors) active.beams = make_beams(active.sensor);
   const Pose world_from_first = first_sensor_pose(flags, loaded, prepared, console);
   prepared.motion = make_motion(flags, loaded, prepared, world_from_first);
+  set_times(flags, prepared);
+  for (ActiveSensor& active : prepared.sensors)
+    active.frames = frame_count(prepared.duration_s, active.sensor);
   warn_extrapolation(prepared, console.report());
   if (!flags.sensor_name.empty()) {  // last: the poses must not depend on the selected sensor
     std::erase_if(prepared.sensors,
@@ -275,11 +345,16 @@ Motion motion_of(RigMotion motion, const ActiveSensor& active) {
           .world_from_instance = std::move(motion.world_from_instance)};
 }
 
-void set_frame_header(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
-                      Frame& frame) {
+std::int64_t stamp_of(const PreparedScene& prepared, const ActiveSensor& active,
+                      std::uint32_t number) {
+  return prepared.start_ns + frame_interval(active.sensor, number).start_ns;
+}
+
+void set_frame_header(const RenderFlags& flags, const PreparedScene& prepared,
+                      const ActiveSensor& active, std::uint32_t number, Frame& frame) {
   frame.number = number;
   frame.sensor_id = active.id;
-  frame.stamp_ns = frame_interval(active.sensor, number).start_ns;
+  frame.stamp_ns = stamp_of(prepared, active, number);
   frame.seed = flags.seed;
 }
 

@@ -29,7 +29,7 @@ struct ActiveSensor {
   Pose rig_from_sensor = Pose::Identity();
   Beams beams = {};  ///< of frame 0
   Motion motion = {};
-  std::uint32_t frames = 1;                   ///< in the requested duration
+  std::uint32_t frames = 1;                   ///< in the duration of the run
   std::shared_ptr<Simulator> simulator = {};  ///< made by prepare_scene()
 };
 
@@ -37,7 +37,10 @@ struct ActiveSensor {
 struct PreparedScene {
   Scene scene;
   std::vector<ActiveSensor> sensors;  ///< one, or those of the scene file's rig
-  RigMotion motion;
+  RigMotion motion;                   ///< at the times of stamps
+  std::int64_t start_ns = 0;          ///< of the run: the stamp of frame 0 of each sensor
+  std::string recorded_start = {};   ///< --start-time to repeat the run; empty: the options suffice
+  std::optional<double> duration_s;  ///< of a sequence of frames; empty: not limited
   std::unique_ptr<Renderer> renderer;
   std::unique_ptr<Woods2016Camera> woods2016_camera;  ///< for --quantized-framebuffer; else none
   std::vector<RigImu> imus;                           ///< on the rig
@@ -60,9 +63,13 @@ ActiveSensor& only_sensor(PreparedScene& prepared);
 /// The motion of a sensor and all instances.
 Motion motion_of(RigMotion motion, const ActiveSensor& active);
 
+/// The stamp of a frame: when it starts.
+std::int64_t stamp_of(const PreparedScene& prepared, const ActiveSensor& active,
+                      std::uint32_t number);
+
 /// Sets number, sensor, stamp and seed of a frame of the sequence.
-void set_frame_header(const RenderFlags& flags, std::uint32_t number, const ActiveSensor& active,
-                      Frame& frame);
+void set_frame_header(const RenderFlags& flags, const PreparedScene& prepared,
+                      const ActiveSensor& active, std::uint32_t number, Frame& frame);
 
 /// A simulator of the scene, with the framebuffer that its options select.
 std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,

@@ -9,28 +9,44 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
+#include <initializer_list>
 #include <string_view>
 #include <system_error>
 
 namespace glidar::app {
 
-std::vector<std::string> reproducible_arguments(const std::vector<std::string>& arguments) {
-  static constexpr std::array<std::string_view, 2> kFlags = {"--quiet", "--no-cache"};
-  static constexpr std::array<std::string_view, 2> kWithValue = {"--threads", "--cache-folder"};
-  const auto has = [](const auto& options, std::string_view name) {
+namespace {
+
+using Names = std::initializer_list<std::string_view>;
+
+/// The arguments except these options, with and without values.
+std::vector<std::string> without(const std::vector<std::string>& arguments, Names flags,
+                                 Names with_value) {
+  const auto has = [](Names options, std::string_view name) {
     return std::find(options.begin(), options.end(), name) != options.end();
   };
   std::vector<std::string> kept;
   bool is_value = false;
   for (const std::string& argument : arguments) {
     const std::string_view name = std::string_view(argument).substr(0, argument.find('='));
-    const bool is_option = !is_value && (has(kFlags, name) || has(kWithValue, name));
+    const bool is_option = !is_value && (has(flags, name) || has(with_value, name));
     if (!is_option && !is_value) kept.push_back(argument);
-    is_value = is_option && has(kWithValue, argument);
+    is_value = is_option && has(with_value, argument);
   }
   return kept;
+}
+
+}  // namespace
+
+std::vector<std::string> reproducible_arguments(const std::vector<std::string>& arguments) {
+  return without(arguments, {"--quiet", "--no-cache"}, {"--threads", "--cache-folder"});
+}
+
+void set_start_time(const std::string& value, CommandRecord& command) {
+  if (value.empty()) return;
+  command.arguments = without(command.arguments, {}, {"--start-time"});
+  command.arguments.insert(command.arguments.end(), {"--start-time", value});
 }
 
 void parse_recorded(const std::vector<std::string>& arguments, const std::string& subcommand,

@@ -15,6 +15,9 @@ namespace glidar::app {
 /// cache, which belong to the user who runs the command.
 std::vector<std::string> reproducible_arguments(const std::vector<std::string>& arguments);
 
+/// Replaces --start-time by a value that repeats the run; an empty one changes nothing.
+void set_start_time(const std::string& value, CommandRecord& command);
+
 /// Sets a subcommand's options from the recorded arguments of a file, which must not contain a
 /// cache folder. Throws Error with the file's name if they are invalid or of another subcommand.
 void parse_recorded(const std::vector<std::string>& arguments, const std::string& subcommand,

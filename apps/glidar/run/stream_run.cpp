@@ -9,6 +9,7 @@
 #include <apps/glidar/run/peer_wait.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/placement.hpp>
+#include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/recorded_source.hpp>
 #include <apps/glidar/run/stream_report.hpp>
 #include <apps/glidar/run/stream_sinks.hpp>
@@ -102,6 +103,9 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
 }
 
 void StreamRun::open_scene() {
+  const bool is_live = flags_.ros2.publishes || !flags_.udp.empty() || flags_.foxglove;
+  if (is_live && flags_.render.motion.stamp_origin == StampOrigin::outputs)
+    flags_.render.motion.stamp_origin = StampOrigin::date;
   std::unique_ptr<NumberedFiles> files;
   if (!flags_.foxglove && !flags_.ros2.publishes) check_layout(flags_.render.output);
   if (has_outputs(flags_.render.output)) {
@@ -113,6 +117,8 @@ void StreamRun::open_scene() {
         if (files) files->refuse_overwrite_of_inputs();
       },
       console_, prepared_);
+  set_start_time(prepared_.recorded_start, flags_.command);
+  duration_s_ = prepared_.duration_s.value_or(duration_s_);
   const LiveOutputs live{.topics = flags_.ros2.publishes,
                          .packets = !flags_.udp.empty(),
                          .viewers = flags_.foxglove.has_value(),
@@ -303,8 +309,7 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
   measured.due = request.due;
   measured.frame.number = request.number;
   measured.frame.sensor_id = active.id;
-  measured.frame.stamp_ns =
-      request.stamp_ns.value_or(frame_interval(active.sensor, request.number).start_ns);
+  measured.frame.stamp_ns = request.stamp_ns.value_or(stamp_of(prepared_, active, request.number));
   measured.frame.seed = request.seed.value_or(flags_.render.seed);
   active.simulator->simulate(*measured.motion, hit_columns_, measured.frame);
   if (measured_++ > 0) return;

@@ -31,6 +31,13 @@ void visit_interpolation(FieldVisitor& visitor, Interpolation& interpolation) {
       kNames, interpolation);
 }
 
+/// Rounded to microseconds from 1e6 s on: a double holds these of a date, but not nanoseconds.
+std::int64_t nanoseconds(double seconds) {
+  constexpr double kMaxExact_s = 1e6;
+  return std::abs(seconds) < kMaxExact_s ? std::llround(seconds * 1e9)
+                                         : std::llround(seconds * 1e6) * 1000;
+}
+
 struct TrajectoryFileKeys {
   std::string file;
   std::string times_file;
@@ -50,7 +57,7 @@ void describe(TrajectoryFileKeys& keys, FieldVisitor& visitor) {
   visit_interpolation(visitor, keys.options.interpolation);
   if (!visitor.is_reading()) return;
   if (visitor.has("rate_hz")) keys.options.rate_hz = rate_hz;
-  if (visitor.has("start_s")) keys.options.start_ns = std::llround(start_s * 1e9);
+  if (visitor.has("start_s")) keys.options.start_ns = nanoseconds(start_s);
   keys.options.times_file = keys.times_file;
 }
 

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/core/text.hpp>
+#include <glidar/core/time_text.hpp>
 #include <glidar/io/files/folder_lock.hpp>
 #include <glidar/io/formats/kitti_classes.hpp>
 #include <glidar/io/formats/kitti_file.hpp>
@@ -35,12 +36,6 @@ std::size_t scanner_of(const std::vector<KittiSensor>& sensors) {
   return found == sensors.end() ? 0 : static_cast<std::size_t>(found - sensors.begin());
 }
 
-/// Seconds with nine decimals.
-std::string seconds_text(std::int64_t t_ns) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
-  return fmt::format("{}.{:09}\n", t_ns / kSecond_ns, t_ns % kSecond_ns);
-}
-
 }  // namespace
 
 struct KittiWriter::State {
@@ -60,7 +55,6 @@ struct KittiWriter::State {
   std::vector<KittiCamera> cameras = {};  ///< of calibrations
   std::vector<ImageCamera> images = {};
   std::uint32_t scans = 0;
-  std::int64_t first_ns = 0;                  ///< stamp of the first scan
   std::int64_t scan_ns = 0;                   ///< stamp of the last scan
   std::optional<Pose> first_from_world = {};  ///< of the first scan's camera
   std::string times = {};
@@ -125,12 +119,9 @@ void KittiWriter::State::write_scan(const Frame& frame, const Beams& beams) {
 void KittiWriter::State::add_pose(const Frame& frame) {
   const Pose world_from_camera =
       frame.world_from_sensor * cameras.front().camera_from_velodyne.inverse();
-  if (!first_from_world) {
-    first_from_world = world_from_camera.inverse();
-    first_ns = frame.stamp_ns;
-  }
+  if (!first_from_world) first_from_world = world_from_camera.inverse();
   scan_ns = frame.stamp_ns;
-  times += seconds_text(scan_ns - first_ns);
+  times += decimal_seconds(scan_ns) + '\n';
   poses +=
       kitti_pose_line(scans == 0 ? Pose::Identity() : Pose(*first_from_world * world_from_camera));
   for (ImageCamera& camera : images) camera.waiting.push_back(scans);

@@ -7,6 +7,7 @@
 #include <glidar/io/formats/las_classes.hpp>
 #include <glidar/io/formats/las_grid.hpp>
 #include <glidar/io/formats/point_rows.hpp>
+#include <glidar/motion/run_clock.hpp>
 
 #include <fmt/format.h>
 
@@ -100,20 +101,13 @@ PulseReturns returns_of(const CloudFile& job) {
   return returns;
 }
 
-// Stamps from the start of GPS time on, 1980-01-06, are dates; smaller ones are times of a
-// simulation that starts at 0.
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
-constexpr std::int64_t kGpsEpoch_ns = 315'964'800 * kNanoseconds;
 constexpr std::int64_t kLeapSeconds = 18;  // GPS time minus UTC since 2017-01-01
-
-bool is_date(std::int64_t stamp_ns) {
-  return stamp_ns >= kGpsEpoch_ns;
-}
 
 /// Adjusted standard GPS time (less 1e9 s) of a date; else the seconds of the simulation.
 double gps_time_s(std::int64_t stamp_ns, bool dates) {
   const std::int64_t shift_ns =
-      dates ? (kLeapSeconds - 1'000'000'000) * kNanoseconds - kGpsEpoch_ns : 0;
+      dates ? (kLeapSeconds - 1'000'000'000) * kNanoseconds - kFirstDate_ns : 0;
   return static_cast<double>(stamp_ns + shift_ns) * 1e-9;
 }
 

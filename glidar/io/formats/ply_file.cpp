@@ -36,8 +36,8 @@ std::string ply_header(const CloudFile& job, std::span<const PointField> fields)
 }
 
 /// Fields of a PLY file: x y z are float unless that moves a point by more than 0.1 mm, then
-/// double. Other columns keep their types, except 64-bit integers, which become double; normals are
-/// nx ny nz, colour is uchar red green blue.
+/// double. Other columns keep their types, except times in 64-bit integers, which are split;
+/// normals are nx ny nz, colour is uchar red green blue.
 std::vector<PointField> ply_fields(const PointCloud& cloud) {
   std::vector<PointField> fields;
   for (const Column& column : cloud.columns) {
@@ -49,8 +49,7 @@ std::vector<PointField> ply_fields(const PointCloud& cloud) {
     } else if (is_colour(column)) {
       append_renamed(column, {"red", "green", "blue"}, Stored::colour_byte, fields);
     } else if (native_type(column) == Stored::i64) {
-      fields.push_back(
-          {column.components[0], &column, 0, Stored::f64});  // PLY has no 64-bit integer
+      append_split_time(column, fields);
     } else {
       append_fields(column, fields);
     }

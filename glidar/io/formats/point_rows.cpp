@@ -77,6 +77,17 @@ std::uint32_t packed_rgb(const float* rgb) {
          std::uint32_t{colour_byte(rgb[2])};
 }
 
+constexpr std::int64_t kSecondInNs = 1'000'000'000;
+
+/// Seconds before 1970 give 0.
+std::uint32_t stored_seconds(std::int64_t t_ns) {
+  return static_cast<std::uint32_t>(std::max<std::int64_t>(0, t_ns) / kSecondInNs);
+}
+
+std::uint32_t stored_nanoseconds(std::int64_t t_ns) {
+  return static_cast<std::uint32_t>(std::max<std::int64_t>(0, t_ns) % kSecondInNs);
+}
+
 template <class From>
 void store_fields(const From* from, std::size_t step, std::span<const PointField> same,
                   const Places& to) {
@@ -96,7 +107,14 @@ void store_fields(const From* from, std::size_t step, std::span<const PointField
       return store_cast<std::int64_t>(from, step, run, to);
     case Stored::colour_byte:
     case Stored::packed_rgb:
+    case Stored::whole_s:
+    case Stored::rest_ns:
       break;
+  }
+  if constexpr (std::is_same_v<From, std::int64_t>) {
+    const auto part = same.front().stored == Stored::whole_s ? stored_seconds : stored_nanoseconds;
+    store_run<std::uint32_t>(from, step, run, to,
+                             [part](const std::int64_t* value) { return part(*value); });
   }
   if constexpr (std::is_same_v<From, float>) {
     if (same.front().stored == Stored::packed_rgb)
@@ -156,6 +174,8 @@ void append_stored(fmt::memory_buffer& text, Stored stored, const std::byte* byt
       return append_number(text, load<std::uint16_t>(bytes));
     case Stored::u32:
     case Stored::packed_rgb:
+    case Stored::whole_s:
+    case Stored::rest_ns:
       return append_number(text, load<std::uint32_t>(bytes));
     case Stored::i64:
       return append_number(text, load<std::int64_t>(bytes));
@@ -179,15 +199,17 @@ void report_progress(const ProgressCallback& progress, std::size_t done, std::si
 }  // namespace
 
 const StoredType& type_of(Stored stored) {
-  static constexpr std::array<StoredType, 8> kTypes = {{
+  static constexpr std::array<StoredType, 10> kTypes = {{
       {4, "f32", "float"},  // in the order of Stored
       {8, "f64", "double"},
       {1, "u8", "uchar"},
       {2, "u16", "ushort"},
       {4, "u32", "uint"},
-      {8, "i64", "double"},  // PLY has no 64-bit integers
+      {8, "i64", ""},  // PLY has no 64-bit integers
       {1, "u8", "uchar"},
       {4, "packed_rgb", "uint"},
+      {4, "u32", "uint"},
+      {4, "u32", "uint"},
   }};
   return kTypes[static_cast<std::size_t>(stored)];
 }
@@ -207,6 +229,11 @@ bool is_colour(const Column& column) {
 void append_fields(const Column& column, std::vector<PointField>& fields) {
   for (std::size_t c = 0; c < column.components.size(); ++c)
     fields.push_back({column.components[c], &column, c, native_type(column)});
+}
+
+void append_split_time(const Column& column, std::vector<PointField>& fields) {
+  fields.push_back({column.name + "_sec", &column, 0, Stored::whole_s});
+  fields.push_back({column.name + "_nsec", &column, 0, Stored::rest_ns});
 }
 
 std::span<PointField> append_pcl_fields(const Column& column, std::vector<PointField>& fields) {

@@ -25,6 +25,8 @@ enum class Stored : std::uint8_t {
   i64,
   colour_byte,  ///< u8, 0..1 times 255
   packed_rgb,   ///< u32 0x00RRGGBB made from three components
+  whole_s,      ///< u32, the seconds of nanoseconds
+  rest_ns,      ///< u32, the nanoseconds after them
 };
 
 /// One number per point: a component of a column.
@@ -55,6 +57,11 @@ void append_fields(const Column& column, std::vector<PointField>& fields);
 
 /// The same as PCL's point types have it, with colour packed into `rgb`; returns the new fields.
 std::span<PointField> append_pcl_fields(const Column& column, std::vector<PointField>& fields);
+
+/// Appends the seconds and nanoseconds of times in nanoseconds, for formats without 64-bit
+/// integers: `stamp_sec` and `stamp_nsec` of `stamp`. A double has steps of 256 ns at times since
+/// 1970.
+void append_split_time(const Column& column, std::vector<PointField>& fields);
 
 /// A field per component of every column, with their own names and types.
 std::vector<PointField> native_fields(const PointCloud& cloud);

@@ -3,6 +3,7 @@
 #include <glidar/io/formats/text_row_reader.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/time_text.hpp>
 #include <glidar/io/files/text_file.hpp>
 
 #include <algorithm>
@@ -17,30 +18,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::size_t kMaxWords = 64;
-
-/// Digits as nanoseconds: "12.5" is 12500000000. Empty for any other notation.
-std::optional<std::int64_t> decimal_ns(std::string_view text) {
-  constexpr int kRowPlaces = 9;
-  constexpr std::size_t kMaxDigits = 18;  // nine before the point and nine after it fit 64 bits
-  const bool negative = text.starts_with('-');
-  if (negative) text.remove_prefix(1);
-  const std::size_t point = text.find('.');
-  const std::string_view whole = text.substr(0, point);
-  std::string_view fraction = point == std::string_view::npos ? "" : text.substr(point + 1);
-  if (whole.size() + fraction.size() == 0 || whole.size() > kMaxDigits - kRowPlaces + 1) return {};
-  if ((std::string(whole) + std::string(fraction)).find_first_not_of("0123456789") !=
-      std::string::npos) {
-    return {};
-  }
-  const bool round_up = fraction.size() > kRowPlaces && fraction[kRowPlaces] >= '5';
-  std::string digits = std::string(whole) + std::string(fraction.substr(0, kRowPlaces));
-  digits.append(kRowPlaces - std::min<std::size_t>(fraction.size(), kRowPlaces), '0');
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) return {};
-  value += round_up ? 1 : 0;
-  return negative ? -value : value;
-}
 
 }  // namespace
 
@@ -97,14 +74,20 @@ double TextRowReader::number(const Word& word) const {
 }
 
 std::int64_t TextRowReader::time_ns(const Word& word) const {
-  constexpr double kMax_s = 9.2e9;
-  const double seconds = number(word);
-  if (std::abs(seconds) > kMax_s) {
-    reject(word, "'" + shown(word.text) + "'", "seconds from -9.2e9 to 9.2e9",
-           "a file in nanoseconds must be divided by 1e9");
-  }
-  const std::optional<std::int64_t> exact = decimal_ns(word.text);
-  return exact ? *exact : static_cast<std::int64_t>(std::llround(seconds * 1e9));
+  (void)number(word);
+  const std::optional<std::int64_t> exact = parse_seconds_ns(word.text);
+  if (exact) return *exact;
+  reject(word, "'" + shown(word.text) + "'", "seconds from -9.2e9 to 9.2e9",
+         "nanoseconds are allowed in CSV files with a column 'timestamp [ns]'");
+}
+
+std::int64_t TextRowReader::whole_ns(const Word& word) const {
+  std::int64_t value = 0;
+  const auto [end, error] =
+      std::from_chars(word.text.data(), word.text.data() + word.text.size(), value);
+  if (error == std::errc() && end == word.text.data() + word.text.size()) return value;
+  reject(word, "'" + shown(word.text) + "' in a column of nanoseconds", "whole numbers",
+         "a column of seconds is called 't'");
 }
 
 }  // namespace glidar

@@ -44,6 +44,9 @@ class TextRowReader {
   /// not a number or beyond 290 years.
   [[nodiscard]] std::int64_t time_ns(const Word& word) const;
 
+  /// Nanoseconds; throws Error when the word is not a whole number.
+  [[nodiscard]] std::int64_t whole_ns(const Word& word) const;
+
  private:
   void split(std::string_view row);
 

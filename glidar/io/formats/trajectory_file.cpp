@@ -11,7 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,9 +29,12 @@ constexpr std::array<const char*, 8> kNames = {"t", "x", "y", "z", "qx", "qy", "
 constexpr std::size_t kTum = kNames.size();
 constexpr std::size_t kKitti = 12;
 
-/// The position of each of kNames in a row.
-using Columns = std::array<std::size_t, kTum>;
-constexpr Columns kTumColumns = {0, 1, 2, 3, 4, 5, 6, 7};
+/// The columns of a file.
+struct Columns {
+  std::array<std::size_t, kTum> at = {0, 1, 2, 3, 4, 5, 6, 7};  ///< the position of each of kNames
+  std::size_t count = kTum;                                     ///< in a row
+  bool has_ns = false;                                          ///< times in nanoseconds
+};
 
 TextFileKind file_kind() {
   return {"a trajectory file", kMaxTrajectoryFile_mib, "shorten it, or reduce the number of poses"};
@@ -53,37 +59,81 @@ void append(const TextRowReader& rows, const TimedPose& pose, const std::array<W
 
 void read_quaternion_row(const TextRowReader& rows, const Columns& columns,
                          std::vector<TimedPose>& poses) {
-  require_count(rows, kTum, "");
-  const auto word = [&](std::size_t name) { return rows.words()[columns[name]]; };
+  require_count(rows, columns.count, "");
+  const auto word = [&](std::size_t name) { return rows.words()[columns.at[name]]; };
   const auto number = [&](std::size_t name) { return rows.number(word(name)); };
-  TimedPose pose{.t_ns = rows.time_ns(word(0)), .position_m = {number(1), number(2), number(3)}};
+  TimedPose pose{.t_ns = columns.has_ns ? rows.whole_ns(word(0)) : rows.time_ns(word(0)),
+                 .position_m = {number(1), number(2), number(3)}};
   pose.orientation = Eigen::Quaterniond(number(7), number(4), number(5), number(6));
   append(rows, pose, {word(0), word(1), word(4)}, poses);
 }
 
+/// The name of a column: its index in kNames; kTum for another quantity of EuRoC files; empty for
+/// an unknown one. Names of EuRoC files have a unit behind: "p_RS_R_x [m]", "q_RS_w []".
+std::optional<std::size_t> name_of_column(std::string_view text) {
+  const std::string_view name = text.substr(0, text.find_first_of(" ["));
+  const auto find = [](std::string_view wanted) {
+    return static_cast<std::size_t>(std::find(kNames.begin(), kNames.end(), wanted) -
+                                    kNames.begin());
+  };
+  if (const std::size_t at = find(name); at < kTum) return at;
+  if (name == "timestamp") return 0;
+  const bool has_axis = name.size() > 3 && name[name.size() - 2] == '_' && name[1] == '_';
+  if (!has_axis) return std::nullopt;
+  if (name[0] == 'p') return find(name.substr(name.size() - 1));
+  if (name[0] == 'q') return find("q" + std::string(name.substr(name.size() - 1)));
+  constexpr std::string_view kOthers = "vbwa";  // velocity, biases, rate and acceleration
+  return kOthers.find(name[0]) < kOthers.size() ? std::optional<std::size_t>(kTum) : std::nullopt;
+}
+
+/// Whether the column of times is in nanoseconds: by its unit, else by its name, as in EuRoC files.
+bool has_nanoseconds(const TextRowReader& rows, const Word& word) {
+  const std::size_t bracket = word.text.find('[');
+  if (bracket == std::string_view::npos) return word.text == "timestamp";
+  const std::string_view unit = word.text.substr(bracket);
+  if (unit == "[ns]" || unit == "[s]") return unit == "[ns]";
+  rows.reject(word, "the unit " + shown(unit) + " of times", "[s] or [ns]");
+}
+
 /// The header of a CSV file.
 Columns named_columns(const TextRowReader& rows) {
-  const std::string allowed = "t, x, y, z, qw, qx, qy, qz, each once, in any order";
-  const std::vector<std::string> known(kNames.begin(), kNames.end());
-  Columns columns{};
+  const std::string allowed =
+      "t, x, y, z, qw, qx, qy, qz, each once, in any order, or the names of EuRoC files";
+  Columns columns{.count = rows.words().size()};
   std::array<bool, kTum> seen{};
   for (std::size_t i = 0; i < rows.words().size(); ++i) {
     const Word& word = rows.words()[i];
-    const auto at =
-        static_cast<std::size_t>(std::find(known.begin(), known.end(), word.text) - known.begin());
-    if (at == kTum) {
+    const std::optional<std::size_t> at = name_of_column(word.text);
+    if (!at) {
       rows.reject(word, "the column '" + shown(word.text) + "'", allowed,
                   "the first row names the columns");
     }
-    if (seen[at]) rows.reject(word, "the column '" + known[at] + "' again", allowed);
-    seen[at] = true;
-    columns[at] = i;
+    if (*at == kTum) continue;
+    if (seen[*at])
+      rows.reject(word, "the column '" + std::string(kNames[*at]) + "' again", allowed);
+    seen[*at] = true;
+    columns.at[*at] = i;
+    if (*at == 0) columns.has_ns = has_nanoseconds(rows, word);
   }
   const auto missing = std::find(seen.begin(), seen.end(), false);
   if (missing == seen.end()) return columns;
-  rows.reject(rows.words().back(),
-              "no column '" + known[static_cast<std::size_t>(missing - seen.begin())] + "'",
-              allowed);
+  rows.reject(
+      rows.words().back(),
+      "no column '" + std::string(kNames[static_cast<std::size_t>(missing - seen.begin())]) + "'",
+      allowed);
+}
+
+/// The header of EuRoC files is a comment: "#timestamp [ns],p_RS_R_x [m], ...".
+void uncomment_header(std::string& content) {
+  const std::size_t first = content.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos || content[first] != '#') return;
+  const std::string_view row =
+      std::string_view(content).substr(first, content.find('\n', first) - first);
+  const std::size_t name = row.find_first_not_of("# ");
+  if (row.find(',') == std::string_view::npos || name == std::string_view::npos ||
+      !row.substr(name).starts_with("timestamp"))
+    return;
+  std::fill_n(content.begin() + static_cast<std::ptrdiff_t>(first), name, ' ');
 }
 
 /// The times of a KITTI sequence.
@@ -179,7 +229,7 @@ std::vector<TimedPose> read_quaternions(TextRowReader& rows, const std::string& 
                                         const TrajectoryFileOptions& options) {
   require_no_times(file, options);
   const bool csv = rows.has_commas();
-  const Columns columns = csv ? named_columns(rows) : kTumColumns;
+  const Columns columns = csv ? named_columns(rows) : Columns();
   std::vector<TimedPose> poses;
   if (!csv) read_quaternion_row(rows, columns, poses);
   while (rows.next()) read_quaternion_row(rows, columns, poses);
@@ -193,7 +243,8 @@ std::vector<TimedPose> read_text(const std::filesystem::path& path,
     throw Error({file, "a topic or coordinate frames of a text file", "a bag with them",
                  "omit them, or name a bag"});
   }
-  const std::string content = read_text_file(path, file_kind());
+  std::string content = read_text_file(path, file_kind());
+  uncomment_header(content);
   TextRowReader rows(file, content);
   if (!rows.next()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
   const std::size_t width = rows.words().size();
@@ -209,18 +260,6 @@ std::vector<TimedPose> read_bag(const std::filesystem::path& path,
                                 const TrajectoryFileOptions& options) {
   require_no_times(path.string(), options);
   return bags::read_bag_poses(path, {options.topic, options.parent_frame, options.child_frame});
-}
-
-void shift(std::int64_t start_ns, const std::string& file, std::vector<TimedPose>& poses) {
-  const std::int64_t by_first = poses.front().t_ns;
-  for (TimedPose& pose : poses) {
-    std::int64_t since = 0;
-    if (__builtin_sub_overflow(pose.t_ns, by_first, &since) ||
-        __builtin_add_overflow(since, start_ns, &pose.t_ns)) {
-      throw Error({file, "times that leave the range of nanoseconds when shifted",
-                   "times within 290 years"});
-    }
-  }
 }
 
 /// The poses were checked; only their spline may not exist.
@@ -247,8 +286,9 @@ TimedPoses load_trajectory_file(const std::filesystem::path& path,
   std::vector<TimedPose> poses =
       bags::is_bag_path(path) ? read_bag(path, options) : read_text(path, options);
   if (poses.empty()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
-  if (options.start_ns) shift(*options.start_ns, file, poses);
-  return interpolated(std::move(poses), options.interpolation, file);
+  TimedPoses timed = interpolated(std::move(poses), options.interpolation, file);
+  if (options.start_ns) timed.shift_times(timed.first_ns(), *options.start_ns);
+  return timed;
 }
 
 }  // namespace glidar

@@ -25,9 +25,9 @@ struct TrajectoryFileOptions {
 };
 
 /// Reads timed poses. The first row determines the format (docs/files/motion.md): 8 numbers are TUM
-/// (t x y z qx qy qz qw), 12 are KITTI (three rows of a matrix), names with commas are CSV. Paths
-/// that end in .mcap, .bag or .rosbag2, and folders with metadata.yaml, are bags (docs/bags.md).
-/// Every error states file:line:column, what was found and what is allowed.
+/// (t x y z qx qy qz qw), 12 are KITTI (three rows of a matrix), names with commas are CSV or
+/// EuRoC. Paths that end in .mcap, .bag or .rosbag2, and folders with metadata.yaml, are bags
+/// (docs/bags.md). Every error states file:line:column, what was found and what is allowed.
 TimedPoses load_trajectory_file(const std::filesystem::path& path,
                                 const TrajectoryFileOptions& options = {});
 

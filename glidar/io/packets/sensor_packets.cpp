@@ -103,7 +103,7 @@ void SensorPackets::encode(const Frame& frame, const Beams& beams,
   if (!imu_samples_) return;
   const auto middle = static_cast<std::ptrdiff_t>(packets.size());
   const FrameInterval interval = frame_interval(sensor_, frame.number);
-  encode_imu(frame.stamp_ns + (interval.end_ns - interval.start_ns), packets);
+  encode_imu(frame.stamp_ns, frame.stamp_ns + (interval.end_ns - interval.start_ns), packets);
   std::inplace_merge(packets.begin() + first, packets.begin() + middle, packets.end(),
                      is_earlier_packet);
 }
@@ -112,9 +112,13 @@ void SensorPackets::finish(std::vector<UdpPacket>& packets) {
   encoder_->finish(packets);
 }
 
-void SensorPackets::encode_imu(std::int64_t until_ns, std::vector<UdpPacket>& packets) {
-  if (until_ns <= imu_ns_) return;
-  const ImuSamples samples = imu_samples_(std::exchange(imu_ns_, until_ns), until_ns);
+/// The samples from the end of the encoded ones on; from the start of the first frame on.
+void SensorPackets::encode_imu(std::int64_t from_ns, std::int64_t until_ns,
+                               std::vector<UdpPacket>& packets) {
+  const std::int64_t begin_ns = imu_ns_.value_or(from_ns);
+  if (until_ns <= begin_ns) return;
+  const ImuSamples samples = imu_samples_(begin_ns, until_ns);
+  imu_ns_ = until_ns;
   for (std::size_t i = 0; i < samples.t_ns.size(); ++i) {
     packets.push_back(is_livox_ ? livox_imu_packet(samples, i)
                                 : ouster_imu_packet(samples, i, imu_port_));

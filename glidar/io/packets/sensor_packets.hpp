@@ -64,14 +64,14 @@ class SensorPackets {
   void finish(std::vector<UdpPacket>& packets);
 
  private:
-  void encode_imu(std::int64_t until_ns, std::vector<UdpPacket>& packets);
+  void encode_imu(std::int64_t from_ns, std::int64_t until_ns, std::vector<UdpPacket>& packets);
 
   Sensor sensor_;
   std::unique_ptr<PacketEncoder> encoder_;
   PacketImuSampler imu_samples_;
   bool is_livox_ = false;
   std::uint16_t imu_port_ = 0;
-  std::int64_t imu_ns_ = 0;  ///< time of the next sample or before
+  std::optional<std::int64_t> imu_ns_;  ///< end of the encoded samples; empty: none yet
 };
 
 }  // namespace glidar

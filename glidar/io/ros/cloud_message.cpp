@@ -82,9 +82,12 @@ PointCloud chosen_cloud(const PointCloud& cloud, const CloudSource& source,
 std::vector<glidar::PointField> message_fields(const PointCloud& cloud) {
   std::vector<glidar::PointField> fields;
   for (const Column& column : cloud.columns) {
+    if (native_type(column) == Stored::i64) {
+      append_split_time(column, fields);
+      continue;
+    }
     for (glidar::PointField& field : append_pcl_fields(column, fields)) {
       if (column.name == "xyz") field.stored = Stored::f32;
-      if (field.stored == Stored::i64) field.stored = Stored::f64;
     }
   }
   return fields;
@@ -96,7 +99,7 @@ std::uint8_t datatype_of(Stored stored) {
     case Stored::packed_rgb:  // as PCL declares it
       return PointField::float32;
     case Stored::f64:
-    case Stored::i64:
+    case Stored::i64:  // not used
       return PointField::float64;
     case Stored::u8:
     case Stored::colour_byte:
@@ -104,6 +107,8 @@ std::uint8_t datatype_of(Stored stored) {
     case Stored::u16:
       return PointField::uint16;
     case Stored::u32:
+    case Stored::whole_s:
+    case Stored::rest_ns:
       return PointField::uint32;
   }
   return 0;

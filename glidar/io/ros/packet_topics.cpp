@@ -43,7 +43,12 @@ void PacketTopics::add_ouster_topics(const std::string& name, const Sensor& sens
   imu_topic_ = sink_.add_topic(make_topic<PacketMsg>("/" + name + "/imu_packets"));
   Topic metadata = make_topic<String>("/" + name + "/metadata");
   metadata.qos = kStaticTransformQos;
-  write_message(sink_, sink_.add_topic(metadata), 0, String{ouster_metadata(sensor, options)});
+  metadata_topic_ = sink_.add_topic(metadata);
+  metadata_ = ouster_metadata(sensor, options);
+}
+
+void PacketTopics::write_metadata(std::int64_t t_ns) {
+  if (is_from_ouster_) write_message(sink_, metadata_topic_, t_ns, String{metadata_});
 }
 
 void PacketTopics::hold(const Frame& frame, const Beams& beams, HeldMessages& held) {

@@ -20,10 +20,12 @@ namespace glidar::ros {
 /// one, with its metadata, and those of Velodyne as a VelodyneScan for each frame.
 class PacketTopics {
  public:
-  /// Adds the topics to the sink, which must outlive it, and writes the metadata. Throws Error when
-  /// the sensor has no packets of these manufacturers.
+  /// Adds the topics to the sink, which must outlive it. Throws Error when the sensor has no
+  /// packets of these manufacturers.
   PacketTopics(MessageSink& sink, const PublishedSensor& sensor, std::string frame_id);
 
+  /// Writes what is the same for all frames, before the first one.
+  void write_metadata(std::int64_t t_ns);
   /// Adds the packets that a frame completes to the messages that are to be written.
   void hold(const Frame& frame, const Beams& beams, HeldMessages& held);
   /// The same for the last packet, filled with firings without returns.
@@ -41,7 +43,9 @@ class PacketTopics {
   bool is_from_ouster_;
   std::uint16_t imu_port_;
   std::size_t packets_topic_ = 0;
-  std::size_t imu_topic_ = 0;  ///< Ouster
+  std::size_t imu_topic_ = 0;       ///< Ouster
+  std::size_t metadata_topic_ = 0;  ///< Ouster
+  std::string metadata_;            ///< Ouster
   std::vector<UdpPacket> made_;
 };
 

@@ -60,7 +60,7 @@ void RigMotionPublisher::write_until(std::int64_t until_ns) {
 /// Begins at the first frame, and again after a gap in time, such as of an edited recording.
 void RigMotionPublisher::skip_gap(std::int64_t until_ns) {
   if (last_pose_ns_ && until_ns - reached_ns_ <= kMaxGap_ns) return;
-  next_pose_ns_ = until_ns - until_ns % kPosePeriod_ns;
+  next_pose_ns_ = until_ns - (until_ns - start_ns_) % kPosePeriod_ns;
   for (ImuTopic& imu : imus_) {
     imu.computed_ns = next_pose_ns_;
     imu.samples = {};

@@ -27,6 +27,8 @@ class RigMotionPublisher {
   /// Adds the topics to the sink. Both must outlive it. Throws Error.
   RigMotionPublisher(MessageSink& sink, const PublishedRig& rig);
 
+  /// The time from which poses count, at or before all others.
+  void begin(std::int64_t start_ns) { start_ns_ = start_ns; }
   /// With a motion: writes everything until a time, and the pose at it. Earlier times are ignored.
   void advance(std::int64_t until_ns);
   /// The same without a pose of its own at this time. It has no effect before the first advance().
@@ -65,6 +67,7 @@ class RigMotionPublisher {
   std::size_t odometry_ = 0;
   std::size_t clock_ = 0;
   std::vector<ImuTopic> imus_;                ///< per IMU of a rig with a motion
+  std::int64_t start_ns_ = 0;                 ///< of poses at 100 Hz
   std::int64_t next_pose_ns_ = 0;             ///< of those at 100 Hz
   std::optional<std::int64_t> last_pose_ns_;  ///< that was written
   std::int64_t reached_ns_ = 0;               ///< all is written until this time

@@ -45,7 +45,9 @@ RigPublisher::RigPublisher(MessageSink& sink, PublishedRig rig, RigPublisherOpti
   for (const PublishedSensor& sensor : rig_.sensors) topics_.push_back(add_topics(sensor));
   if (!rig_.world_from_rig) rig_.imus.clear();
   motion_.emplace(sink_, rig_);
-  write_static_transforms();
+  Topic transforms = make_topic<TFMessage>("/tf_static");
+  transforms.qos = kStaticTransformQos;
+  static_topic_ = sink_.add_topic(transforms);
 }
 
 RigPublisher::SensorTopics RigPublisher::add_topics(const PublishedSensor& sensor) {
@@ -90,18 +92,24 @@ void RigPublisher::add_image_topics(const PublishedSensor& sensor, const std::st
     topics.boxes = sink_.add_topic(make_topic<MarkerArray>(base + "/boxes"));
 }
 
-void RigPublisher::write_static_transforms() {
-  Topic topic = make_topic<TFMessage>("/tf_static");
-  topic.qos = kStaticTransformQos;
+void RigPublisher::begin(std::int64_t start_ns) {
+  write_static_transforms(start_ns);
+  for (const SensorTopics& topics : topics_) {
+    if (topics.packets) topics.packets->write_metadata(start_ns);
+  }
+  motion_->begin(start_ns);
+}
+
+void RigPublisher::write_static_transforms(std::int64_t t_ns) {
   TFMessage message;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     message.transforms.push_back(
-        to_transform(rig_.sensors[i].rig_from_sensor, {kRigFrame, topics_[i].frame_id}, 0));
+        to_transform(rig_.sensors[i].rig_from_sensor, {kRigFrame, topics_[i].frame_id}, t_ns));
   }
   for (const PublishedImu& imu : rig_.imus) {
-    message.transforms.push_back(to_transform(imu.rig_from_imu, {kRigFrame, imu.name}, 0));
+    message.transforms.push_back(to_transform(imu.rig_from_imu, {kRigFrame, imu.name}, t_ns));
   }
-  write_message(sink_, sink_.add_topic(topic), 0, message);
+  write_message(sink_, static_topic_, t_ns, message);
 }
 
 /// Writes the messages up to a time, and the poses and samples before them.
@@ -171,6 +179,7 @@ void RigPublisher::publish(std::size_t sensor, const Frame& frame, const Beams& 
   const std::int64_t stamp_ns = first_firing_ns(frame, beams);
   const FrameInterval interval = frame_interval(source.sensor, frame.number);
   const std::int64_t duration_ns = interval.end_ns - interval.start_ns;
+  if (!end_ns_) begin(frame.stamp_ns);
   if (!arrivals_.add(sensor, frame.stamp_ns, duration_ns, stamp_ns + duration_ns)) {
     release(kForever_ns);
   }
@@ -186,7 +195,7 @@ void RigPublisher::publish(std::size_t sensor, const Frame& frame, const Beams& 
   }
   if (topics_[sensor].packets) topics_[sensor].packets->hold(frame, beams, held_);
   release(arrivals_.complete_ns());
-  end_ns_ = std::max(end_ns_, frame.stamp_ns + duration_ns);
+  end_ns_ = std::max(end_ns_.value_or(frame.stamp_ns), frame.stamp_ns + duration_ns);
 }
 
 void RigPublisher::hold_cloud(std::size_t sensor, const CloudSource& source,
@@ -254,7 +263,7 @@ void RigPublisher::finish() {
     if (topics.packets) topics.packets->finish(held_);
   }
   release(kForever_ns);
-  if (rig_.world_from_rig && motion_->has_begun()) motion_->advance(end_ns_);
+  if (rig_.world_from_rig && motion_->has_begun() && end_ns_) motion_->advance(*end_ns_);
 }
 
 }  // namespace glidar::ros

@@ -85,7 +85,9 @@ class RigPublisher {
   SensorTopics add_topics(const PublishedSensor& sensor);
   void add_image_topics(const PublishedSensor& sensor, const std::string& base,
                         SensorTopics& topics);
-  void write_static_transforms();
+  /// Writes what is the same for all frames, when the first one starts.
+  void begin(std::int64_t start_ns);
+  void write_static_transforms(std::int64_t t_ns);
   void hold_cloud(std::size_t sensor, const CloudSource& source, std::int64_t stamp_ns);
   void hold_compressed_images(const SensorTopics& topics, const CloudSource& source,
                               std::int64_t stamp_ns);
@@ -98,7 +100,8 @@ class RigPublisher {
   std::optional<RigMotionPublisher> motion_;
   FrameArrivals arrivals_;
   HeldMessages held_;
-  std::int64_t end_ns_ = 0;  ///< of the last frame
+  std::size_t static_topic_ = 0;        ///< transforms that do not change
+  std::optional<std::int64_t> end_ns_;  ///< of the last frame; empty: there was none
   PointCloud cloud_;
 };
 

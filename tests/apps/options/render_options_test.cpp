@@ -53,8 +53,8 @@ TEST(RenderOptions, ErrorsOfVectorsAndPosesNameTheOption) {
 TEST(RenderOptions, ErrorsOfMotionNameTheOption) {
   EXPECT_THAT(error_of({"--sensor-rate", "1,2"}), HasSubstr("--sensor-rate: '1,2' (2 numbers)"));
   EXPECT_THAT(error_of({"--object-rate", "1,2,1e10"}), HasSubstr("rad/s from -1e9 to 1e9"));
-  EXPECT_THAT(error_of({"--trajectory", "t", "--trajectory-start", "1e10"}),
-              HasSubstr("up to 9.2e9"));
+  EXPECT_THAT(error_of({"--start-time", "1e10"}), HasSubstr("--start-time: '1e10'"));
+  EXPECT_THAT(error_of({"--from", "soon"}), HasSubstr("--from: 'soon'"));
 }
 
 TEST(RenderOptions, ThatExcludeEachOtherAreRefused) {

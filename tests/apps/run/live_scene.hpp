@@ -29,7 +29,7 @@ struct LiveScene {
     measured.beams = active.simulator->beams(number);
     measured.index = number;
     measured.motion = std::make_shared<const Motion>(active.motion);
-    set_frame_header(flags, number, active, measured.frame);
+    set_frame_header(flags, prepared, active, number, measured.frame);
     HitColumnMask all = hit_columns_for(cloud_column_names());
     active.simulator->simulate(*measured.motion, all, measured.frame);
     return measured;

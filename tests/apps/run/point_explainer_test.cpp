@@ -62,7 +62,7 @@ TEST(PointExplainer, ExplainsTheBeamOfTheSelectedPointOfTheMessage) {
                                 " ns after the start of frame 1"));
     // a VLP-16 fires its lasers one after the other: the time states the beam, up to the column
     Frame frame;
-    set_frame_header(scene.flags, 1, active, frame);
+    set_frame_header(scene.flags, scene.prepared, active, 1, frame);
     const auto find = [&](const Frame& repeated) {
       std::size_t entry = 0;
       while (beams->times_ns[entry] != time_of(message, index) + first_ns ||

@@ -196,6 +196,23 @@ TEST(RigMessages, BeginAtTheFirstFrameAndAgainAfterALongGap) {
   EXPECT_LE(sink.counts().at("/odom"), 15U);
 }
 
+TEST(RigMessages, StartWithTheRunAlsoWhereItsTimesAreDates) {
+  ImuScene scene;
+  constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
+  scene.prepared.start_ns = kStart_ns;
+  ros::MemorySink sink;
+  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  for (const auto& message : sink.messages) EXPECT_GE(message.time_ns, kStart_ns);
+  EXPECT_EQ(sink.messages.front().time_ns, kStart_ns);
+  EXPECT_EQ(sink.messages.back().time_ns, kStart_ns + 200'000'000);
+  EXPECT_EQ(sink.counts().at("/imu/data"), 21U);
+  const auto transforms = sink.of<ros::TFMessage>("/tf_static");
+  ASSERT_EQ(transforms.size(), 1U);
+  EXPECT_EQ(ros::to_ns(transforms[0].transforms.at(0).header.stamp), kStart_ns);
+  const auto poses = sink.of<ros::Odometry>("/odom");
+  EXPECT_EQ(ros::to_ns(poses.at(1).header.stamp), kStart_ns + 10'000'000);
+}
+
 TEST(RigMessages, OfViewersHaveTrueRangesAndImages) {
   LiveScene scene;
   ros::MemorySink sink;

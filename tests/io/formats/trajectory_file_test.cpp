@@ -50,6 +50,33 @@ TEST(TrajectoryFile, CsvNamesItsColumnsInAnyOrder) {
   EXPECT_EQ(poses.poses()[0].orientation.w(), 0.8);
 }
 
+TEST(TrajectoryFile, EurocNamesItsColumnsInACommentAndHasNanoseconds) {
+  const char* const kRow = "1403636580838555648,4.6,-1.7,0.7,0.53,-0.15,-0.83,-0.08";
+  const std::string others = ",0.1,0.2,0.3,0,0,0,0,0,0\n";
+  for (const std::string& content :
+       {"#timestamp,p_x [m],p_y [m],p_z [m],q_w [],q_x [],q_y [],q_z []\n" + std::string(kRow),
+        "# timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
+        "q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], "
+        "b_w_RS_S_x [rad s^-1], b_w_RS_S_y [rad s^-1], b_w_RS_S_z [rad s^-1], "
+        "b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], b_a_RS_S_z [m s^-2]\r\n" +
+            std::string(kRow) + others,
+        "timestamp [ns],x,y,z,qw,qx,qy,qz\n" + std::string(kRow)}) {
+    const TimedPoses poses = load_text(content);
+    ASSERT_EQ(poses.poses().size(), 1U);
+    const TimedPose& pose = poses.poses()[0];
+    EXPECT_EQ(pose.t_ns, 1'403'636'580'838'555'648);
+    EXPECT_EQ(pose.position_m, Eigen::Vector3d(4.6, -1.7, 0.7));
+    const Eigen::Quaterniond wxyz(0.53, -0.15, -0.83, -0.08);
+    EXPECT_LT((pose.orientation.coeffs() - wxyz.normalized().coeffs()).norm(), 1e-15);
+  }
+}
+
+TEST(TrajectoryFile, ATimestampInSecondsHasItsUnit) {
+  EXPECT_EQ(load_text("timestamp [s],x,y,z,qw,qx,qy,qz\n1.403636580838555574e+09,0,0,0,1,0,0,0\n")
+                .first_ns(),
+            1'403'636'580'838'555'574);
+}
+
 TEST(TrajectoryFile, KittiPosesAreRowsOfAMatrix) {
   // a quarter turn about z: x goes to y
   const std::string rows = "1 0 0 5 0 1 0 6 0 0 1 7\n0 -1 0 1 1 0 0 2 0 0 1 3\n";
@@ -99,7 +126,8 @@ TEST_P(BadTrajectory, IsReportedWithLocationAndRemedy) {
 }
 
 const std::string kGood = "0 0 0 0 0 0 0 1\n";
-const std::string kNames = "t, x, y, z, qw, qx, qy, qz, each once, in any order";
+const std::string kNames =
+    "t, x, y, z, qw, qx, qy, qz, each once, in any order, or the names of EuRoC files";
 
 const BadFile kBadTrajectories[] = {
     {"Empty", "", "t: no pose; allowed: at least one; see docs/files.md"},
@@ -122,12 +150,12 @@ const BadFile kBadTrajectories[] = {
     {"TimeTwice", kGood + kGood,
      "t:2:1: the same time as the previous pose; allowed: increasing times"},
     {"TimeInNanoseconds", "1403636580838555574 0 0 0 0 0 0 1\n",
-     "t:1:1: '1403636580838555574'; allowed: seconds from -9.2e9 to 9.2e9; a file in nanoseconds "
-     "must be divided by 1e9"},
+     "t:1:1: '1403636580838555574'; allowed: seconds from -9.2e9 to 9.2e9; nanoseconds are "
+     "allowed in CSV files with a column 'timestamp [ns]'"},
     {"QuaternionOfZeros", "0 1 2 3 0 0 0 0\n",
-     "t:1:9: a quaternion of length 0.000000; allowed: length 1 to within 0.001"},
-    {"QuaternionTooLong", kGood + "1 0 0 0 0 0 0.1 1\n",
-     "t:2:9: a quaternion of length 1.004988; allowed: length 1 to within 0.001"},
+     "t:1:9: a quaternion of length 0.000000; allowed: length 1 to within 0.01"},
+    {"QuaternionTooLong", kGood + "1 0 0 0 0 0 0.2 1\n",
+     "t:2:9: a quaternion of length 1.019804; allowed: length 1 to within 0.01"},
     {"PositionTooFar", "0 1e16 2 3 0 0 0 1\n",
      "t:1:3: a position that is not finite or too large; allowed: coordinates up to 1e15 m"},
     {"UnknownColumn", "t,x,y,z,qx,qy,qz,w\n",
@@ -136,6 +164,15 @@ const BadFile kBadTrajectories[] = {
      "t:1:1: the column '0'; allowed: " + kNames + "; the first row names the columns"},
     {"ColumnTwice", "t,x,y,z,qx,qy,qz,x\n", "t:1:18: the column 'x' again; allowed: " + kNames},
     {"ColumnMissing", "t,x,y,z,qx,qy,qz\n", "t:1:15: no column 'qw'; allowed: " + kNames},
+    {"SecondsInNanoseconds", "timestamp,x,y,z,qx,qy,qz,qw\n1.5,0,0,0,0,0,0,1\n",
+     "t:2:1: '1.5' in a column of nanoseconds; allowed: whole numbers; a column of seconds is "
+     "called "
+     "'t'"},
+    {"NanosecondsInSeconds", "t,x,y,z,qx,qy,qz,qw\n1403636580838555574,0,0,0,0,0,0,1\n",
+     "t:2:1: '1403636580838555574'; allowed: seconds from -9.2e9 to 9.2e9; nanoseconds are allowed "
+     "in CSV files with a column 'timestamp [ns]'"},
+    {"AnotherUnit", "t [ms],x,y,z,qx,qy,qz,qw\n",
+     "t:1:1: the unit [ms] of times; allowed: [s] or [ns]"},
     {"CsvRowTooShort", "t,x,y,z,qx,qy,qz,qw\n1,2,3\n", "t:2:5: 3 columns; allowed: 8 in every row"},
     {"CsvEmptyField", "t,x,y,z,qx,qy,qz,qw\n1,,3,4,0,0,0,1\n",
      "t:2:3: ''; allowed: a finite number"},

@@ -230,7 +230,7 @@ class Formats(unittest.TestCase):
                     [n for _, _, names in self.told_columns(path) for n in names],
                     list(wanted.dtype.names))  # fmt: skip
 
-    def test_integers_of_64_bits_are_whole_but_in_ply(self):
+    def test_stamps_are_exact_and_split_in_ply(self):
         for folder in SIZES:
             wanted = scan_columns(folder)["stamp"]
             for ending in (".pcd", "_ascii.pcd", "_compressed.pcd"):
@@ -243,7 +243,9 @@ class Formats(unittest.TestCase):
             self.assertEqual([int(line.split(",")[place]) for line in lines[1:]], wanted.tolist())
             for ending in (".ply", "_ascii.ply"):
                 _, points = formats.read_ply(FOLDER / folder / ("scan" + ending))
-                self.same(points["stamp"], wanted.astype(np.float64), ending)
+                seconds, rest = np.divmod(wanted, 10**9)
+                self.same(points["stamp_sec"], seconds.astype(np.uint32), ending)
+                self.same(points["stamp_nsec"], rest.astype(np.uint32), ending)
 
     def test_csv(self):
         def fields(c):
