@@ -4,6 +4,8 @@
 
 #include <glidar/math/philox.hpp>
 
+#include <cassert>
+
 namespace glidar {
 
 RandomWords philox4x32(RandomWords counter, std::array<std::uint32_t, 2> key) {
@@ -13,13 +15,14 @@ RandomWords philox4x32(RandomWords counter, std::array<std::uint32_t, 2> key) {
 }
 
 RandomWords counter_of(const RngKey& key) {
-  const auto purpose = static_cast<std::uint32_t>(key.purpose) << 24U;
-  return {key.beam, purpose, key.frame, key.block};
+  constexpr std::uint32_t kBlockBits = 24;
+  assert(key.block >> kBlockBits == 0);
+  const auto purpose = static_cast<std::uint32_t>(key.purpose) << kBlockBits;
+  return {key.beam, purpose | key.block, key.frame, key.sensor};
 }
 
 std::array<std::uint32_t, 2> key_of(const RngKey& key) {
-  return {static_cast<std::uint32_t>(key.seed),
-          static_cast<std::uint32_t>(key.seed >> 32U) ^ key.sensor};
+  return {static_cast<std::uint32_t>(key.seed), static_cast<std::uint32_t>(key.seed >> 32U)};
 }
 
 RandomWords random_words(const RngKey& key) {

@@ -41,13 +41,13 @@ struct RngKey {
   std::uint32_t frame = 0;
   std::uint32_t beam = 0;
   Purpose purpose = Purpose::verification;
-  std::uint32_t block = 0;  ///< successive blocks of four words for the same beam and purpose
+  std::uint32_t block = 0;  ///< blocks of four words of a beam and purpose, below 2^24
 };
 
-/// The counter of Philox: (beam, purpose << 24, frame, block).
+/// (beam, purpose << 24 | block, frame, sensor): with the seed, each part has bits of its own.
 RandomWords counter_of(const RngKey& key);
 
-/// The key of Philox: (low word of seed, high word of seed xor sensor).
+/// (low word of seed, high word). Philox is a bijection for each key, so no numbers are repeated.
 std::array<std::uint32_t, 2> key_of(const RngKey& key);
 
 /// RngKey::frame of random numbers that are the same for all frames of a sensor.

@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
 namespace glidar {
 namespace {
 
@@ -36,6 +41,62 @@ TEST(RandomWords, DifferForEveryPartOfTheKey) {
   RngKey other = draw;
   other.seed += std::uint64_t{1} << 32U;
   EXPECT_NE(random_words(draw), random_words(other));
+}
+
+TEST(RandomWords, OfASensorAreNotThoseOfAnotherSeed) {
+  constexpr std::uint64_t kHighWord = std::uint64_t{1} << 32U;
+  for (std::uint32_t sensor = 1; sensor < 100; ++sensor) {
+    EXPECT_NE(random_words({.seed = 5 + kHighWord * sensor}),
+              random_words({.seed = 5, .sensor = sensor}));
+  }
+}
+
+/// Counter and key of numbers of which each is at its bounds or has a few bits.
+using Input = std::pair<RandomWords, std::array<std::uint32_t, 2>>;
+
+TEST(RandomWords, HaveACounterAndKeyOfTheirOwnForEveryPartOfTheRngKey) {
+  const std::vector<std::uint32_t> words = {0, 1, 5, 1U << 23U, 1U << 31U, 0xFFFFFFFFU};
+  const std::vector<std::uint32_t> purposes = {0, 1, 5, 255};
+  const std::vector<std::uint32_t> blocks = {0, 1, 5, (1U << 24U) - 1U};
+  constexpr std::size_t kCount = 6 * 6 * 6 * 6 * 4 * 4;
+  std::set<Input> inputs;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    std::size_t rest = i;
+    const auto pick = [&](const std::vector<std::uint32_t>& from) {
+      const std::uint32_t value = from[rest % from.size()];
+      rest /= from.size();
+      return value;
+    };
+    const RngKey key{.seed = std::uint64_t{pick(words)} << 32U | 5U,
+                     .sensor = pick(words),
+                     .frame = pick(words),
+                     .beam = pick(words),
+                     .purpose = static_cast<Purpose>(pick(purposes)),
+                     .block = pick(blocks)};
+    inputs.emplace(counter_of(key), key_of(key));
+  }
+  EXPECT_EQ(inputs.size(), kCount);
+}
+
+TEST(RandomWords, OfManySeedsSensorsAndPurposesAreDifferentAndIndependent) {
+  constexpr std::uint32_t kCount = 40 * 40 * 40;
+  std::set<RandomWords> found;
+  double sum = 0.0;
+  double products = 0.0;
+  double before = 0.0;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    const RandomWords words = random_words(
+        {.seed = i / 1600, .sensor = i / 40 % 40, .purpose = static_cast<Purpose>(i % 40)});
+    found.insert(words);
+    const double number = uniform(words[0]) - 0.5;
+    sum += number;
+    products += number * before;
+    before = number;
+  }
+  EXPECT_EQ(found.size(), kCount);
+  const double root = std::sqrt(static_cast<double>(kCount));
+  EXPECT_LT(std::abs(sum), 4.0 * root / std::sqrt(12.0));
+  EXPECT_LT(std::abs(products), 4.0 * root / 12.0);
 }
 
 TEST(Uniform, IsStrictlyBetweenZeroAndOneAndExact) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/lidar/fog_variation.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/sensor/lidar/weather_signal.hpp>
 
 #include <algorithm>
@@ -144,6 +145,10 @@ VaryingFog varying_fog(const LidarEquation& light, double backscatter_per_m_sr, 
   fog.end_m = farthest_m(light, step_m);
   fog.profile = fog_profile(light, backscatter_per_m_sr, pulse_fwhm_s, fog.end_m);
   const double length_m = fog.end_m - fog.profile.start_m;
+  // each four have a block of random words, of 2^24
+  const double numbers = (length_m / fog.cell_m + 2.0) * looks;
+  require_number(numbers <= 6e7, "weather, random numbers of the fog in a beam", numbers,
+                 "6e7; decrease fog_looks, or use 0");
   const auto count = static_cast<std::size_t>(std::ceil(length_m / step_m)) + 1;
   for (std::size_t i = 0; i < count; ++i) {
     fog.nodes.push_back(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/lidar/precipitation.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/lidar/weather_signal.hpp>
 
@@ -14,6 +15,7 @@ namespace glidar {
 namespace {
 
 constexpr double kFarthest_m = 1e4;
+constexpr double kMaxDrops = 1e6;  // of a beam; each has a block of random words, of 2^23
 
 /// The starts of the shells: 5 % apart, and at every node of the overlap table.
 std::vector<double> shell_edges_m(const LidarEquation& light) {
@@ -124,6 +126,8 @@ void sample_drops(const LidarEquation& light, const DropField& field, double har
   if (field.shells.empty()) return;
   const double end = mean_to(field, hard_range_m);
   if (!(end > 0.0)) return;
+  require_number(end <= kMaxDrops, "weather, mean number of detectable drops in a beam", end,
+                 "1e6; increase min_signal or use a narrower beam");
   // In units of expected drops, the distances between drops are exponential.
   double mean = 0.0;
   for (;; ++key.block) {

@@ -8,7 +8,7 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kSnowBlocks = 1U << 31U;  // first block of snow; rain begins at 0
+constexpr std::uint32_t kSnowBlocks = 1U << 23U;  // first of snow; rain begins at 0
 
 }  // namespace
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/lidar/fog_variation.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sensor/distribution.hpp>
+#include <support/error_text.hpp>
 #include <support/parameter_name.hpp>
 
 #include <algorithm>
@@ -14,6 +16,8 @@
 
 namespace glidar {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr double kFwhm_s = 5e-9;
@@ -163,6 +167,12 @@ TEST(VaryingFog, DoesNotDependOnTheTargetBehindIt) {
 
 TEST(VaryingFog, IsZeroWithoutBackscatter) {
   EXPECT_EQ(echo_before(varying_fog(kLight, 0.0, kFwhm_s, 1), kEndless, {}).signal, 0.0);
+}
+
+TEST(VaryingFog, OfSoManyCellsThatRandomNumbersWouldRepeatIsRefused) {
+  EXPECT_THAT(error_text([] { varying_fog(kLight, kBackscatter, 1e-14, 64); }),
+              ::testing::AllOf(HasSubstr("weather, random numbers of the fog in a beam"),
+                               HasSubstr("decrease fog_looks")));
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/lidar/precipitation.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sensor/distribution.hpp>
+#include <support/error_text.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +17,8 @@
 
 namespace glidar {
 namespace {
+
+using ::testing::HasSubstr;
 
 using testing::chi_square;
 using testing::chi_square_limit;
@@ -281,6 +285,14 @@ TEST(Drops, DoNotExistInABeamWithoutWidth) {
   const DropField field =
       drop_field({}, rain_sizes(80.0), {.divergence_rad = 0.0, .exit_diameter_m = 0.0}, 0.01);
   EXPECT_TRUE(drops_of({}, field, kNoTarget, 0).empty());
+}
+
+TEST(Drops, OfABeamWithMoreThanAMillionAreRefused) {
+  const DropField field =
+      drop_field(strong_light(), rain_sizes(50.0), {.divergence_rad = 0.003}, 0.1);
+  EXPECT_THAT(error_text([&] { drops_of(strong_light(), field, kNoTarget, 0); }),
+              ::testing::AllOf(HasSubstr("weather, mean number of detectable drops in a beam"),
+                               HasSubstr("allowed: 1e6; increase min_signal")));
 }
 
 }  // namespace
