@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws docs/images/ros2.png: what a program without code of GLIDAR received of `glidar stream examples/drive.yaml --ros2`
+"""Draws docs/images/ros2.png: what a program without code of GLIDAR received of `glidar stream examples/drive.yaml --ros2 --tf map`
 over DDS. The clouds are placed in the frame `map` by /tf and /tf_static, as RViz places them.
 
 usage: plot_ros2.py GLIDAR_PROGRAM PICTURE.png, by a Python that has cyclonedds 11, NumPy, Pillow and Matplotlib
@@ -73,7 +73,7 @@ def receive(program):
     clouds = reader(participant, "/lidar/points", "PointCloud2")
     moving = reader(participant, "/tf", "TFMessage")
     static = reader(participant, "/tf_static", "TFMessage", Policy.Durability.TransientLocal)
-    command = [program, "stream", "examples/drive.yaml", "--ros2", "--duration", str(CLOUDS / 10 + 0.5), "--quiet"]
+    command = [program, "stream", "examples/drive.yaml", "--ros2", "--tf", "map", "--duration", str(CLOUDS / 10 + 0.5), "--quiet"]
     received, poses, mounts = [], {}, {}
     with subprocess.Popen(command) as simulation:
         end = time.monotonic() + MAX_WAIT_S

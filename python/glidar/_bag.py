@@ -25,7 +25,7 @@ def save_bag(
     """Writes frames of one sensor to a ROS bag, like ``glidar render -o PATH``: NAME.mcap, NAME.rosbag2 (a folder for
     ROS 2) or NAME.bag (ROS 1).
 
-    The bag has the poses of the frames in /tf and /odom and their times in /clock. With an iterator, such as
+    The bag has the poses of the frames in /tf and /ground_truth/odom and their times in /clock. With an iterator, such as
     ``simulate_iter``, only one frame is in memory.
 
     Args:

@@ -95,7 +95,7 @@ async function streamsARig() {
   const { width, height, encoding, data } = of("/lidar/range/image_raw")[0].message;
   assert.deepEqual([height, encoding, data.length], [16, "32FC1", 4 * 16 * width]);
   assert.deepEqual([of("/camera/depth/image_raw")[0].message.width, of("/camera/depth/camera_info")[0].message.width], [32, 32]);
-  assert.deepEqual(of("/tf_static")[0].message.transforms.map((one) => one.child_frame_id), ["lidar", "camera", "imu"]);
+  assert.deepEqual(of("/tf_static")[0].message.transforms.map((one) => one.child_frame_id), ["lidar", "camera_link", "camera_depth_optical_frame", "imu"]);
   assert.ok(Math.abs(of("/imu/data")[0].message.angular_velocity.z - 0.5) < 1e-9);
   const index = Math.floor(all.length / 2);
   const [status, { text }] = await post(port, "/api/pick", { topic: "/lidar/points", time_ns: String(cloud.timestamp), index });

@@ -42,7 +42,7 @@ def test_a_frame_is_saved_as_a_bag(scene, tmp_path, name):
     (_, cloud), = found["/lidar/points"]
     expected = frame.cloud("xyz", drop_invalid=True)["xyz"]
     assert np.array_equal(np.sort(points(cloud), axis=0), np.sort(expected.reshape(-1, 3).astype(np.float32), axis=0))
-    (_, odometry), = found["/odom"]
+    (_, odometry), = found["/ground_truth/odom"]
     assert [odometry.pose.pose.position.x, odometry.pose.pose.position.y] == [0.5, 0.25]
     assert odometry.twist.covariance[0] == -1.0
 
@@ -55,7 +55,7 @@ def test_frames_are_saved_in_one_bag_in_the_order_of_time(scene, tmp_path, name)
     found = messages(tmp_path / name)
     assert [time_ns for time_ns, _ in found["/lidar/points"]] == [first_firing_ns(frame) for frame in frames]
     assert [field.name for field in found["/lidar/points"][0][1].fields] == ["x", "y", "z", "intensity", "ring", "time"]
-    assert found["/odom"][2][1].twist.twist.linear.x == pytest.approx(1.0, rel=1e-3)
+    assert found["/ground_truth/odom"][2][1].twist.twist.linear.x == pytest.approx(1.0, rel=1e-3)
     assert "/tf_static" in found
 
 

@@ -57,20 +57,21 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize("name", ["run.mcap", "run.bag", "run.rosbag2"])
 def test_a_bag_has_all_sensors_of_a_rig_with_their_frames_and_ground_truth(folder, name):
     found = messages(folder / name)
-    assert set(found) == {"/lidar/points", "/camera/points", "/camera/depth/image_raw", "/camera/depth/camera_info",
-                          "/imu/data", "/tf", "/tf_static", "/odom", "/clock"}  # fmt: skip
-    stamps = [stamp for stamp, _ in found["/lidar/points"]]
+    images = {f"/camera/{name}/{kind}" for name in ("depth", "intensity", "color") for kind in ("image_raw", "camera_info")}
+    assert set(found) == {"/lidar/points", "/camera/points", *images, "/imu/data", "/tf", "/tf_static",
+                          "/ground_truth/odom", "/clock"}  # fmt: skip
+    stamps = [cloud.header.stamp.sec * 10**9 + cloud.header.stamp.nanosec for _, cloud in found["/lidar/points"]]
     assert stamps == pytest.approx([0, 1e8], abs=2e5)  # frames begin with a firing
     assert len(found["/camera/points"]) == 6
     static = {t.child_frame_id for t in found["/tf_static"][0][1].transforms}
-    assert static == {"lidar", "camera", "imu"}
+    assert static == {"lidar", "camera_link", "camera_depth_optical_frame", "imu"}
     assert found["/lidar/points"][0][1].header.frame_id == "lidar"
     times = [stamp for stamp, _ in found["/tf"]]
     assert set(times) >= {*range(0, 200_000_001, 10_000_000), *stamps, *(stamp for stamp, _ in found["/camera/points"])}
     assert (np.diff(times) > 0).all()
-    assert times == [stamp for stamp, _ in found["/odom"]] == [stamp for stamp, _ in found["/clock"]]
+    assert times == [stamp for stamp, _ in found["/ground_truth/odom"]] == [stamp for stamp, _ in found["/clock"]]
     assert times[-1] == 200_000_000
-    odometry = found["/odom"][-1][1]
+    odometry = found["/ground_truth/odom"][-1][1]
     assert odometry.twist.twist.linear.x == pytest.approx(1.0, abs=1e-12)
     assert odometry.twist.twist.angular.z == pytest.approx(0.5, abs=1e-12)
     imu = found["/imu/data"][0][1]

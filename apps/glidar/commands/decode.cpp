@@ -261,8 +261,7 @@ Command add_decode(CLI::App& program) {
   hide_standard_output(command);
   command.remove_option(command.get_option("--no-sidecar"));
   command.remove_option(command.get_option("--livox-data-type"));
-  command.remove_option(command.get_option("--packet-topics"));
-  command.remove_option(command.get_option("--image-transport"));
+  remove_message_options(command);
   OptionGroup(command, "Run").add_flag("--quiet", "No summary, only warnings", flags->quiet);
   return [flags] { return run_decode(*flags); };
 }

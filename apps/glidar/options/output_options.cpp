@@ -94,13 +94,6 @@ void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
             [&flags](const std::string& text) {
               flags.livox_type = static_cast<LivoxDataType>(whole(1, 3)(text));
             });
-  group.add_flag("--packet-topics", "Also Ouster and Velodyne packets in bags and ROS 2",
-                 flags.packet_topics);
-  group.add("--image-transport", "NAME", "Images in bags and ROS 2: raw, compressed or both [raw]",
-            flags.images,
-            one_of<ros::ImageTransport>({{"raw", ros::ImageTransport::raw},
-                                         {"compressed", ros::ImageTransport::compressed},
-                                         {"both", ros::ImageTransport::both}}));
   group.add("--depth-scale", "UNITS", "Units per metre in 16-bit depth images [1000]",
             flags.sink.depth_png_units_per_m,
             number(kAboveZero, kFinite, "a finite number above 0"));
@@ -144,7 +137,8 @@ void add_output_options(CLI::App& command, OutputFlags& flags) {
   add_cloud_options(group, flags);
   add_picture_options(group, flags.sink.picture);
   group.add_flag("--no-sidecar", "Write no FILE.json beside clouds", flags.sink.sidecar, false);
-  forbid_together(command, {"--layout"}, {"--columns"});
+  add_message_options(command, flags.messages);
+  forbid_together(command, {"--layout", "--as"}, {"--columns"});
 }
 
 void add_legacy_output_option(CLI::App& command, OutputFlags& flags) {
@@ -179,9 +173,9 @@ std::string output_names_text() {
   text += indented(names);
   text += "\nLayouts of clouds (" + suffixes_with_layouts() + " and bags):\n";
   for (const PointFieldLayout& layout : cloud_layouts()) {
-    text += fmt::format("  {:<12} {}\n", layout.name, layout.description);
+    text += fmt::format("  {:<15} {}\n", layout.name, layout.description);
   }
-  return text +
+  return text + driver_names_text() +
          "\nAxes of clouds:\n"
          "  optical      x right, y down, z forward\n"
          "  ros          x forward, y left, z up\n"

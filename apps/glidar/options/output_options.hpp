@@ -3,10 +3,10 @@
 #pragma once
 
 #include <apps/glidar/options/cli_fwd.hpp>
+#include <apps/glidar/options/message_options.hpp>
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/packets/livox_packet.hpp>
 #include <glidar/io/packets/ouster_packet.hpp>
-#include <glidar/io/ros/image_transport.hpp>
 
 #include <optional>
 #include <string>
@@ -26,8 +26,7 @@ struct OutputFlags {
   bool deskew = false;
   std::optional<OusterProfile> ouster_profile;  ///< of packets; empty: by the number of returns
   std::optional<LivoxDataType> livox_type;      ///< of points in packets; empty: in mm
-  ros::ImageTransport images = ros::ImageTransport::raw;  ///< of cameras, in bags and ROS 2
-  bool packet_topics = false;  ///< packets of Ouster and Velodyne sensors in bags and ROS 2
+  MessageFlags messages;                        ///< of ROS
   FileSinkOptions sink;
 };
 

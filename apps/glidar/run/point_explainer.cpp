@@ -42,12 +42,15 @@ PointExplainer::~PointExplainer() {
 
 void PointExplainer::add_frame(const MeasuredFrame& measured) {
   const Frame& frame = measured.frame;
-  KnownFrame known{.sensor_index = measured.sensor_index,
-                   .message_ns = ros::first_firing_ns(frame, *measured.beams),
-                   .stamp_ns = frame.stamp_ns,
-                   .number = frame.number,
-                   .seed = frame.seed,
-                   .motion = measured.motion};
+  const ros::CloudSource source{frame, prepared_.sensors[measured.sensor_index].sensor,
+                                *measured.beams};
+  KnownFrame known{
+      .sensor_index = measured.sensor_index,
+      .message_ns = ros::cloud_stamp_ns(source, publisher_.cloud_options(measured.sensor_index)),
+      .stamp_ns = frame.stamp_ns,
+      .number = frame.number,
+      .seed = frame.seed,
+      .motion = measured.motion};
   const std::lock_guard lock(mutex_);
   frames_.push_back(std::move(known));
   if (frames_.size() > kKnownFrames * simulators_.size()) frames_.pop_front();
@@ -122,7 +125,8 @@ std::size_t PointExplainer::entry_of(const PublishedPoint& point, std::size_t se
   make_point_cloud(frame, beams, prepared_.scene,
                    output_frame("sensor", beams, frame.world_from_sensor), columns, cloud);
   const std::vector<std::uint32_t> points =
-      ros::message_points(cloud, beams, publisher_.cloud_options(sensor_index));
+      ros::message_points(cloud, {frame, prepared_.sensors[sensor_index].sensor, beams},
+                          publisher_.cloud_options(sensor_index));
   if (point.index < points.size()) return points[point.index];
   throw Error({"explanation of a point", fmt::format("point {}", point.index),
                fmt::format("0 to {}, a point of the cloud", points.size())});

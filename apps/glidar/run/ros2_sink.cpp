@@ -11,7 +11,7 @@ namespace {
 std::vector<std::string> omitted_topics(const Ros2Flags& flags) {
   if (flags.pose_topic.empty()) return {};
   if (follows_ros_clock(flags)) return {"/clock"};
-  return {"/tf", "/odom", "/clock"};
+  return {"/tf", "/odom", "/ground_truth/odom", "/clock"};
 }
 
 }  // namespace

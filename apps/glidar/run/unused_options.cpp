@@ -63,6 +63,17 @@ void check_packets(const char* option, bool has_packet_output, bool has_sensor, 
                           "-o scan.pcap");
 }
 
+/// Options that only cameras have.
+void check_camera_options(const MessageFlags& messages, const PreparedScene& prepared) {
+  const auto is_camera = [](const Sensor& sensor) {
+    return std::holds_alternative<Pinhole>(sensor.optics);
+  };
+  if (any_sensor(prepared, is_camera)) return;
+  if (messages.images != ros::ImageTransport::raw)
+    refuse_sensors("--image-transport", prepared, "a camera");
+  if (messages.depth_in_mm) refuse_sensors("--depth-image", prepared, "a camera");
+}
+
 }  // namespace
 
 void refuse_unused_output_options(const OutputFlags& flags, const PreparedScene& prepared,
@@ -73,18 +84,20 @@ void refuse_unused_output_options(const OutputFlags& flags, const PreparedScene&
   if (!any_sensor(prepared, is_doppler)) {
     check_columns(prepared.sensors.front().sensor, flags.columns);
   }
-  if (flags.packet_topics && !has_messages)
-    refuse_without_output("--packet-topics", "ROS messages", "a bag, or --ros2", "-o run.mcap");
-  if (flags.images != ros::ImageTransport::raw) {
-    const auto is_camera = [](const Sensor& sensor) {
-      return std::holds_alternative<Pinhole>(sensor.optics);
-    };
-    if (!has_messages)
-      refuse_without_output("--image-transport", "ROS messages", "a bag, or --ros2", "-o run.mcap");
-    if (!any_sensor(prepared, is_camera)) refuse_sensors("--image-transport", prepared, "a camera");
-  }
+  const MessageFlags& messages = flags.messages;
+  const std::string message_option = given_message_option(messages);
+  const bool is_framed = live.viewers && !messages.frame_prefix.empty();
+  if (!message_option.empty() && !has_messages && !is_framed)
+    refuse_without_output(message_option.c_str(), "ROS messages", "a bag, or --ros2",
+                          "-o run.mcap");
+  if (messages.tf && !has_messages && !live.viewers)
+    refuse_without_output("--tf", "ROS messages", "a bag, or --ros2", "-o run.mcap");
+  check_camera_options(messages, prepared);
+  if (messages.imu_orientation && prepared.imus.empty())
+    throw Error({"--imu-orientation", "there is no IMU", "a scene file with 'imus', or --imu",
+                 "leave it out"});
   if (flags.ouster_profile) {
-    check_packets("--ouster-profile", sends_packets || (flags.packet_topics && has_messages),
+    check_packets("--ouster-profile", sends_packets || (messages.packet_topics && has_messages),
                   any_sensor(prepared, is_ouster), "a preset of an Ouster sensor", prepared);
   }
   if (flags.livox_type) {

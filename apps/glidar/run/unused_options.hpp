@@ -16,7 +16,7 @@ struct LiveOutputs {
 };
 
 /// Throws Error when an option of packets or messages has no effect because no output or sensor
-/// uses it: --ouster-profile, --livox-data-type, --packet-topics, --image-transport.
+/// uses it: --ouster-profile, --livox-data-type, and those of ROS messages.
 void refuse_unused_output_options(const OutputFlags& flags, const PreparedScene& prepared,
                                   const LiveOutputs& live);
 

@@ -6,6 +6,7 @@
 #include <glidar/core/excerpt.hpp>
 #include <glidar/io/bags/bag_topics.hpp>
 #include <glidar/io/ros/pose_message.hpp>
+#include <glidar/io/ros/published_rig.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,8 +41,12 @@ class PoseCollector {
         child_(frame_name(selection.child_frame)) {}
 
   void add(const ros::FramePair& frames, const TimedPose& pose) {
-    if (fits(frames.parent, frames.child)) return put(frames, pose);
-    if (parent_.empty() || child_.empty() || !fits(frames.child, frames.parent)) return;
+    // GLIDAR's ground truth is a child of the body: ros::TransformMode::ground_truth
+    const bool is_truth =
+        parent_.empty() && child_.empty() && frames.child.ends_with(ros::kGroundTruthFrame);
+    if (!is_truth && fits(frames.parent, frames.child)) return put(frames, pose);
+    const bool is_named = !parent_.empty() && !child_.empty();
+    if (!is_truth && (!is_named || !fits(frames.child, frames.parent))) return;
     TimedPose inverse = pose;
     inverse.orientation = pose.orientation.conjugate();
     inverse.position_m = -(inverse.orientation * pose.position_m);

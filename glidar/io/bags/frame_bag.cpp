@@ -11,7 +11,10 @@ namespace glidar {
 namespace {
 
 ros::RigPublisherOptions publisher_options(const FrameBagOptions& options) {
-  return {.layout = options.layout, .columns = options.columns, .deskew = options.deskew};
+  return {.layout = options.layout,
+          .columns = options.columns,
+          .deskew = options.deskew,
+          .has_colour = false};
 }
 
 ros::PublishedRig rig_of(const Scene& scene, const Sensor& sensor, const Beams& beams) {

@@ -39,6 +39,7 @@ struct Layout {
   std::string name;
   std::string whose;
   std::vector<LayoutField> fields;
+  int quarter_turns = 0;
 };
 
 /// Apparent reflectivity: 1 for a white diffuse surface at normal incidence. See reflectivity().
@@ -157,7 +158,7 @@ const std::vector<Layout>& layouts() {
         {"tag", U8{}, "return", 0, livox_tag},
         {"line", U8{}, "ring", 0, same}}},
       {"robosense", "rslidar_sdk", absolute_time_fields(percent_byte)},
-      {"hesai", "HesaiLidar_ROS_2.0", absolute_time_fields(linear_percent_byte)},
+      {"hesai", "HesaiLidar_ROS_2.0", absolute_time_fields(linear_percent_byte), 1},
       {"autoware", "Autoware",
        with_xyz({{"intensity", U8{}, kReflectivity, 0, percent_byte},
                  {"return_type", U8{}, "status", 0, return_type},
@@ -166,6 +167,10 @@ const std::vector<Layout>& layouts() {
                  {"elevation", F32{}, "elevation", 0, same},
                  {"distance", F32{}, "range", 0, same},
                  {"time_stamp", U32{}, "time", 0, same}})},
+      {"ouster-fast-lio", "FAST-LIO2, lidar_type 3",
+       ouster_fields({"ring", U8{}, "ring", 0, same}, "ambient")},
+      {"robosense-xyzi", "rslidar_sdk as built by default",
+       with_xyz({{"intensity", F32{}, kReflectivity, 0, percent_byte}})},
   };
   return kLayouts;
 }
@@ -187,7 +192,7 @@ std::vector<std::string> columns_of(const Layout& layout) {
 PointFieldLayout public_layout(const Layout& layout) {
   std::string text = layout.whose + ":";
   for (const LayoutField& field : layout.fields) text += " " + field.name;
-  return {layout.name, text, columns_of(layout)};
+  return {layout.name, text, columns_of(layout), layout.quarter_turns};
 }
 
 /// Index in layouts() of the layout with this name.
@@ -297,6 +302,17 @@ void check_returns(const Layout& layout, const Beams& beams) {
                "one return of each pulse", "use --returns strongest, or another layout"});
 }
 
+/// Turns the axes of a cloud; all coordinates of layouts are in xyz.
+void turn_axes(const Pose& turned_from_cloud, PointCloud& cloud) {
+  cloud.world_from_cloud = cloud.world_from_cloud * turned_from_cloud.inverse();
+  for (Column& column : cloud.columns) {
+    if (column.name != "xyz") continue;
+    auto& values = std::get<std::vector<double>>(column.values);
+    Eigen::Map<Eigen::Matrix3Xd> points(values.data(), 3, static_cast<Eigen::Index>(cloud.size()));
+    points = (turned_from_cloud.linear() * points).eval();
+  }
+}
+
 /// A layout for unit_intensities().
 const Layout& unit_layout() {
   static const Layout kUnit = {"kitti", "KITTI", {{"intensity", F32{}, kReflectivity, 0, same}}};
@@ -330,6 +346,18 @@ std::vector<std::uint8_t> livox_reflectivities(const PointCloud& cloud, const Se
   return bytes;
 }
 
+int layout_turns(const std::string& layout) {
+  return layout.empty() ? 0 : layouts()[place_of(layout)].quarter_turns;
+}
+
+Pose quarter_turned(int turns) {
+  Eigen::Matrix3d quarter;
+  quarter << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  Pose pose = Pose::Identity();
+  for (int i = 0; i < turns; ++i) pose.linear() = quarter * pose.linear().eval();
+  return pose;
+}
+
 std::span<const PointFieldLayout> cloud_layouts() {
   static const std::vector<PointFieldLayout> kLayouts = [] {
     std::vector<PointFieldLayout> all;
@@ -347,6 +375,12 @@ PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const 
                         const Beams& beams) {
   const Layout& wanted = layouts()[place_of(layout)];
   check_returns(wanted, beams);
+  if (wanted.quarter_turns != 0 && cloud.frame_id == beams.frame_id) {
+    PointCloud turned = cloud;
+    turn_axes(quarter_turned(wanted.quarter_turns), turned);
+    turned.frame_id += "_" + wanted.name;
+    return apply_layout(turned, layout, sensor, beams);
+  }
   PointCloud result{cloud.rows, cloud.cols, cloud.frame_id, cloud.world_from_cloud, {}};
   for (LayoutField field : wanted.fields) {
     std::vector<double> numbers;

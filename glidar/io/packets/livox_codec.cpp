@@ -119,7 +119,6 @@ class LivoxEncoder final : public PacketEncoder {
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
     check(frame, beams);
     const std::vector<std::uint8_t> reflectivity = reflectivities(sensor_, frame, beams);
-    count_ = 0;
     for (std::size_t col = 0; col < beams.cols; ++col) {
       const std::int64_t stamp_ns = frame.stamp_ns + beams.times_ns[col];
       const double late = static_cast<double>(stamp_ns - last_ns_) / period_ns_;

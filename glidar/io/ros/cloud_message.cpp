@@ -13,6 +13,7 @@
 #include <memory>
 #include <numeric>
 #include <utility>
+#include <variant>
 
 namespace glidar::ros {
 namespace {
@@ -50,32 +51,150 @@ std::span<const std::uint32_t> times_of(const PointCloud& cloud, const Beams& be
   return *values;
 }
 
-/// Times since the first firing instead of the start of the frame.
-void count_from(std::uint32_t first_ns, Column& column) {
-  if (first_ns == 0 || column.name != "time") return;
-  for (std::uint32_t& time_ns : std::get<std::vector<std::uint32_t>>(column.values))
-    time_ns -= std::min(time_ns, first_ns);
+/// Since the start of the frame, of the first beam with a return; empty: there is none.
+std::optional<std::uint32_t> first_return_ns(const Frame& frame, const Beams& beams) {
+  if (beams.times_ns.empty() || frame.range_m.size() != beams.size()) return std::nullopt;
+  std::optional<std::uint32_t> first;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (!std::isnan(frame.range_m[i]))
+      first = std::min(first.value_or(beams.times_ns[i]), beams.times_ns[i]);
+  }
+  return first;
+}
+
+/// The time between columns.
+double column_period_ns(const Sensor& sensor, const Beams& beams) {
+  if (const auto* spinning = std::get_if<Spinning>(&sensor.optics))
+    return sequence_period_ns(*spinning);
+  constexpr double kSecondNs = 1e9;
+  return kSecondNs / sensor.rate_hz / std::max<double>(1.0, beams.cols);
+}
+
+/// The stamp of a message and the time from which the times of its points count.
+struct CloudTimes {
+  std::int64_t stamp_ns = 0;
+  std::int64_t zero_ns = 0;
+};
+
+CloudTimes cloud_times(const CloudSource& source, const CloudMessageOptions& options) {
+  const auto [frame, sensor, beams] = source;
+  std::int64_t first_ns = frame.stamp_ns + first_time_ns(beams);
+  if (options.stamp == StampRule::first_point && options.misses == Misses::omitted) {
+    if (const auto first = first_return_ns(frame, beams)) first_ns = frame.stamp_ns + *first;
+  }
+  if (options.stamp != StampRule::last_packet) return {first_ns, first_ns};
+  const std::size_t columns = columns_per_packet(sensor, beams);
+  const double period_ns = column_period_ns(sensor, beams);
+  const auto packet_ns = std::llround(period_ns * static_cast<double>(columns));
+  const auto frame_ns = std::llround(period_ns * static_cast<double>(beams.cols));
+  const std::int64_t end_ns = first_ns + std::max<std::int64_t>(frame_ns, packet_ns);
+  return {end_ns, end_ns - packet_ns};
+}
+
+/// Whether the message leaves out a point, or marks it as a miss.
+std::vector<bool> misses_of(const std::vector<double>& xyz, const CloudMessageOptions& options) {
+  const double min = options.min_range_m * options.min_range_m;
+  const double max = options.max_range_m * options.max_range_m;
+  std::vector<bool> misses(xyz.size() / 3);
+  for (std::size_t i = 0; i < misses.size(); ++i) {
+    const double squared = Eigen::Map<const Eigen::Vector3d>(&xyz[3 * i]).squaredNorm();
+    misses[i] = !(squared >= min && squared <= max);  // NaN too
+  }
+  return misses;
+}
+
+/// Times since `zero_ns` instead of the start of the frame. Only fields of layouts can have
+/// negative times.
+void count_from(std::int64_t zero_ns, bool can_be_negative, Column& column) {
+  const auto times = std::get<std::vector<std::uint32_t>>(column.values);
+  std::vector<std::int64_t> counted(times.begin(), times.end());
+  for (std::int64_t& time_ns : counted) time_ns -= zero_ns;
+  if (can_be_negative) {
+    column.values = std::move(counted);
+    return;
+  }
+  auto& values = std::get<std::vector<std::uint32_t>>(column.values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = static_cast<std::uint32_t>(std::max<std::int64_t>(0, counted[i]));
+}
+
+/// The stamp of each point becomes that of the first firing of its packet.
+void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32_t>& points,
+                        Column& column) {
+  const Beams& beams = source.beams;
+  if (beams.times_ns.empty()) return;
+  const std::size_t columns = columns_per_packet(source.sensor, beams);
+  std::vector<std::int64_t> first_ns(beams.cols / columns + 1,
+                                     std::numeric_limits<std::int64_t>::max());
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (std::isnan(beams.directions[i].x())) continue;
+    std::int64_t& first = first_ns[i % beams.cols / columns];
+    first = std::min(first, source.frame.stamp_ns + beams.times_ns[i]);
+  }
+  auto& stamps = std::get<std::vector<std::int64_t>>(column.values);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    stamps[i] = first_ns[points[i] % beams.cols / columns];
+}
+
+/// Coordinates of misses as the options ask for them.
+void mark_misses(const std::vector<std::uint32_t>& points, const std::vector<bool>& misses,
+                 Misses kind, Column& xyz) {
+  auto& values = std::get<std::vector<double>>(xyz.values);
+  const double value = kind == Misses::zero ? 0.0 : kNaN;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (misses[points[i]])
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, value);
+  }
+}
+
+/// Intensities of misses in the field of a layout.
+void mark_intensities(const std::vector<std::uint32_t>& points, const std::vector<bool>& misses,
+                      float value, PointCloud& cloud) {
+  for (Column& column : cloud.columns) {
+    auto* values = std::get_if<std::vector<float>>(&column.values);
+    if (column.name != "intensity" || values == nullptr) continue;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (misses[points[i]]) (*values)[i] = value;
+  }
+}
+
+/// The grid of the message; without one a row of all its points.
+void set_shape(const CloudMessageOptions& options, std::size_t points, PointCloud& cloud) {
+  const bool has_grid = options.misses != Misses::omitted && options.order != PointOrder::firing;
+  const bool is_turned = options.order == PointOrder::columns || options.order == PointOrder::rings;
+  if (!has_grid) {
+    cloud.rows = 1;
+    cloud.cols = static_cast<std::uint32_t>(points);
+  } else if (is_turned) {
+    std::swap(cloud.rows, cloud.cols);
+  }
 }
 
 /// The columns that the message needs, of the points and in the order of the options.
 PointCloud chosen_cloud(const PointCloud& cloud, const CloudSource& source,
                         const CloudMessageOptions& options) {
-  const bool keeps_grid = !options.dense && !options.firing_order;
-  const std::vector<std::uint32_t> points = message_points(cloud, source.beams, options);
+  const std::vector<std::uint32_t> points = message_points(cloud, source, options);
+  const std::vector<bool> misses = misses_of(coordinates_of(cloud), options);
   PointCloud chosen{cloud.rows, cloud.cols, cloud.frame_id, cloud.world_from_cloud, {}};
-  if (!keeps_grid) chosen.rows = 1;
-  if (!keeps_grid) chosen.cols = static_cast<std::uint32_t>(points.size());
+  set_shape(options, points.size(), chosen);
   std::span<const std::string> needed;
   if (!options.layout.empty()) needed = find_layout(options.layout).columns;
-  const std::uint32_t first_ns = first_time_ns(source.beams);
+  const std::int64_t zero_ns = cloud_times(source, options).zero_ns - source.frame.stamp_ns;
+  const bool is_late = options.stamp == StampRule::last_packet;
   for (const Column& column : cloud.columns) {
     if (!needed.empty() && std::find(needed.begin(), needed.end(), column.name) == needed.end())
       continue;
-    select_points(column, points, chosen.columns.emplace_back());
-    count_from(first_ns, chosen.columns.back());
+    Column& made = chosen.columns.emplace_back();
+    select_points(column, points, made);
+    if (made.name == "time") count_from(zero_ns, is_late, made);
+    if (made.name == "stamp" && options.packet_stamps) take_packet_stamps(source, points, made);
+    if (made.name == "xyz") mark_misses(points, misses, options.misses, made);
   }
   if (options.layout.empty()) return chosen;
-  return apply_layout(chosen, options.layout, source.sensor, source.beams);
+  PointCloud laid = apply_layout(chosen, options.layout, source.sensor, source.beams);
+  if (options.misses != Misses::omitted)
+    mark_intensities(points, misses, options.intensity_of_misses_nan ? kNaNf : 0.0F, laid);
+  return laid;
 }
 
 /// Fields as PCL's conversions expect them: coordinates are float32, colour is packed.
@@ -118,7 +237,36 @@ std::uint8_t datatype_of(Stored stored) {
 struct Packed {
   PointCloud cloud;
   std::vector<glidar::PointField> fields;
+  std::vector<std::uint32_t> offsets;  ///< of the fields; empty: no padding
+  std::uint32_t step = 0;
 };
+
+/// All points, with padding between their fields.
+void pack_padded(const Packed& packed, std::span<std::byte> to) {
+  std::fill(to.begin(), to.end(), std::byte{0});
+  std::vector<std::byte> numbers;
+  for (std::size_t f = 0; f < packed.fields.size(); ++f) {
+    const std::span<const glidar::PointField> field(&packed.fields[f], 1);
+    const std::size_t size = row_bytes(field);
+    numbers.resize(size * packed.cloud.size());
+    pack_rows(field, 0, packed.cloud.size(), numbers);
+    for (std::size_t i = 0; i < packed.cloud.size(); ++i)
+      std::copy_n(&numbers[size * i], size, &to[packed.step * i + packed.offsets[f]]);
+  }
+}
+
+bool has_nan(const PointCloud& cloud, const CloudMessageOptions& options) {
+  return options.misses == Misses::nan &&
+         std::any_of(cloud.columns.begin(), cloud.columns.end(), [](const Column& column) {
+           if (column.name != "x" && column.name != "xyz") return false;
+           return std::visit(
+               [](const auto& values) {
+                 return std::any_of(values.begin(), values.end(),
+                                    [](auto v) { return std::isnan(static_cast<double>(v)); });
+               },
+               column.values);
+         });
+}
 
 std::uint32_t checked_size(std::size_t bytes) {
   if (bytes <= std::numeric_limits<std::uint32_t>::max() / 2)
@@ -129,7 +277,7 @@ std::uint32_t checked_size(std::size_t bytes) {
 
 Header header_of(const PointCloud& cloud, const CloudSource& source,
                  const CloudMessageOptions& options) {
-  return {.stamp = time_from_ns(first_firing_ns(source.frame, source.beams)),
+  return {.stamp = time_from_ns(cloud_stamp_ns(source, options)),
           .frame_id = options.frame_id.empty() ? cloud.frame_id : options.frame_id};
 }
 
@@ -144,21 +292,27 @@ std::int64_t first_firing_ns(const Frame& frame, const Beams& beams) {
   return frame.stamp_ns + first_time_ns(beams);
 }
 
-std::vector<std::uint32_t> message_points(const PointCloud& cloud, const Beams& beams,
+std::int64_t cloud_stamp_ns(const CloudSource& source, const CloudMessageOptions& options) {
+  return cloud_times(source, options).stamp_ns;
+}
+
+std::vector<std::uint32_t> message_points(const PointCloud& cloud, const CloudSource& source,
                                           const CloudMessageOptions& options) {
-  std::vector<std::uint32_t> points(cloud.size());
-  if (options.dense) {
-    const std::vector<double>& xyz = coordinates_of(cloud);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {  // no branch, as misses are irregular
-      points[count] = static_cast<std::uint32_t>(i);
-      count += std::isnan(xyz[3 * i]) ? 0U : 1U;
-    }
-    points.resize(count);
-  } else {
+  const Beams& beams = source.beams;
+  const bool is_as_beams = options.order == PointOrder::firing || options.order == PointOrder::rows;
+  std::vector<std::uint32_t> points;
+  if (is_as_beams) {
+    points.resize(cloud.size());
     std::iota(points.begin(), points.end(), 0U);
+  } else {
+    points = ordered_entries(source.sensor, beams, options.order);
   }
-  const auto times = options.firing_order ? times_of(cloud, beams) : std::span<std::uint32_t>{};
+  if (options.misses == Misses::omitted) {
+    const std::vector<bool> misses = misses_of(coordinates_of(cloud), options);
+    std::erase_if(points, [&](std::uint32_t point) { return misses[point]; });
+  }
+  const auto times =
+      options.order == PointOrder::firing ? times_of(cloud, beams) : std::span<std::uint32_t>{};
   if (!times.empty()) sort_by_time(times, points);
   return points;
 }
@@ -172,28 +326,34 @@ PointCloud2 to_point_cloud2(const PointCloud& cloud, const CloudSource& source,
   message.header = header_of(cloud, source, options);
   message.height = packed->cloud.rows;
   message.width = packed->cloud.cols;
-  std::uint32_t offset = 0;
-  for (const glidar::PointField& field : packed->fields) {
+  packed->offsets = options.offsets;
+  const bool is_padded = !packed->offsets.empty();
+  std::uint32_t end = 0;
+  for (std::size_t i = 0; i < packed->fields.size(); ++i) {
+    const glidar::PointField& field = packed->fields[i];
+    const std::uint32_t offset = is_padded ? packed->offsets.at(i) : end;
     message.fields.push_back({field.name, offset, datatype_of(field.stored), 1});
-    offset += static_cast<std::uint32_t>(type_of(field.stored).bytes);
+    end = offset + static_cast<std::uint32_t>(type_of(field.stored).bytes);
   }
-  message.point_step = offset;
-  message.row_step = checked_size(std::size_t{offset} * message.width);
-  message.is_dense = options.dense;
-  const std::size_t size = checked_size(std::size_t{offset} * packed->cloud.size());
-  message.data = Payload(size, [packed](std::span<std::byte> to) {
-    if (!to.empty()) pack_rows(packed->fields, 0, packed->cloud.size(), to);
+  packed->step = is_padded ? options.point_step : end;
+  message.point_step = packed->step;
+  message.row_step = checked_size(std::size_t{packed->step} * message.width);
+  message.is_dense = options.is_dense.value_or(!has_nan(packed->cloud, options));
+  const std::size_t size = checked_size(std::size_t{packed->step} * packed->cloud.size());
+  message.data = Payload(size, [packed, is_padded](std::span<std::byte> to) {
+    if (to.empty()) return;
+    if (is_padded) return pack_padded(*packed, to);
+    pack_rows(packed->fields, 0, packed->cloud.size(), to);
   });
   return message;
 }
 
 CustomMsg to_custom_msg(const PointCloud& cloud, const CloudSource& source,
                         const CloudMessageOptions& options) {
-  CloudMessageOptions dense = options;
-  dense.layout = kCustomMsgLayout;
-  dense.dense = true;
-  const PointCloud chosen = chosen_cloud(cloud, source, dense);
-  const std::int64_t stamp_ns = first_firing_ns(source.frame, source.beams);
+  CloudMessageOptions custom = options;
+  custom.layout = kCustomMsgLayout;
+  const PointCloud chosen = chosen_cloud(cloud, source, custom);
+  const std::int64_t stamp_ns = cloud_stamp_ns(source, options);
   if (stamp_ns < 0) {
     throw Error({"CustomMsg", "a stamp of " + std::to_string(stamp_ns) + " ns", "0 or more",
                  "start at another time"});

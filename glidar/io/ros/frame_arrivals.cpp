@@ -12,15 +12,13 @@ constexpr std::int64_t kAlways_ns = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
-bool FrameArrivals::add(std::size_t sensor, std::int64_t start_ns, std::int64_t duration_ns,
-                        std::int64_t next_firing_ns) {
+bool FrameArrivals::add(std::size_t sensor, std::int64_t start_ns, std::int64_t duration_ns) {
   const bool is_in_order = !last_start_ns_ || start_ns >= *last_start_ns_;
   if (!is_in_order) std::fill(sensors_.begin(), sensors_.end(), SensorFrames{});
   last_start_ns_ = start_ns;
   sensors_[sensor] = {.start_ns = start_ns,
                       .next_start_ns = start_ns + duration_ns,
-                      .next_end_ns = start_ns + 2 * duration_ns,
-                      .next_firing_ns = next_firing_ns};
+                      .next_end_ns = start_ns + 2 * duration_ns};
   return is_in_order;
 }
 
@@ -43,15 +41,6 @@ std::optional<std::int64_t> FrameArrivals::next_end_ns() const {
     end_ns = std::min(end_ns.value_or(kAlways_ns), frames.next_end_ns);
   }
   return end_ns;
-}
-
-std::vector<std::int64_t> FrameArrivals::next_firings_ns() const {
-  std::vector<std::int64_t> firings_ns;
-  for (const SensorFrames& frames : sensors_) {
-    if (frames.start_ns) firings_ns.push_back(frames.next_firing_ns);
-  }
-  std::sort(firings_ns.begin(), firings_ns.end());
-  return firings_ns;
 }
 
 }  // namespace glidar::ros

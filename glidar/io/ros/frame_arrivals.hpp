@@ -19,25 +19,20 @@ class FrameArrivals {
   FrameArrivals(std::size_t sensors, bool is_periodic)
       : sensors_(sensors), is_periodic_(is_periodic) {}
 
-  /// A frame that began at `start_ns`. Its sensor measures for `duration_ns`, and its next frame
-  /// probably fires first at `next_firing_ns`. False if it is earlier than the last frame, as after
-  /// a step back in a recording.
-  bool add(std::size_t sensor, std::int64_t start_ns, std::int64_t duration_ns,
-           std::int64_t next_firing_ns);
+  /// A frame that began at `start_ns`. Its sensor measures for `duration_ns`. False if it is
+  /// earlier than the last frame, as after a step back in a recording.
+  bool add(std::size_t sensor, std::int64_t start_ns, std::int64_t duration_ns);
 
   /// No frame that arrives later begins before this time.
   [[nodiscard]] std::int64_t complete_ns() const;
   /// The first end of the frames that are expected next; empty before the first frame.
   [[nodiscard]] std::optional<std::int64_t> next_end_ns() const;
-  /// The first firings of the frames expected next, in order of time.
-  [[nodiscard]] std::vector<std::int64_t> next_firings_ns() const;
 
  private:
   struct SensorFrames {
     std::optional<std::int64_t> start_ns = {};  ///< of its last frame
     std::int64_t next_start_ns = 0;
     std::int64_t next_end_ns = 0;
-    std::int64_t next_firing_ns = 0;
   };
 
   std::vector<SensorFrames> sensors_;

@@ -4,13 +4,16 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/camera_info.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace glidar::ros {
@@ -23,9 +26,11 @@ Header frame_header(const CloudSource& source, const std::string& frame_id) {
 
 /// An image of the first return of all beams; `pixel` gives the number of a beam.
 template <class Number, class Pixel>
-Image image_of(const CloudSource& source, const std::string& encoding, const Pixel& pixel) {
+Image image_of(const CloudSource& source, const std::string& encoding, const std::string& frame_id,
+               const Pixel& pixel) {
   const Beams& beams = source.beams;
   Image image;
+  image.header = frame_header(source, frame_id);
   image.height = beams.rows / beams.returns;
   image.width = beams.cols;
   image.encoding = encoding;
@@ -52,18 +57,80 @@ std::uint16_t millimetres_of(double depth) {
   return millimetres <= kMax ? static_cast<std::uint16_t>(std::max(1.0, millimetres)) : 0;
 }
 
-/// The PNG file of an image of encoding mono8 or 16UC1.
+/// Scales values so that the 10th and 90th percentile of those above 0 are at 0.1 and 0.9.
+void expose(std::vector<float>& values) {
+  constexpr float kShare = 0.1F;
+  std::vector<float> lit;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(lit),
+               [](float value) { return value > 0.0F; });
+  if (lit.empty()) return;
+  const auto percentile = [&](float share) {
+    const auto place =
+        lit.begin() + static_cast<std::ptrdiff_t>(share * static_cast<float>(lit.size() - 1));
+    std::nth_element(lit.begin(), place, lit.end());
+    return *place;
+  };
+  const float low = percentile(kShare);
+  const float high = std::max(percentile(1.0F - kShare), low * (1.0F + kShare));
+  for (float& value : values) {
+    const float scaled = kShare + (1.0F - 2.0F * kShare) * (value - low) / (high - low);
+    value = value > 0.0F ? std::clamp(scaled, 0.0F, 1.0F) : 0.0F;
+  }
+}
+
+/// The numbers of the pixels of Ouster's images, before rows are shifted: from 0 to 65535.
+std::vector<float> ouster_values(const CloudSource& source, OusterChannel channel) {
+  const auto& [frame, sensor, beams] = source;
+  std::vector<float> values(beams.firings(), 0.0F);
+  if (channel == OusterChannel::near_infrared) return values;  // sunlight is not simulated
+  constexpr float kMax = 65535.0F;
+  if (channel == OusterChannel::range) {
+    constexpr double kStep_mm = 4.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double mm = std::round((frame.range_m[i] + beams.range_offset_m) * 1e3);
+      const auto steps = static_cast<float>(std::floor((mm + 2.0) / kStep_mm));
+      values[i] = steps <= kMax ? steps : 0.0F;  // NaN too
+    }
+    return values;
+  }
+  if (channel == OusterChannel::signal) {
+    values.assign(frame.intensity.begin(),
+                  frame.intensity.begin() + static_cast<std::ptrdiff_t>(values.size()));
+  } else {
+    PointCloud cloud{beams.rows, beams.cols, {}, Pose::Identity(), {}};
+    cloud.columns = {{"intensity", {"intensity"}, frame.intensity},
+                     {"range", {"range"}, frame.range_m}};
+    const std::vector<float> shares = unit_intensities(cloud, sensor, beams);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = std::isnan(frame.range_m[i]) ? 0.0F : shares[i];
+  }
+  expose(values);
+  const bool is_signal = channel == OusterChannel::signal;
+  for (float& value : values) value = kMax * (is_signal ? std::sqrt(value) : value);
+  return values;
+}
+
+/// The PNG file of an image of encoding mono8, 16UC1 or rgb8.
 std::vector<std::byte> png_of(const Image& image) {
-  const bool is_wide = image.encoding == "16UC1";
-  if (!is_wide && image.encoding != "mono8") {
-    throw Error({"CompressedImage", "an image of encoding " + image.encoding, "mono8 or 16UC1"});
+  struct Kind {
+    std::string_view encoding;
+    PngKind kind;
+    std::size_t bytes;
+  };
+  constexpr std::array<Kind, 3> kKinds = {
+      {{"mono8", PngKind::grey8, 1}, {"16UC1", PngKind::grey16, 2}, {"rgb8", PngKind::rgb8, 3}}};
+  const auto* kind = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& known) {
+    return known.encoding == image.encoding;
+  });
+  if (kind == kKinds.end()) {
+    throw Error(
+        {"CompressedImage", "an image of encoding " + image.encoding, "mono8 or 16UC1 or rgb8"});
   }
   const std::vector<std::byte> pixels = image.data.to_vector();
-  const std::size_t row = std::size_t{image.width} * (is_wide ? 2U : 1U);
+  const std::size_t row = image.width * kind->bytes;
   if (image.step != row || pixels.size() != row * image.height)
     throw Error({"CompressedImage", "rows with padding", "rows that follow each other"});
-  const PngKind kind = is_wide ? PngKind::grey16 : PngKind::grey8;
-  return encode_png({kind, image.width, image.height, pixels, {}});
+  return encode_png({kind->kind, image.width, image.height, pixels, {}});
 }
 
 }  // namespace
@@ -76,39 +143,86 @@ Image depth_image(const CloudSource& source, DepthEncoding encoding, const std::
   const auto depth = [&](std::size_t beam) { return measured_depth_m(source, beam); };
   const auto in_mm = [&](std::size_t beam) { return millimetres_of(depth(beam)); };
   const auto in_m = [&](std::size_t beam) { return static_cast<float>(depth(beam)); };
-  Image image = encoding == DepthEncoding::metres_32fc1
-                    ? image_of<float>(source, "32FC1", in_m)
-                    : image_of<std::uint16_t>(source, "16UC1", in_mm);
-  image.header = frame_header(source, frame_id);
-  return image;
+  return encoding == DepthEncoding::metres_32fc1
+             ? image_of<float>(source, "32FC1", frame_id, in_m)
+             : image_of<std::uint16_t>(source, "16UC1", frame_id, in_mm);
 }
 
 Image intensity_image(const CloudSource& source, IntensityEncoding encoding,
                       const std::string& frame_id) {
   const auto& intensity = source.frame.intensity;
-  const auto byte = [&](std::size_t beam) {
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(intensity[beam], 0.0F, 1.0F)));
-  };
-  const auto number = [&](std::size_t beam) { return intensity[beam]; };
-  Image image = encoding == IntensityEncoding::f32c1
-                    ? image_of<float>(source, "32FC1", number)
-                    : image_of<std::uint8_t>(source, "mono8", byte);
-  image.header = frame_header(source, frame_id);
-  return image;
+  const auto share = [&](std::size_t beam) { return std::clamp(intensity[beam], 0.0F, 1.0F); };
+  if (encoding == IntensityEncoding::f32c1)
+    return image_of<float>(source, "32FC1", frame_id, [&](std::size_t i) { return intensity[i]; });
+  if (encoding == IntensityEncoding::mono16)
+    return image_of<std::uint16_t>(source, "mono16", frame_id, [&](std::size_t beam) {
+      return static_cast<std::uint16_t>(std::lround(65535.0F * share(beam)));
+    });
+  return image_of<std::uint8_t>(source, "mono8", frame_id, [&](std::size_t beam) {
+    return static_cast<std::uint8_t>(std::lround(255.0F * share(beam)));
+  });
 }
 
 Image range_image(const CloudSource& source, const std::string& frame_id) {
-  const auto range = [&](std::size_t beam) {
+  return image_of<float>(source, "32FC1", frame_id, [&](std::size_t beam) {
     if (source.frame.status[beam] != Status::hit) return std::numeric_limits<float>::quiet_NaN();
     return static_cast<float>(source.frame.range_m[beam] + source.beams.range_offset_m);
+  });
+}
+
+Image colour_image(const CloudSource& source, ColourEncoding encoding,
+                   const std::string& frame_id) {
+  const auto& colours = source.frame.ground_truth.colour;
+  if (colours.size() != source.beams.size())
+    throw Error({"colour image", "the frame has no colours", "", "request the column colour"});
+  const auto byte = [&](std::size_t beam, int channel) {
+    const float value = colours[beam][channel];  // NaN without a surface
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::min(std::max(0.0F, value), 1.0F)));
   };
-  Image image = image_of<float>(source, "32FC1", range);
-  image.header = frame_header(source, frame_id);
-  return image;
+  if (encoding == ColourEncoding::rgb8) {
+    return image_of<std::array<std::uint8_t, 3>>(source, "rgb8", frame_id, [&](std::size_t i) {
+      return std::array<std::uint8_t, 3>{byte(i, 0), byte(i, 1), byte(i, 2)};
+    });
+  }
+  return image_of<std::array<std::uint8_t, 4>>(source, "bgra8", frame_id, [&](std::size_t i) {
+    return std::array<std::uint8_t, 4>{byte(i, 2), byte(i, 1), byte(i, 0), 255};
+  });
+}
+
+Image raw_image(const CloudSource& source, std::string_view name, const std::string& frame_id) {
+  for (const RawImage& raw : source.frame.raw_images) {
+    if (raw.name != name) continue;
+    const std::vector<std::uint16_t>& level = raw.grey.level;
+    if (raw.grey.max_level > std::numeric_limits<std::uint8_t>::max())
+      return image_of<std::uint16_t>(source, "mono16", frame_id,
+                                     [&](std::size_t i) { return level[i]; });
+    return image_of<std::uint8_t>(source, "mono8", frame_id, [&](std::size_t i) {
+      return static_cast<std::uint8_t>(level[i]);
+    });
+  }
+  throw Error({"infrared image", fmt::format("the frame has no image {}", name), "",
+               "use --depth-model physical"});
+}
+
+Image ouster_image(const CloudSource& source, OusterChannel channel, const std::string& frame_id) {
+  const Beams& beams = source.beams;
+  const std::vector<std::size_t> shifts = row_shifts(source.sensor, beams);
+  std::vector<float> values(beams.firings(), 0.0F);
+  const std::vector<float> shown = ouster_values(source, channel);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t row = i / beams.cols;
+    const std::size_t col = (i % beams.cols + beams.cols - shifts[row]) % beams.cols;
+    values[i] = shown[row * beams.cols + col];
+  }
+  return image_of<std::uint16_t>(source, "mono16", frame_id, [&](std::size_t i) {
+    return static_cast<std::uint16_t>(values[i]);
+  });
 }
 
 CompressedImage png_image(const Image& image) {
-  return {image.header, image.encoding + "; png compressed ", Payload(png_of(image))};
+  // the plugin converts colours to OpenCV's order before it encodes them
+  const std::string target = image.encoding == "rgb8" ? "bgr8" : "";
+  return {image.header, image.encoding + "; png compressed " + target, Payload(png_of(image))};
 }
 
 /// compressed_depth_image_transport/compression_common.h: an int32 for the format, of which there
@@ -124,7 +238,8 @@ CompressedImage compressed_depth_image(const Image& image) {
   return {image.header, "16UC1; compressedDepth png", Payload(std::move(bytes))};
 }
 
-CameraInfo camera_info(const CloudSource& source, const std::string& frame_id) {
+CameraInfo camera_info(const CloudSource& source, const std::string& frame_id,
+                       double right_baseline_m) {
   std::optional<CameraModel> model = camera_model(source.sensor.optics);
   if (!model) {
     throw Error({"CameraInfo", "the sensor is no camera", "pinhole optics",
@@ -139,6 +254,7 @@ CameraInfo camera_info(const CloudSource& source, const std::string& frame_id) {
   info.k = model->k;
   info.r = model->r;
   info.p = model->p;
+  info.p[3] = right_baseline_m == 0.0 ? 0.0 : -info.p[0] * right_baseline_m;
   return info;
 }
 

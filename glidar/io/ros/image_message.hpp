@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace glidar::ros {
 
@@ -20,8 +21,9 @@ Image depth_image(const CloudSource& source, DepthEncoding encoding,
 
 /// Pixels of an intensity image.
 enum class IntensityEncoding : std::uint8_t {
-  mono8,  ///< 0 to 1 as 0 to 255, clipped
-  f32c1,  ///< 32FC1, the intensity itself
+  mono8,   ///< 0 to 1 as 0 to 255, clipped
+  mono16,  ///< 0 to 1 as 0 to 65535, clipped
+  f32c1,   ///< 32FC1, the intensity itself
 };
 
 /// Rows and columns of the first return.
@@ -31,7 +33,28 @@ Image intensity_image(const CloudSource& source, IntensityEncoding encoding,
 /// Rows and columns of the first return: 32FC1, the reported range in metres, NaN without a return.
 Image range_image(const CloudSource& source, const std::string& frame_id = {});
 
-/// An image of encoding mono8 or 16UC1 as PNG, in the format of image_transport's plugin
+/// Channels of a colour image.
+enum class ColourEncoding : std::uint8_t { rgb8, bgra8 };
+
+/// The diffuse colours of the surfaces, black where there is none. Throws Error if the frame was
+/// cast without colours.
+Image colour_image(const CloudSource& source, ColourEncoding encoding,
+                   const std::string& frame_id = {});
+
+/// One of Frame::raw_images: mono8, or mono16 if it has more than 8 bits. Throws Error if there is
+/// none of this name.
+Image raw_image(const CloudSource& source, std::string_view name, const std::string& frame_id = {});
+
+/// What the images of Ouster's driver show.
+enum class OusterChannel : std::uint8_t { range, signal, reflectivity, near_infrared };
+
+/// An image of Ouster's driver: mono16, each row shifted so that columns have one azimuth. Range is
+/// in steps of 4 mm, 0 beyond 16 bits. The others are scaled so that their 10th and 90th percentile
+/// are at 0.1 and 0.9, and of signal and near infrared the square root is taken.
+Image ouster_image(const CloudSource& source, OusterChannel channel,
+                   const std::string& frame_id = {});
+
+/// An image of encoding mono8, 16UC1 or rgb8 as PNG, in the format of image_transport's plugin
 /// compressed_image_transport. Throws Error for other encodings.
 CompressedImage png_image(const Image& image);
 
@@ -40,7 +63,10 @@ CompressedImage png_image(const Image& image);
 /// encodings.
 CompressedImage compressed_depth_image(const Image& image);
 
-/// Intrinsics and distortion. Throws Error for optics other than a camera.
-CameraInfo camera_info(const CloudSource& source, const std::string& frame_id = {});
+/// Intrinsics and distortion. `right_baseline_m`: of the right camera of a stereo pair at this
+/// distance, whose P[3] is -fx times it (sensor_msgs/CameraInfo). Throws Error for optics other
+/// than a camera.
+CameraInfo camera_info(const CloudSource& source, const std::string& frame_id = {},
+                       double right_baseline_m = 0.0);
 
 }  // namespace glidar::ros

@@ -21,34 +21,19 @@ const PublishedPackets& packets_of(const PublishedSensor& sensor) {
 
 }  // namespace
 
-PacketTopics::PacketTopics(MessageSink& sink, const PublishedSensor& sensor, std::string frame_id)
+PacketTopics::PacketTopics(MessageSink& sink, const PublishedSensor& sensor,
+                           const std::string& base, std::string frame_id)
     : sink_(sink),
       frame_id_(std::move(frame_id)),
       packets_(sensor.sensor, packets_of(sensor).options, packets_of(sensor).imu_samples),
       is_from_ouster_(is_ouster(sensor.sensor)),
       imu_port_(sensor.packets->options.ouster.identity.imu_port) {
-  if (is_from_ouster_) {
-    add_ouster_topics(sensor.name.empty() ? "ouster" : sensor.name, sensor.sensor,
-                      sensor.packets->options.ouster);
-  } else {
-    const std::string base = sensor.name.empty() ? "" : "/" + sensor.name;
+  if (!is_from_ouster_) {
     packets_topic_ = sink_.add_topic(make_topic<VelodyneScan>(base + "/velodyne_packets"));
+    return;
   }
-}
-
-/// ouster-lidar/ouster-ros: os_sensor_node.
-void PacketTopics::add_ouster_topics(const std::string& name, const Sensor& sensor,
-                                     const OusterOptions& options) {
-  packets_topic_ = sink_.add_topic(make_topic<PacketMsg>("/" + name + "/lidar_packets"));
-  imu_topic_ = sink_.add_topic(make_topic<PacketMsg>("/" + name + "/imu_packets"));
-  Topic metadata = make_topic<String>("/" + name + "/metadata");
-  metadata.qos = kStaticTransformQos;
-  metadata_topic_ = sink_.add_topic(metadata);
-  metadata_ = ouster_metadata(sensor, options);
-}
-
-void PacketTopics::write_metadata(std::int64_t t_ns) {
-  if (is_from_ouster_) write_message(sink_, metadata_topic_, t_ns, String{metadata_});
+  packets_topic_ = sink_.add_topic(make_topic<PacketMsg>(base + "/lidar_packets"));
+  imu_topic_ = sink_.add_topic(make_topic<PacketMsg>(base + "/imu_packets"));
 }
 
 void PacketTopics::hold(const Frame& frame, const Beams& beams, HeldMessages& held) {

@@ -17,23 +17,20 @@
 namespace glidar::ros {
 
 /// Publishes the packets of a sensor as the driver of its manufacturer does: those of Ouster one by
-/// one, with its metadata, and those of Velodyne as a VelodyneScan for each frame.
+/// one, and those of Velodyne as a VelodyneScan for each frame.
 class PacketTopics {
  public:
-  /// Adds the topics to the sink, which must outlive it. Throws Error when the sensor has no
-  /// packets of these manufacturers.
-  PacketTopics(MessageSink& sink, const PublishedSensor& sensor, std::string frame_id);
+  /// Adds the topics to the sink, which must outlive it. `base` is before the names of all topics.
+  /// Throws Error when the sensor has no packets of these manufacturers.
+  PacketTopics(MessageSink& sink, const PublishedSensor& sensor, const std::string& base,
+               std::string frame_id);
 
-  /// Writes what is the same for all frames, before the first one.
-  void write_metadata(std::int64_t t_ns);
   /// Adds the packets that a frame completes to the messages that are to be written.
   void hold(const Frame& frame, const Beams& beams, HeldMessages& held);
   /// The same for the last packet, filled with firings without returns.
   void finish(HeldMessages& held);
 
  private:
-  void add_ouster_topics(const std::string& name, const Sensor& sensor,
-                         const OusterOptions& options);
   void hold_packets(HeldMessages& held);
   void hold_scan(HeldMessages& held);
 
@@ -43,9 +40,7 @@ class PacketTopics {
   bool is_from_ouster_;
   std::uint16_t imu_port_;
   std::size_t packets_topic_ = 0;
-  std::size_t imu_topic_ = 0;       ///< Ouster
-  std::size_t metadata_topic_ = 0;  ///< Ouster
-  std::string metadata_;            ///< Ouster
+  std::size_t imu_topic_ = 0;  ///< Ouster
   std::vector<UdpPacket> made_;
 };
 

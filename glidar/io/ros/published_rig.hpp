@@ -19,6 +19,28 @@
 
 namespace glidar::ros {
 
+/// Names of coordinate frames: REP-105.
+inline constexpr const char* kMapFrame = "map";
+inline constexpr const char* kOdometryFrame = "odom";
+inline constexpr const char* kRigFrame = "base_link";
+/// The frame of the ground truth, which is that of the scene.
+inline constexpr const char* kGroundTruthFrame = "ground_truth";
+
+/// How the poses of the rig are published.
+enum class TransformMode : std::uint8_t {
+  /// /tf has ground_truth as a child of base_link, so that base_link can have another parent, and
+  /// /ground_truth/odom has the pose of base_link in ground_truth.
+  ground_truth,
+  odom,  ///< /tf: odom to base_link; odom is the start, level. /odom: the same (REP-105)
+  map,   ///< /tf: map to base_link; /odom: the same
+  none,  ///< neither these nor the transforms of sensors
+};
+
+struct TransformOptions {
+  TransformMode mode = TransformMode::ground_truth;
+  std::string prefix = {};  ///< of the names of all frames but map
+};
+
 /// The packets of a sensor, which are published beside its clouds.
 struct PublishedPackets {
   PacketOptions options;
@@ -38,6 +60,7 @@ struct PublishedSensor {
 struct PublishedImu {
   std::string name;
   Pose rig_from_imu = Pose::Identity();
+  glidar::Imu imu = {};  ///< its errors, for covariances
 };
 
 /// The samples of an IMU, by index, with from_ns <= t < until_ns.

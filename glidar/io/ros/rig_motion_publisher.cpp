@@ -4,6 +4,11 @@
 
 #include <glidar/motion/kinematics.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
 namespace glidar::ros {
 namespace {
 
@@ -13,19 +18,56 @@ constexpr std::int64_t kPosePeriod_ns = 10'000'000;
 /// Longer times between frames have no poses and samples.
 constexpr std::int64_t kMaxGap_ns = 1'000'000'000'000;
 
+/// Of an orientation without error, rad^2: all zeros would mean that it is not known.
+constexpr double kExactVariance = 1e-9;
+
+std::array<double, 9> same_variances(double variance) {
+  return {variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, variance};
+}
+
+/// Of the white noise of samples: N^2 times the rate (kalibr, "IMU Noise Model").
+double white_variance(const InertialTriad& triad, const glidar::Imu& imu) {
+  return triad.noise_density * triad.noise_density * imu.rate_hz;
+}
+
+/// The same position and heading, with z up.
+Pose level_pose(const Pose& pose) {
+  Pose level = Pose::Identity();
+  level.translation() = pose.translation();
+  const double x = pose.linear()(0, 0);
+  const double y = pose.linear()(1, 0);
+  const double length = std::sqrt(x * x + y * y);
+  constexpr double kUpright = 1e-9;  // x points up or down: no heading
+  if (length > kUpright)
+    level.linear().topLeftCorner<2, 2>() << x / length, -y / length, y / length, x / length;
+  return level;
+}
+
 Vector3 vector_message(const Eigen::Vector3d& v) {
   return {.x = v.x(), .y = v.y(), .z = v.z()};
 }
 
 }  // namespace
 
-RigMotionPublisher::RigMotionPublisher(MessageSink& sink, const PublishedRig& rig)
-    : sink_(sink), rig_(rig) {
-  tf_ = sink_.add_topic(make_topic<TFMessage>("/tf"));
-  odometry_ = sink_.add_topic(make_topic<Odometry>("/odom"));
+RigMotionPublisher::RigMotionPublisher(MessageSink& sink, const PublishedRig& rig,
+                                       TransformOptions options,
+                                       const std::vector<ImuTopicChoice>& imus,
+                                       bool has_imu_orientation)
+    : sink_(sink),
+      rig_(rig),
+      options_(std::move(options)),
+      has_imu_orientation_(has_imu_orientation) {
+  if (options_.mode != TransformMode::none) {
+    const bool is_own = options_.mode == TransformMode::ground_truth;
+    tf_ = sink_.add_topic(make_topic<TFMessage>("/tf"));
+    odometry_ = sink_.add_topic(make_topic<Odometry>(is_own ? "/ground_truth/odom" : "/odom"));
+  }
   clock_ = sink_.add_topic(make_topic<Clock>("/clock"));
-  for (const PublishedImu& imu : rig_.imus) {
-    imus_.push_back({.topic = sink_.add_topic(make_topic<Imu>("/" + imu.name + "/data"))});
+  for (const ImuTopicChoice& choice : imus) {
+    Topic topic = make_topic<Imu>(choice.topic);
+    if (choice.format != nullptr) topic.qos = choice.format->qos;
+    imus_.push_back(
+        {.topic = sink_.add_topic(topic), .frame_id = choice.frame_id, .format = choice.format});
   }
 }
 
@@ -36,7 +78,7 @@ void RigMotionPublisher::write(std::size_t topic, std::int64_t time_ns, const Me
 }
 
 void RigMotionPublisher::advance(std::int64_t until_ns) {
-  if (last_pose_ns_ && until_ns < reached_ns_) return;
+  if (last_pose_ns_ && until_ns < reached_ns_) return write_passed_pose(until_ns);
   skip_gap(until_ns);
   write_until(until_ns);
   if (last_pose_ns_ != until_ns) write_motion_pose(until_ns);
@@ -68,15 +110,21 @@ void RigMotionPublisher::skip_gap(std::int64_t until_ns) {
   }
 }
 
+/// The pose at a time that the clock has passed. Receivers of transforms sort them by their stamps.
+void RigMotionPublisher::write_passed_pose(std::int64_t t_ns) {
+  const bool is_known =
+      std::find(pose_times_ns_.begin(), pose_times_ns_.end(), t_ns) != pose_times_ns_.end();
+  if (!is_known && reached_ns_ - t_ns <= kMaxGap_ns) write_motion_pose(t_ns);
+}
+
 void RigMotionPublisher::write_motion_pose(std::int64_t t_ns) {
   const KinematicState state = state_at(*rig_.world_from_rig, t_ns);
   const Eigen::Matrix3d rig_from_world = state.pose.linear().transpose();
-  const FramePair frames{kMapFrame, kRigFrame};
-  write_pose(t_ns, {.transforms = {to_transform(state.pose, frames, t_ns)}},
-             to_odometry(state.pose,
-                         BodyTwist{.linear_m_s = rig_from_world * state.velocity_m_s,
-                                   .angular_rad_s = state.angular_velocity_rad_s},
-                         frames, t_ns));
+  write_transform(state.pose,
+                  BodyTwist{.linear_m_s = rig_from_world * state.velocity_m_s,
+                            .angular_rad_s = state.angular_velocity_rad_s},
+                  t_ns);
+  write_clock(t_ns);
 }
 
 void RigMotionPublisher::write_frame_pose(std::size_t sensor, const Frame& frame) {
@@ -90,15 +138,35 @@ void RigMotionPublisher::write_frame_pose(std::size_t sensor, const Frame& frame
     twist = mean_twist(last_frame_pose_->world_from_rig, pose, seconds);
   }
   last_frame_pose_ = RigPose{t_ns, pose};
-  const FramePair frames{kMapFrame, kRigFrame};
-  write_pose(t_ns, {.transforms = {to_transform(pose, frames, t_ns)}},
-             to_odometry(pose, twist, frames, t_ns));
+  last_pose_ns_.reset();  // recordings may step back
+  write_transform(pose, twist, t_ns);
+  write_clock(t_ns);
 }
 
-void RigMotionPublisher::write_pose(std::int64_t t_ns, const TFMessage& transforms,
-                                    const Odometry& odometry) {
-  write(tf_, t_ns, transforms);
-  write(odometry_, t_ns, odometry);
+void RigMotionPublisher::write_transform(const Pose& world_from_rig,
+                                         const std::optional<BodyTwist>& twist, std::int64_t t_ns) {
+  if (!world_from_start_) world_from_start_ = level_pose(world_from_rig);
+  if (options_.mode == TransformMode::none) return;
+  const bool is_truth = options_.mode == TransformMode::ground_truth;
+  const bool is_odom = options_.mode == TransformMode::odom;
+  const std::string rig = options_.prefix + kRigFrame;
+  const std::string fixed = is_truth  ? options_.prefix + kGroundTruthFrame
+                            : is_odom ? options_.prefix + kOdometryFrame
+                                      : kMapFrame;
+  const Pose pose = is_odom ? Pose(world_from_start_->inverse() * world_from_rig) : world_from_rig;
+  const TransformStamped transform = is_truth ? to_transform(pose.inverse(), {rig, fixed}, t_ns)
+                                              : to_transform(pose, {fixed, rig}, t_ns);
+  const std::int64_t time_ns = last_pose_ns_ ? std::max(t_ns, reached_ns_) : t_ns;
+  write(tf_, time_ns, TFMessage{{transform}});
+  write(odometry_, time_ns, to_odometry(pose, twist, {fixed, rig}, t_ns));
+}
+
+/// Remembers the pose of this time. The clock never steps back.
+void RigMotionPublisher::write_clock(std::int64_t t_ns) {
+  constexpr std::size_t kRemembered = 1000;
+  pose_times_ns_.push_back(t_ns);
+  if (pose_times_ns_.size() > kRemembered) pose_times_ns_.pop_front();
+  if (last_pose_ns_ && t_ns < *last_pose_ns_) return;
   write(clock_, t_ns, to_clock(t_ns));
   last_pose_ns_ = t_ns;
 }
@@ -133,11 +201,30 @@ void RigMotionPublisher::write_imu_sample(std::size_t index) {
   ImuTopic& imu = imus_[index];
   const std::size_t sample = imu.next++;
   const std::int64_t t_ns = imu.samples.t_ns[sample];
+  static const ImuFormat kOwn;
+  const ImuFormat& format = imu.format == nullptr ? kOwn : *imu.format;
+  const glidar::Imu& errors = rig_.imus[index].imu;
+  const Pose published_from_imu = format.has_optical_axes ? optical_from_body() : Pose::Identity();
+  const Eigen::Matrix3d axes = published_from_imu.linear();
   Imu message;
-  message.header = {.stamp = time_from_ns(t_ns), .frame_id = rig_.imus[index].name};
-  message.orientation_covariance[0] = -1.0;  // no orientation: sensor_msgs/Imu
-  message.angular_velocity = vector_message(imu.samples.angular_velocity_rad_s[sample]);
-  message.linear_acceleration = vector_message(imu.samples.specific_force_m_s2[sample]);
+  message.header = {.stamp = time_from_ns(t_ns), .frame_id = imu.frame_id};
+  const std::array<double, 4>& q = format.orientation_xyzw;
+  message.orientation = {q[0], q[1], q[2], q[3]};
+  message.orientation_covariance = format.orientation_covariance;
+  if (has_imu_orientation_) {
+    const PoseVector pose =
+        to_xyz_wxyz(imu.samples.ground_truth.world_from_imu[sample] * published_from_imu.inverse());
+    message.orientation = {pose[4], pose[5], pose[6], pose[3]};
+    message.orientation_covariance = same_variances(kExactVariance);
+  }
+  message.angular_velocity =
+      vector_message(axes * imu.samples.angular_velocity_rad_s[sample] / format.rate_unit_rad_s);
+  message.angular_velocity_covariance =
+      same_variances(format.rate_variance.value_or(white_variance(errors.gyroscope, errors)));
+  message.linear_acceleration = vector_message(axes * imu.samples.specific_force_m_s2[sample] /
+                                               format.acceleration_unit_m_s2);
+  message.linear_acceleration_covariance = same_variances(
+      format.acceleration_variance.value_or(white_variance(errors.accelerometer, errors)));
   write(imu.topic, t_ns, message);
 }
 

@@ -8,28 +8,29 @@
 #include <glidar/io/ros/message_sink.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 #include <glidar/io/ros/published_rig.hpp>
+#include <glidar/io/ros/sensor_topics.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace glidar::ros {
 
-/// Names of coordinate frames: REP-105.
-inline constexpr const char* kMapFrame = "map";
-inline constexpr const char* kRigFrame = "base_link";
-
-/// Writes the ground truth of a rig as /tf, /odom and /clock, and the samples of its IMUs, in the
-/// order of time.
+/// Writes the poses of a rig as /tf, odometry and /clock, and the samples of its IMUs, in the order
+/// of time.
 class RigMotionPublisher {
  public:
   /// Adds the topics to the sink. Both must outlive it. Throws Error.
-  RigMotionPublisher(MessageSink& sink, const PublishedRig& rig);
+  RigMotionPublisher(MessageSink& sink, const PublishedRig& rig, TransformOptions options,
+                     const std::vector<ImuTopicChoice>& imus, bool has_imu_orientation);
 
   /// The time from which poses count, at or before all others.
   void begin(std::int64_t start_ns) { start_ns_ = start_ns; }
-  /// With a motion: writes everything until a time, and the pose at it. Earlier times are ignored.
+  /// With a motion: writes everything until a time, and the pose at it. If this time has passed, it
+  /// only writes the pose, and no time of the clock.
   void advance(std::int64_t until_ns);
   /// The same without a pose of its own at this time. It has no effect before the first advance().
   void advance_between(std::int64_t until_ns);
@@ -42,6 +43,8 @@ class RigMotionPublisher {
   /// An IMU and the samples that were computed but not yet written.
   struct ImuTopic {
     std::size_t topic = 0;
+    std::string frame_id;
+    const ImuFormat* format = nullptr;
     std::int64_t computed_ns = 0;  ///< until this time
     ImuSamples samples = {};
     std::size_t next = 0;  ///< of the samples
@@ -56,13 +59,18 @@ class RigMotionPublisher {
   void write_until(std::int64_t until_ns);
   void skip_gap(std::int64_t until_ns);
   void write_motion_pose(std::int64_t t_ns);
-  void write_pose(std::int64_t t_ns, const TFMessage& transforms, const Odometry& odometry);
+  void write_passed_pose(std::int64_t t_ns);
+  void write_transform(const Pose& world_from_rig, const std::optional<BodyTwist>& twist,
+                       std::int64_t t_ns);
+  void write_clock(std::int64_t t_ns);
   void compute_imu_samples(std::int64_t until_ns);
   void write_imu_samples(std::int64_t until_ns);
   void write_imu_sample(std::size_t imu);
 
   MessageSink& sink_;
   const PublishedRig& rig_;
+  TransformOptions options_;
+  bool has_imu_orientation_;
   std::size_t tf_ = 0;
   std::size_t odometry_ = 0;
   std::size_t clock_ = 0;
@@ -71,6 +79,8 @@ class RigMotionPublisher {
   std::int64_t next_pose_ns_ = 0;             ///< of those at 100 Hz
   std::optional<std::int64_t> last_pose_ns_;  ///< that was written
   std::int64_t reached_ns_ = 0;               ///< all is written until this time
+  std::deque<std::int64_t> pose_times_ns_;    ///< of the last poses
+  std::optional<Pose> world_from_start_;      ///< level, for TransformMode::odom
   std::optional<RigPose> last_frame_pose_;    ///< without a motion
   std::vector<std::byte> bytes_;
 };

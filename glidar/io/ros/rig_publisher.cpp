@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/ros/rig_publisher.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/ros/box_message.hpp>
 #include <glidar/io/ros/image_message.hpp>
@@ -9,6 +10,7 @@
 #include <glidar/io/ros/pose_message.hpp>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -18,21 +20,44 @@ namespace {
 
 constexpr std::int64_t kForever_ns = std::numeric_limits<std::int64_t>::max();
 
-bool is_camera(const PublishedSensor& published) {
-  return std::holds_alternative<Pinhole>(published.sensor.optics);
-}
-
-bool is_scanner(const PublishedSensor& published) {
-  return std::holds_alternative<Spinning>(published.sensor.optics) ||
-         std::holds_alternative<LineScan>(published.sensor.optics);
-}
-
-bool has_one_row(const PublishedSensor& published) {
-  return published.beams.rows == published.beams.returns;
-}
-
 void add_once(const std::string& name, std::vector<std::string>& columns) {
   if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.emplace_back(name);
+}
+
+Image make_image(ImageContent content, bool in_mm, const CloudSource& source,
+                 const std::string& frame_id) {
+  switch (content) {
+    case ImageContent::depth_16uc1:
+      return depth_image(source, DepthEncoding::millimetres_16uc1, frame_id);
+    case ImageContent::depth_32fc1:
+      return depth_image(
+          source, in_mm ? DepthEncoding::millimetres_16uc1 : DepthEncoding::metres_32fc1, frame_id);
+    case ImageContent::intensity_mono8:
+      return intensity_image(source, IntensityEncoding::mono8, frame_id);
+    case ImageContent::intensity_mono16:
+      return intensity_image(source, IntensityEncoding::mono16, frame_id);
+    case ImageContent::intensity_32fc1:
+      return intensity_image(source, IntensityEncoding::f32c1, frame_id);
+    case ImageContent::range_32fc1:
+      return range_image(source, frame_id);
+    case ImageContent::colour_rgb8:
+      return colour_image(source, ColourEncoding::rgb8, frame_id);
+    case ImageContent::colour_bgra8:
+      return colour_image(source, ColourEncoding::bgra8, frame_id);
+    case ImageContent::infrared_left:
+      return raw_image(source, "ir_left", frame_id);
+    case ImageContent::infrared_right:
+      return raw_image(source, "ir_right", frame_id);
+    case ImageContent::ouster_range:
+      return ouster_image(source, OusterChannel::range, frame_id);
+    case ImageContent::ouster_signal:
+      return ouster_image(source, OusterChannel::signal, frame_id);
+    case ImageContent::ouster_reflectivity:
+      return ouster_image(source, OusterChannel::reflectivity, frame_id);
+    case ImageContent::ouster_near_infrared:
+      break;
+  }
+  return ouster_image(source, OusterChannel::near_infrared, frame_id);
 }
 
 }  // namespace
@@ -42,74 +67,37 @@ RigPublisher::RigPublisher(MessageSink& sink, PublishedRig rig, RigPublisherOpti
       rig_(std::move(rig)),
       options_(std::move(options)),
       arrivals_(rig_.sensors.size(), rig_.world_from_rig.has_value()) {
-  for (const PublishedSensor& sensor : rig_.sensors) topics_.push_back(add_topics(sensor));
+  place_camera_without_rig();
+  topics_ = add_sensor_topics(sink_, rig_, options_);
   if (!rig_.world_from_rig) rig_.imus.clear();
-  motion_.emplace(sink_, rig_);
-  Topic transforms = make_topic<TFMessage>("/tf_static");
-  transforms.qos = kStaticTransformQos;
-  static_topic_ = sink_.add_topic(transforms);
-}
-
-RigPublisher::SensorTopics RigPublisher::add_topics(const PublishedSensor& sensor) {
-  const std::string name =
-      sensor.name.empty() ? (is_camera(sensor) ? "camera" : "lidar") : sensor.name;
-  const std::string base = "/" + name;
-  SensorTopics topics{.frame_id = sensor.name.empty() ? sensor.beams.frame_id : name,
-                      .cloud_name = base + "/points"};
-  topics.cloud = sink_.add_topic(has_custom_msg() ? make_topic<CustomMsg>(topics.cloud_name)
-                                                  : make_topic<PointCloud2>(topics.cloud_name));
-  if (is_scanner(sensor) && has_one_row(sensor)) {
-    topics.scan = sink_.add_topic(make_topic<LaserScan>(base + "/scan"));
-  }
-  add_image_topics(sensor, base, topics);
-  if (sensor.packets)
-    topics.packets = std::make_unique<PacketTopics>(sink_, sensor, topics.frame_id);
-  return topics;
-}
-
-void RigPublisher::add_image_topics(const PublishedSensor& sensor, const std::string& base,
-                                    SensorTopics& topics) {
-  const auto add_image = [&](const char* image) {
-    return sink_.add_topic(make_topic<Image>(base + image));
-  };
-  const auto add_compressed = [&](const char* image) {
-    return sink_.add_topic(make_topic<CompressedImage>(base + image));
-  };
-  const bool has_rows = is_camera(sensor) || (is_scanner(sensor) && !has_one_row(sensor));
-  if (is_camera(sensor)) {
-    if (options_.images != ImageTransport::compressed) topics.depth = add_image("/depth/image_raw");
-    topics.camera_info = sink_.add_topic(make_topic<CameraInfo>(base + "/depth/camera_info"));
-    if (options_.images != ImageTransport::raw) {
-      topics.compressed_depth = add_compressed("/depth/image_raw/compressedDepth");
-      topics.compressed_intensity = add_compressed("/intensity/image_raw/compressed");
-    }
-  }
-  if (options_.for_viewers && is_scanner(sensor) && has_rows) {
-    topics.range = add_image("/range/image_raw");
-  }
-  if (options_.for_viewers && has_rows) topics.intensity = add_image("/intensity/image_raw");
-  if (has_classes(rig_.scene))
-    topics.boxes = sink_.add_topic(make_topic<MarkerArray>(base + "/boxes"));
+  const std::vector<ImuTopicChoice> imus = imu_topics(rig_, topics_, options_.transforms);
+  motion_.emplace(sink_, rig_, options_.transforms, imus, options_.has_imu_orientation);
+  static_transforms_ = static_transforms(rig_, topics_, imus, options_.transforms);
+  if (static_transforms_.transforms.empty()) return;
+  Topic topic = make_topic<TFMessage>("/tf_static");
+  topic.qos = kStaticTransformQos;
+  static_topic_ = sink_.add_topic(topic);
 }
 
 void RigPublisher::begin(std::int64_t start_ns) {
-  write_static_transforms(start_ns);
+  for (TransformStamped& transform : static_transforms_.transforms)
+    transform.header.stamp = time_from_ns(start_ns);
+  if (static_topic_) write_message(sink_, *static_topic_, start_ns, static_transforms_);
   for (const SensorTopics& topics : topics_) {
-    if (topics.packets) topics.packets->write_metadata(start_ns);
+    if (topics.metadata) write_message(sink_, *topics.metadata, start_ns, topics.metadata_text);
   }
   motion_->begin(start_ns);
 }
 
-void RigPublisher::write_static_transforms(std::int64_t t_ns) {
-  TFMessage message;
-  for (std::size_t i = 0; i < topics_.size(); ++i) {
-    message.transforms.push_back(
-        to_transform(rig_.sensors[i].rig_from_sensor, {kRigFrame, topics_[i].frame_id}, t_ns));
-  }
-  for (const PublishedImu& imu : rig_.imus) {
-    message.transforms.push_back(to_transform(imu.rig_from_imu, {kRigFrame, imu.name}, t_ns));
-  }
-  write_message(sink_, static_topic_, t_ns, message);
+/// Without a rig, base_link has the axes of bodies (x forward, z up) at the camera.
+void RigPublisher::place_camera_without_rig() {
+  const bool is_alone = rig_.sensors.size() == 1 && rig_.sensors.front().name.empty();
+  if (!is_alone || !looks_along_z(rig_.sensors.front().beams)) return;
+  const Pose body_from_optical = optical_from_body().inverse();
+  rig_.sensors.front().rig_from_sensor = body_from_optical;
+  if (rig_.world_from_rig)
+    rig_.world_from_rig = compose_extrinsic(*rig_.world_from_rig, optical_from_body());
+  for (PublishedImu& imu : rig_.imus) imu.rig_from_imu = body_from_optical * imu.rig_from_imu;
 }
 
 /// Writes the messages up to a time, and the poses and samples before them.
@@ -130,18 +118,21 @@ bool RigPublisher::is_wanted(const std::optional<std::size_t>& topic) const {
 }
 
 std::vector<std::string> RigPublisher::cloud_columns(std::size_t sensor) const {
-  if (!options_.layout.empty()) {
-    std::vector<std::string> columns = find_layout(options_.layout).columns;
+  const SensorTopics& topics = topics_[sensor];
+  if (!topics.cloud) return {"xyz"};
+  if (!topics.cloud_options.layout.empty()) {
+    std::vector<std::string> columns = find_layout(topics.cloud_options.layout).columns;
     add_once("time", columns);
     return columns;
   }
+  if (!topics.driver->columns.empty()) return topics.driver->columns;
   if (!options_.columns.empty()) {
     std::vector<std::string> columns = options_.columns;
     add_once("xyz", columns);
     return columns;
   }
   std::vector<std::string> columns = {"xyz", "intensity"};
-  const bool is_at_once = is_camera(rig_.sensors[sensor]);
+  const bool is_at_once = is_camera(rig_.sensors[sensor].sensor);
   if (!is_at_once) columns.insert(columns.end(), {"ring", "time"});
   if (!is_at_once || options_.for_viewers) columns.emplace_back("range");
   if (options_.for_viewers) columns.emplace_back("true_range");
@@ -152,8 +143,10 @@ std::vector<std::string> RigPublisher::cloud_columns(std::size_t sensor) const {
 
 std::vector<std::string> RigPublisher::columns(std::size_t sensor) const {
   std::vector<std::string> columns = cloud_columns(sensor);
-  if (topics_[sensor].depth || topics_[sensor].compressed_depth) add_once("depth", columns);
-  if (topics_[sensor].compressed_intensity) add_once("intensity", columns);
+  for (const ImageTopic& image : topics_[sensor].images) {
+    if (is_depth(image.stream->content)) add_once("depth", columns);
+    if (is_colour(image.stream->content)) add_once("colour", columns);
+  }
   if (topics_[sensor].packets) {
     for (const std::string& name : packet_columns()) add_once(name, columns);
   }
@@ -170,81 +163,104 @@ const std::string& RigPublisher::cloud_topic(std::size_t sensor) const {
   return topics_[sensor].cloud_name;
 }
 
-CloudMessageOptions RigPublisher::cloud_options(std::size_t sensor) const {
-  return {.layout = options_.layout, .frame_id = topics_[sensor].frame_id};
+const CloudMessageOptions& RigPublisher::cloud_options(std::size_t sensor) const {
+  return topics_[sensor].cloud_options;
 }
 
 void RigPublisher::publish(std::size_t sensor, const Frame& frame, const Beams& beams) {
+  const SensorTopics& topics = topics_[sensor];
   const CloudSource source{frame, rig_.sensors[sensor].sensor, beams};
-  const std::int64_t stamp_ns = first_firing_ns(frame, beams);
   const FrameInterval interval = frame_interval(source.sensor, frame.number);
-  const std::int64_t duration_ns = interval.end_ns - interval.start_ns;
+  const std::int64_t end_ns = frame.stamp_ns + (interval.end_ns - interval.start_ns);
   if (!end_ns_) begin(frame.stamp_ns);
-  if (!arrivals_.add(sensor, frame.stamp_ns, duration_ns, stamp_ns + duration_ns)) {
-    release(kForever_ns);
-  }
+  if (!arrivals_.add(sensor, frame.stamp_ns, end_ns - frame.stamp_ns)) release(kForever_ns);
   release(frame.stamp_ns);
   if (!rig_.world_from_rig) motion_->write_frame_pose(sensor, frame);
-  held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});  // a pose
-  hold_cloud(sensor, source, stamp_ns);
-  hold_images(topics_[sensor], source, stamp_ns);
-  hold_compressed_images(topics_[sensor], source, stamp_ns);
-  if (is_wanted(topics_[sensor].boxes)) {
-    held_.hold(*topics_[sensor].boxes, stamp_ns,
-               box_markers(rig_.scene, frame, topics_[sensor].frame_id), sink_.wire());
+  hold_cloud(sensor, source, end_ns);
+  hold_scan(topics, source, end_ns);
+  hold_images(topics, source, end_ns);
+  if (is_wanted(topics.boxes)) {
+    hold(*topics.boxes, frame.stamp_ns, delivery_ns(frame.stamp_ns, beams, end_ns),
+         box_markers(rig_.scene, frame, topics.frame_id));
   }
-  if (topics_[sensor].packets) topics_[sensor].packets->hold(frame, beams, held_);
+  if (topics.packets) topics.packets->hold(frame, beams, held_);
   release(arrivals_.complete_ns());
-  end_ns_ = std::max(end_ns_.value_or(frame.stamp_ns), frame.stamp_ns + duration_ns);
+  end_ns_ = std::max(end_ns_.value_or(end_ns), end_ns);
 }
 
-void RigPublisher::hold_cloud(std::size_t sensor, const CloudSource& source,
-                              std::int64_t stamp_ns) {
+/// When receivers get a message: when the last point of a scan is measured.
+std::int64_t RigPublisher::delivery_ns(std::int64_t stamp_ns, const Beams& beams,
+                                       std::int64_t end_ns) const {
+  const bool is_late = options_.has_latency && rig_.world_from_rig && !beams.times_ns.empty();
+  return is_late ? std::max(stamp_ns, end_ns) : stamp_ns;
+}
+
+/// Holds a message, and before it the pose at its stamp.
+template <class Message>
+void RigPublisher::hold(std::size_t topic, std::int64_t stamp_ns, std::int64_t time_ns,
+                        const Message& message) {
+  held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});
+  held_.hold(topic, time_ns, message, sink_.wire());
+}
+
+void RigPublisher::hold_cloud(std::size_t sensor, const CloudSource& source, std::int64_t end_ns) {
   const SensorTopics& topics = topics_[sensor];
-  if (is_wanted(topics.scan)) {
-    held_.hold(*topics.scan, stamp_ns,
-               laser_scan(source, ring_of(source.beams, 0), topics.frame_id), sink_.wire());
-  }
+  const CloudMessageOptions& options = topics.cloud_options;
+  const std::int64_t stamp_ns = cloud_stamp_ns(source, options);
+  held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});  // a pose
   if (!is_wanted(topics.cloud)) return;
   OutputFrame axes = output_frame("sensor", source.beams, source.frame.world_from_sensor);
+  axes.cloud_from_sensor = quarter_turned(topics.driver->quarter_turns);
   axes.deskew = options_.deskew;
   make_point_cloud(source.frame, source.beams, rig_.scene, axes, cloud_columns(sensor), cloud_);
-  if (has_custom_msg()) {
-    held_.hold(topics.cloud, stamp_ns, to_custom_msg(cloud_, source, cloud_options(sensor)),
-               sink_.wire());
+  const std::int64_t time_ns = delivery_ns(stamp_ns, source.beams, end_ns);
+  if (options.layout == kCustomMsgLayout)
+    hold(*topics.cloud, stamp_ns, time_ns, to_custom_msg(cloud_, source, options));
+  else
+    hold(*topics.cloud, stamp_ns, time_ns, to_point_cloud2(cloud_, source, options));
+}
+
+void RigPublisher::hold_scan(const SensorTopics& topics, const CloudSource& source,
+                             std::int64_t end_ns) {
+  if (!is_wanted(topics.scan)) return;
+  const std::int64_t stamp_ns = cloud_stamp_ns(source, topics.cloud_options);
+  const std::int64_t first_ns = first_firing_ns(source.frame, source.beams);
+  const std::string& frame_id = topics.frame_id;
+  LaserScan scan;
+  if (topics.driver->scan == ScanKind::velodyne) {
+    scan = velodyne_scan(source, stamp_ns, frame_id);
+  } else if (topics.driver->scan == ScanKind::ouster) {
+    scan = ouster_scan(source, first_ns, frame_id);
+  } else if (topics.driver->scan == ScanKind::rplidar) {
+    scan = rplidar_scan(source, first_ns, frame_id);
   } else {
-    held_.hold(topics.cloud, stamp_ns, to_point_cloud2(cloud_, source, cloud_options(sensor)),
-               sink_.wire());
+    scan = laser_scan(source, ring_of(source.beams, 0), frame_id,
+                      layout_turns(topics.cloud_options.layout));
   }
+  const std::int64_t scan_ns = to_ns(scan.header.stamp);
+  hold(*topics.scan, scan_ns, delivery_ns(scan_ns, source.beams, end_ns), scan);
 }
 
 void RigPublisher::hold_images(const SensorTopics& topics, const CloudSource& source,
-                               std::int64_t stamp_ns) {
-  const std::string& frame_id = topics.frame_id;
-  if (is_wanted(topics.depth)) {
-    held_.hold(*topics.depth, stamp_ns, depth_image(source, DepthEncoding::metres_32fc1, frame_id),
-               sink_.wire());
-  }
-  if (is_wanted(topics.camera_info)) {
-    held_.hold(*topics.camera_info, stamp_ns, ros::camera_info(source, frame_id), sink_.wire());
-  }
-  if (is_wanted(topics.range))
-    held_.hold(*topics.range, stamp_ns, range_image(source, frame_id), sink_.wire());
-  if (is_wanted(topics.intensity)) {
-    held_.hold(*topics.intensity, stamp_ns,
-               intensity_image(source, IntensityEncoding::f32c1, frame_id), sink_.wire());
-  }
-}
-
-void RigPublisher::hold_compressed_images(const SensorTopics& topics, const CloudSource& source,
-                                          std::int64_t stamp_ns) {
-  if (is_wanted(topics.compressed_depth)) {
-    const Image depth = depth_image(source, DepthEncoding::millimetres_16uc1, topics.frame_id);
-    held_.hold(*topics.compressed_depth, stamp_ns, compressed_depth_image(depth), sink_.wire());
-  }
-  if (is_wanted(topics.compressed_intensity)) {
-    const Image intensity = intensity_image(source, IntensityEncoding::mono8, topics.frame_id);
-    held_.hold(*topics.compressed_intensity, stamp_ns, png_image(intensity), sink_.wire());
+                               std::int64_t end_ns) {
+  const std::int64_t stamp_ns = first_firing_ns(source.frame, source.beams);
+  const std::int64_t time_ns = delivery_ns(stamp_ns, source.beams, end_ns);
+  for (const ImageTopic& image : topics.images) {
+    const ImageContent content = image.stream->content;
+    if (is_wanted(image.raw)) {
+      hold(*image.raw, stamp_ns, time_ns,
+           make_image(content, options_.depth_in_mm, source, image.frame_id));
+    }
+    if (is_wanted(image.compressed)) {
+      const Image whole = make_image(content, true, source, image.frame_id);
+      hold(*image.compressed, stamp_ns, time_ns,
+           is_depth(content) ? compressed_depth_image(whole) : png_image(whole));
+    }
+    if (!is_wanted(image.info)) continue;
+    const bool is_right = content == ImageContent::infrared_right;
+    hold(*image.info, stamp_ns, time_ns,
+         ros::camera_info(source, image.info_frame_id,
+                          is_right ? stereo_baseline_m(source.sensor) : 0.0));
   }
 }
 
@@ -252,9 +268,7 @@ void RigPublisher::advance(std::int64_t now_ns) {
   const std::optional<std::int64_t> limit_ns = arrivals_.next_end_ns();
   if (!limit_ns || !rig_.world_from_rig) return;
   const std::int64_t until_ns = std::min(now_ns, *limit_ns);
-  for (const std::int64_t firing_ns : arrivals_.next_firings_ns()) {
-    if (firing_ns <= until_ns) motion_->advance(firing_ns);
-  }
+  release(until_ns);
   motion_->advance_between(until_ns);
 }
 

@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kCommandHead = 24;
 constexpr std::size_t kHeadChecksumAt = 18;
 constexpr std::uint8_t kCommandMark = 0xAA;
-constexpr std::uint8_t kMid360 = 9;  // kLivoxLidarTypeMid360
-constexpr std::string_view kSerialNumber = "GLIDAR0000000001";
+constexpr std::uint8_t kMid360 = 9;                            // kLivoxLidarTypeMid360
+constexpr std::string_view kSerialNumber = "GLIDAR000000001";  // 15 letters: text ends with a zero
 constexpr std::size_t kMaxKeys = 64;
 
 // Ids of commands and keys of parameters (livox_lidar_def.h).

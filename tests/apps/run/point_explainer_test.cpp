@@ -83,7 +83,8 @@ TEST(PointExplainer, ReportsPointsAndFramesThatDoNotExist) {
   PointExplainer explainer(scene.flags, scene.prepared, *publisher);
   const MeasuredFrame measured = scene.measure(0);
   explainer.add_frame(measured);
-  const std::int64_t stamp_ns = ros::first_firing_ns(measured.frame, *measured.beams);
+  const std::int64_t stamp_ns =
+      ros::cloud_stamp_ns({measured.frame, scene.prepared.sensors.front().sensor, *measured.beams});
   EXPECT_THAT(explained(explainer, {"/lidar/points", stamp_ns, 1'000'000}),
               HasSubstr("point 1000000"));
   EXPECT_THAT(explained(explainer, {"/lidar/points", stamp_ns + 1, 0}), HasSubstr("is not known"));
@@ -96,7 +97,8 @@ TEST(PointExplainer, EndsWithPointsThatWait) {
   const auto publisher =
       make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion, true);
   const MeasuredFrame measured = scene.measure(0);
-  const std::int64_t stamp_ns = ros::first_firing_ns(measured.frame, *measured.beams);
+  const std::int64_t stamp_ns =
+      ros::cloud_stamp_ns({measured.frame, scene.prepared.sensors.front().sensor, *measured.beams});
   constexpr int kPoints = 200;
   int replies = 0;
   {

@@ -8,7 +8,11 @@
 
 #include <gmock/gmock.h>
 
+#include <glidar/io/ros/pose_message.hpp>
+
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 namespace glidar::app {
 namespace {
@@ -137,7 +141,7 @@ TEST(RigMessages, OfOdometryHaveTheVelocitiesOfTheMotionInTheAxesOfTheBody) {
   scene.prepared.motion.world_from_rig = twist;
   ros::MemorySink sink;
   publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
-  const auto poses = sink.of<ros::Odometry>("/odom");
+  const auto poses = sink.of<ros::Odometry>("/ground_truth/odom");
   ASSERT_EQ(poses.size(), 22U);  // every 10 ms of 0.2 s, and the start of the second frame
   for (const ros::Odometry& odometry : poses) {
     EXPECT_NEAR(odometry.linear_velocity.x, 1.0, 1e-12);
@@ -150,19 +154,161 @@ TEST(RigMessages, OfOdometryHaveTheVelocitiesOfTheMotionInTheAxesOfTheBody) {
   }
 }
 
-TEST(RigMessages, HaveThePoseAtTheTimeOfEveryCloudBeforeIt) {
+std::set<std::int64_t> transform_stamps(const ros::MemorySink& sink) {
+  std::set<std::int64_t> stamps;
+  for (const ros::TFMessage& message : sink.of<ros::TFMessage>("/tf"))
+    stamps.insert(ros::to_ns(message.transforms.at(0).header.stamp));
+  return stamps;
+}
+
+TEST(RigMessages, HaveATransformWithTheStampOfEveryCloud) {
+  for (const bool is_live : {false, true}) {
+    LiveScene scene;
+    ros::MemorySink sink;
+    const auto publisher =
+        make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+    for (const std::uint32_t number : {0U, 1U}) {
+      const MeasuredFrame measured = scene.measure(number);
+      publisher->publish(0, measured.frame, *measured.beams);
+      if (is_live) publisher->advance(measured.frame.stamp_ns + 190'000'001);
+    }
+    publisher->finish();
+    const std::set<std::int64_t> stamps = transform_stamps(sink);
+    const auto clouds = sink.of<ros::PointCloud2>("/lidar/points");
+    ASSERT_EQ(clouds.size(), 2U);
+    for (const auto& cloud : clouds) EXPECT_TRUE(stamps.contains(ros::to_ns(cloud.header.stamp)));
+    EXPECT_EQ(stamps.size(), sink.counts().at("/tf"));  // none is repeated
+  }
+}
+
+TEST(RigMessages, OfScansAreWrittenAfterTheirLastPoint) {
   LiveScene scene;
   ros::MemorySink sink;
   publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
-  std::int64_t pose_ns = -1;
-  std::size_t clouds = 0;
-  for (const auto& written : sink.messages) {
-    if (written.topic == "/tf") pose_ns = written.time_ns;
-    if (written.topic != "/lidar/points") continue;
-    EXPECT_EQ(written.time_ns, pose_ns);
-    ++clouds;
+  std::vector<std::int64_t> times;
+  for (const auto& written : sink.messages)
+    if (written.topic == "/lidar/points") times.push_back(written.time_ns);
+  EXPECT_THAT(times, ElementsAre(100'000'000, 200'000'000));
+}
+
+TEST(RigMessages, OfTheClockNeverStepBack) {
+  LiveScene scene;
+  ros::MemorySink sink;
+  const auto publisher = make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+  for (const std::uint32_t number : {0U, 1U}) {
+    const MeasuredFrame measured = scene.measure(number);
+    publisher->publish(0, measured.frame, *measured.beams);
+    publisher->advance(measured.frame.stamp_ns + 155'000'000);
   }
-  EXPECT_EQ(clouds, 2U);
+  publisher->finish();
+  std::int64_t last_ns = -1;
+  for (const ros::Clock& clock : sink.of<ros::Clock>("/clock")) {
+    EXPECT_GT(ros::to_ns(clock.clock), last_ns);
+    last_ns = ros::to_ns(clock.clock);
+  }
+}
+
+/// The transforms of /tf, as parent > child.
+std::set<std::string> frame_pairs(const ros::MemorySink& sink, const std::string& topic) {
+  std::set<std::string> pairs;
+  for (const ros::TFMessage& message : sink.of<ros::TFMessage>(topic))
+    for (const ros::TransformStamped& one : message.transforms)
+      pairs.insert(one.header.frame_id + " > " + one.child_frame_id);
+  return pairs;
+}
+
+TEST(RigMessages, OfTheGroundTruthLeaveTheParentOfTheBodyToOthers) {
+  LiveScene scene;
+  ros::MemorySink sink;
+  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  EXPECT_THAT(frame_pairs(sink, "/tf"), ElementsAre("base_link > ground_truth"));
+  EXPECT_THAT(frame_pairs(sink, "/tf_static"), ElementsAre("base_link > lidar_frame"));
+  EXPECT_THAT(sink.counts(), Not(Contains(Key("/odom"))));
+  const auto odometry = sink.of<ros::Odometry>("/ground_truth/odom");
+  const auto transforms = sink.of<ros::TFMessage>("/tf");
+  ASSERT_EQ(odometry.size(), transforms.size());
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    EXPECT_EQ(odometry[i].header.frame_id, "ground_truth");
+    EXPECT_EQ(odometry[i].child_frame_id, "base_link");
+    const TimedPose there = ros::timed_pose(odometry[i]);
+    const TimedPose back = ros::timed_pose(transforms[i].transforms.at(0));
+    const Eigen::Vector3d nothing = there.position_m + there.orientation * back.position_m;
+    EXPECT_NEAR(nothing.norm(), 0.0, 1e-12);
+    EXPECT_NEAR(std::abs((there.orientation * back.orientation).w()), 1.0, 1e-12);
+  }
+}
+
+TEST(RigMessages, HaveThePosesOfTheRequestedFrames) {
+  for (const auto mode :
+       {ros::TransformMode::odom, ros::TransformMode::map, ros::TransformMode::none}) {
+    LiveScene scene;
+    scene.flags.output.messages.tf = mode;
+    scene.flags.output.messages.frame_prefix = "robot1/";
+    ros::MemorySink sink;
+    publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+    const auto odometry = sink.of<ros::Odometry>("/odom");
+    EXPECT_GT(sink.counts().at("/clock"), 20U);
+    if (mode == ros::TransformMode::none) {
+      EXPECT_THAT(sink.counts(), Not(Contains(Key("/tf"))));
+      EXPECT_THAT(sink.counts(), Not(Contains(Key("/tf_static"))));
+      EXPECT_TRUE(odometry.empty());
+      continue;
+    }
+    const bool is_map = mode == ros::TransformMode::map;
+    EXPECT_THAT(frame_pairs(sink, "/tf"),
+                ElementsAre(is_map ? "map > robot1/base_link" : "robot1/odom > robot1/base_link"));
+    EXPECT_THAT(frame_pairs(sink, "/tf_static"),
+                ElementsAre("robot1/base_link > robot1/lidar_frame"));
+    const TimedPose first = ros::timed_pose(odometry.at(0));
+    EXPECT_NEAR(first.position_m.x(), is_map ? 0.5 : 0.0, 1e-12);
+    EXPECT_NEAR(odometry.at(0).angular_velocity.z, 0.5, 1e-12);
+    EXPECT_EQ(sink.of<ros::PointCloud2>("/lidar/points").at(0).header.frame_id,
+              "robot1/lidar_frame");
+  }
+}
+
+TEST(RigMessages, OfImusHaveCovariancesAndAnOrientationOnRequest) {
+  for (const bool has_orientation : {false, true}) {
+    ImuScene scene;
+    glidar::Imu& imu = scene.prepared.imus.front().imu;
+    imu.gyroscope.noise_density = 0.001;
+    imu.accelerometer.noise_density = 0.02;
+    scene.flags.output.messages.imu_orientation = has_orientation;
+    ros::MemorySink sink;
+    publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+    const ros::Imu message = sink.of<ros::Imu>("/imu/data").at(10);  // after 0.1 s of 0.5 rad/s
+    EXPECT_NEAR(message.angular_velocity_covariance[4], 1e-6 * 100.0, 1e-15);
+    EXPECT_NEAR(message.linear_acceleration_covariance[8], 4e-4 * 100.0, 1e-15);
+    EXPECT_EQ(message.linear_acceleration_covariance[1], 0.0);
+    EXPECT_EQ(message.orientation_covariance[0] > 0.0, has_orientation);
+    EXPECT_EQ(message.orientation_covariance[0] == -1.0, !has_orientation);
+    EXPECT_NEAR(message.orientation.z, has_orientation ? std::sin(0.025) : 0.0, 1e-9);
+  }
+}
+
+TEST(RigMessages, OfACameraWithoutARigHaveABodyWithXForward) {
+  LiveScene scene("D435");
+  ros::MemorySink sink;
+  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  EXPECT_THAT(frame_pairs(sink, "/tf_static"),
+              ElementsAre("base_link > camera_link", "camera_link > camera_depth_optical_frame"));
+  const ros::TFMessage fixed = sink.of<ros::TFMessage>("/tf_static").at(0);
+  EXPECT_EQ(ros::timed_pose(fixed.transforms.at(0)).position_m.norm(), 0.0);
+  EXPECT_NEAR(std::abs(fixed.transforms.at(0).transform.rotation.w), 1.0, 1e-12);
+  const ros::Quaternion turned = fixed.transforms.at(1).transform.rotation;
+  EXPECT_NEAR(turned.x, -0.5, 1e-12);
+  EXPECT_NEAR(turned.y, 0.5, 1e-12);
+  EXPECT_NEAR(turned.z, -0.5, 1e-12);
+  EXPECT_NEAR(turned.w, 0.5, 1e-12);
+  // the boresight of the camera is x of base_link
+  const ros::Odometry odometry = sink.of<ros::Odometry>("/ground_truth/odom").at(0);
+  const Eigen::Vector3d ahead = ros::timed_pose(odometry).orientation * Eigen::Vector3d::UnitX();
+  const Pose camera = scene.measure(0).frame.world_from_sensor;
+  EXPECT_NEAR((ahead - camera.linear().col(2)).norm(), 0.0, 1e-12);
+  EXPECT_EQ(sink.of<ros::Image>("/camera/depth/image_raw").at(0).header.frame_id,
+            "camera_depth_optical_frame");
+  EXPECT_EQ(sink.of<ros::Image>("/camera/color/image_raw").at(0).encoding, "rgb8");
+  EXPECT_EQ(sink.of<ros::Image>("/camera/intensity/image_raw").at(0).encoding, "mono8");
 }
 
 TEST(RigMessages, HaveThePosesOfFramesWhenTheMotionIsNotKnown) {
@@ -170,7 +316,7 @@ TEST(RigMessages, HaveThePosesOfFramesWhenTheMotionIsNotKnown) {
   ros::MemorySink sink;
   publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::frames), scene);
   EXPECT_THAT(sink.counts(), Not(Contains(Key("/imu/data"))));
-  const auto poses = sink.of<ros::Odometry>("/odom");
+  const auto poses = sink.of<ros::Odometry>("/ground_truth/odom");
   ASSERT_EQ(poses.size(), 2U);
   EXPECT_EQ(ros::to_ns(poses[1].header.stamp), 100'000'000);
   EXPECT_EQ(poses[0].angular_velocity.z, 0.0);
@@ -193,7 +339,7 @@ TEST(RigMessages, BeginAtTheFirstFrameAndAgainAfterALongGap) {
   publisher->finish();
   EXPECT_EQ(sink.counts().at("/imu/data"),
             12U);  // one at the first frame, eleven from the second on
-  EXPECT_LE(sink.counts().at("/odom"), 15U);
+  EXPECT_LE(sink.counts().at("/ground_truth/odom"), 15U);
 }
 
 TEST(RigMessages, StartWithTheRunAlsoWhereItsTimesAreDates) {
@@ -209,7 +355,7 @@ TEST(RigMessages, StartWithTheRunAlsoWhereItsTimesAreDates) {
   const auto transforms = sink.of<ros::TFMessage>("/tf_static");
   ASSERT_EQ(transforms.size(), 1U);
   EXPECT_EQ(ros::to_ns(transforms[0].transforms.at(0).header.stamp), kStart_ns);
-  const auto poses = sink.of<ros::Odometry>("/odom");
+  const auto poses = sink.of<ros::Odometry>("/ground_truth/odom");
   EXPECT_EQ(ros::to_ns(poses.at(1).header.stamp), kStart_ns + 10'000'000);
 }
 

@@ -64,6 +64,9 @@ LAYOUTS = {
     "timestamp <f8 18",
     "autoware": "x <f4 0, y <f4 4, z <f4 8, intensity |u1 12, return_type |u1 13, channel <u2 14, "
     "azimuth <f4 16, elevation <f4 20, distance <f4 24, time_stamp <u4 28",
+    "ouster-fast-lio": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, "
+    "ring |u1 22, ambient <u2 23, range <u4 25",
+    "robosense-xyzi": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12",
 }
 
 
@@ -112,6 +115,10 @@ def layout_values(c):
         "autoware": {"intensity": percent, "return_type": c["status"] == 0, "channel": c["ring"],
                      "azimuth": turn, "elevation": c["elevation"], "distance": c["range"],
                      "time_stamp": c["time"]},
+        "ouster-fast-lio": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
+                            "ring": np.minimum(c["ring"], 255), "ambient": zero,
+                            "range": np.floor(np.nan_to_num(c["range"]) * 1000 + 0.5)},
+        "robosense-xyzi": {"intensity": percent},
     }  # fmt: skip
 
 

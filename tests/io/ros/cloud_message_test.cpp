@@ -28,6 +28,9 @@ CloudFixture scan_fixture() {
   CloudFixture made = make_fixture();
   fixture::add_scan_columns(made.cloud);
   made.frame.stamp_ns = 1'000'000'000;
+  made.frame.range_m.assign(made.cloud.size(), 5.0);
+  for (std::size_t i = 0; i < made.cloud.size(); ++i)
+    if (is_miss(i)) made.frame.range_m[i] = kNaN;
   made.beams.rows = made.rows;
   made.beams.cols = made.cols;
   const std::size_t count = made.cloud.size();
@@ -75,9 +78,11 @@ TEST(CloudMessage, IsDenseAndInFiringOrderWithTheStampOfTheFirstFiring) {
 
 TEST(CloudMessage, KeepsRowsAndColumnsOnRequest) {
   const CloudFixture made = scan_fixture();
-  const PointCloud2 message = to_point_cloud2(
-      made.cloud, source_of(made),
-      {.layout = "velodyne", .dense = false, .firing_order = false, .frame_id = "lidar"});
+  const PointCloud2 message = to_point_cloud2(made.cloud, source_of(made),
+                                              {.layout = "velodyne",
+                                               .frame_id = "lidar",
+                                               .misses = Misses::nan,
+                                               .order = PointOrder::rows});
   EXPECT_EQ(message.height, 4U);
   EXPECT_EQ(message.width, 5U);
   EXPECT_FALSE(message.is_dense);
@@ -85,6 +90,82 @@ TEST(CloudMessage, KeepsRowsAndColumnsOnRequest) {
   const PointCloud cloud = sent(message);
   EXPECT_TRUE(std::isnan(values<double>(cloud, "xyz")[6]));
   EXPECT_EQ(values<std::uint16_t>(cloud, "ring")[19], 19000);
+}
+
+TEST(CloudMessage, IsStampedWithTheFirstPointThatIsWritten) {
+  CloudFixture made = scan_fixture();
+  auto& xyz = std::get<std::vector<double>>(made.cloud.columns.front().values);
+  for (std::size_t i = 0; i < made.cloud.size(); ++i) {
+    if (i % made.cols < 3) continue;  // the last columns, which fire first, have no return
+    made.frame.range_m[i] = kNaN;
+    std::fill_n(xyz.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, kNaN);
+  }
+  for (const char* layout : {"ouster", "livox"}) {
+    const PointCloud2 message = to_point_cloud2(made.cloud, source_of(made), {.layout = layout});
+    EXPECT_EQ(to_ns(message.header.stamp), 1'000'002'100) << layout;
+  }
+  const PointCloud2 relative = to_point_cloud2(made.cloud, source_of(made), {.layout = "ouster"});
+  EXPECT_EQ(values<std::uint32_t>(sent(relative), "t").front(), 0U);
+  EXPECT_EQ(to_custom_msg(made.cloud, source_of(made)).timebase, 1'000'002'100U);
+  EXPECT_EQ(cloud_stamp_ns(source_of(made), {.misses = Misses::zero}), 1'000'000'100);
+  EXPECT_EQ(cloud_stamp_ns(source_of(made), {.stamp = StampRule::first_firing}), 1'000'000'100);
+}
+
+TEST(CloudMessage, CanHaveTheColumnsOfAScannerAsRows) {
+  const CloudFixture made = scan_fixture();
+  const PointCloud2 message =
+      to_point_cloud2(made.cloud, source_of(made),
+                      {.layout = "velodyne", .misses = Misses::nan, .order = PointOrder::columns});
+  EXPECT_EQ(message.height, 5U);
+  EXPECT_EQ(message.width, 4U);
+  EXPECT_FALSE(message.is_dense);
+  const auto rings = values<std::uint16_t>(sent(message), "ring");
+  EXPECT_THAT(std::vector(rings.begin(), rings.begin() + 5),
+              ElementsAre(0, 5000, 10000, 15000, 1000));
+}
+
+TEST(CloudMessage, KeepsMissesAsZerosOnRequest) {
+  const CloudFixture made = scan_fixture();
+  const PointCloud2 message =
+      to_point_cloud2(made.cloud, source_of(made), {.layout = "velodyne", .misses = Misses::zero});
+  EXPECT_EQ(message.width, 20U);
+  EXPECT_TRUE(message.is_dense);
+  const auto xyz = values<double>(sent(message), "xyz");
+  EXPECT_EQ(std::count(xyz.begin(), xyz.end(), 0.0) >= 18, true);
+  EXPECT_TRUE(std::none_of(xyz.begin(), xyz.end(), [](double v) { return std::isnan(v); }));
+}
+
+TEST(CloudMessage, CanHavePaddingBetweenItsFields) {
+  const CloudFixture made = scan_fixture();
+  const CloudMessageOptions padded = {
+      .layout = "velodyne", .offsets = {0, 4, 8, 16, 20, 24}, .point_step = 32};
+  const PointCloud2 message = to_point_cloud2(made.cloud, source_of(made), padded);
+  EXPECT_EQ(message.point_step, 32U);
+  EXPECT_EQ(message.row_step, 32U * message.width);
+  const PointCloud packed =
+      sent(to_point_cloud2(made.cloud, source_of(made), {.layout = "velodyne"}));
+  const PointCloud cloud = sent(message);
+  for (const char* name : {"xyz", "intensity", "ring", "time"})
+    EXPECT_TRUE(find_column(cloud, name)->values == find_column(packed, name)->values) << name;
+}
+
+TEST(CloudMessage, OfALayoutWithItsOwnAxesIsTurned) {
+  CloudFixture made = scan_fixture();
+  made.cloud.frame_id = "lidar_frame";
+  made.beams.frame_id = "lidar_frame";
+  const auto plain = values<double>(
+      sent(to_point_cloud2(made.cloud, source_of(made), {.layout = "velodyne"})), "xyz");
+  const auto turned = values<double>(
+      sent(to_point_cloud2(made.cloud, source_of(made), {.layout = "hesai"})), "xyz");
+  ASSERT_EQ(plain.size(), turned.size());
+  for (std::size_t i = 0; i < plain.size(); i += 3) {
+    EXPECT_EQ(turned[i], -plain[i + 1]);
+    EXPECT_EQ(turned[i + 1], plain[i]);
+    EXPECT_EQ(turned[i + 2], plain[i + 2]);
+  }
+  const PointCloud laid = apply_layout(made.cloud, "hesai", made.sensor, made.beams);
+  const Pose turned_back = laid.world_from_cloud * quarter_turned(1);
+  EXPECT_TRUE(turned_back.isApprox(made.cloud.world_from_cloud, 1e-12));
 }
 
 TEST(CloudMessage, LayoutsHaveTheOffsetsOfTheirDrivers) {
@@ -102,6 +183,8 @@ TEST(CloudMessage, LayoutsHaveTheOffsetsOfTheirDrivers) {
   EXPECT_THAT(offsets("hesai", 26), ElementsAre(0, 4, 8, 12, 16, 18));
   EXPECT_THAT(offsets("robosense", 26), ElementsAre(0, 4, 8, 12, 16, 18));
   EXPECT_THAT(offsets("ouster-2022", 29), ElementsAre(0, 4, 8, 12, 16, 20, 22, 23, 25));
+  EXPECT_THAT(offsets("ouster-fast-lio", 29), ElementsAre(0, 4, 8, 12, 16, 20, 22, 23, 25));
+  EXPECT_THAT(offsets("robosense-xyzi", 16), ElementsAre(0, 4, 8, 12));
   EXPECT_THAT(offsets("livox-custom", 19), ElementsAre(0, 4, 8, 12, 16, 17, 18));
 }
 

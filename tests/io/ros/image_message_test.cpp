@@ -124,6 +124,44 @@ TEST(CompressedImage, OfDepthIsAPngBehindAHeader) {
   EXPECT_THAT(error_text([&] { compressed_depth_image(in_m); }), HasSubstr("16UC1"));
 }
 
+TEST(ColourImage, HasTheDiffuseColoursOfTheSurfaces) {
+  Measured made = camera();
+  EXPECT_THAT(error_text([&] { colour_image(made.source(), ColourEncoding::rgb8); }),
+              HasSubstr("no colours"));
+  made.frame.ground_truth.colour.assign(made.beams.size(), {1.0F, 0.5F, 0.0F});
+  made.frame.ground_truth.colour[1] = Eigen::Vector3f::Constant(kNaNf);
+  const Image rgb = colour_image(made.source(), ColourEncoding::rgb8);
+  EXPECT_EQ(rgb.encoding, "rgb8");
+  EXPECT_EQ(rgb.step, 9U);
+  const auto bytes = pixels<std::uint8_t>(rgb);
+  EXPECT_THAT(std::vector(bytes.begin(), bytes.begin() + 6), ElementsAre(255, 128, 0, 0, 0, 0));
+  const Image bgra = colour_image(made.source(), ColourEncoding::bgra8, "rgb_camera_link");
+  EXPECT_EQ(bgra.header.frame_id, "rgb_camera_link");
+  const auto others = pixels<std::uint8_t>(bgra);
+  EXPECT_THAT(std::vector(others.begin(), others.begin() + 4), ElementsAre(0, 128, 255, 255));
+  EXPECT_EQ(png_image(rgb).format, "rgb8; png compressed bgr8");
+}
+
+TEST(RawImageMessage, HasTheLevelsOfTheImager) {
+  Measured made = camera();
+  RawImage& raw = made.frame.raw_images.emplace_back(RawImage{.name = "ir_left"});
+  raw.grey = {.width = 3, .height = 2, .max_level = 255, .level = {0, 1, 2, 3, 4, 255}};
+  const Image image = raw_image(made.source(), "ir_left");
+  EXPECT_EQ(image.encoding, "mono8");
+  EXPECT_THAT(pixels<std::uint8_t>(image), ElementsAre(0, 1, 2, 3, 4, 255));
+  made.frame.raw_images[0].grey.max_level = 1023;
+  EXPECT_EQ(raw_image(made.source(), "ir_left").encoding, "mono16");
+  EXPECT_THAT(error_text([&] { raw_image(made.source(), "ir_right"); }),
+              HasSubstr("--depth-model physical"));
+}
+
+TEST(CameraInfoMessage, OfARightCameraHasTheBaselineInItsProjection) {
+  const Measured made = camera();
+  const CameraInfo info = camera_info(made.source(), "left", 0.05);
+  EXPECT_DOUBLE_EQ(info.p[3], -0.05 * info.k[0]);
+  EXPECT_EQ(camera_info(made.source()).p[3], 0.0);
+}
+
 TEST(CameraInfoMessage, HasTheModelsOfRos) {
   Measured made = camera();
   const CameraInfo plain = camera_info(made.source());
@@ -150,19 +188,21 @@ Measured scanner(Spinning::RotationDirection direction) {
   return measured(spinning, 10.0);
 }
 
-TEST(LaserScanMessage, AnglesGrowCounterClockwiseAndTimesFollow) {
+TEST(LaserScanMessage, OfAWholeTurnGoesFromMinusPiWithAPositiveTimeIncrement) {
   for (const auto direction :
        {Spinning::RotationDirection::clockwise, Spinning::RotationDirection::counterclockwise}) {
     Measured made = scanner(direction);
-    const bool clockwise = direction == Spinning::RotationDirection::clockwise;
+    made.sensor.limits.near_m = 0.25;
     made.sensor.limits.far_m = 50.0;
     const LaserScan scan = laser_scan(made.source(), 3);
     ASSERT_EQ(scan.ranges.size(), 8U);
     EXPECT_THAT(scan.ranges, Each(FloatEq(2.0F)));
     EXPECT_FLOAT_EQ(scan.angle_increment, static_cast<float>(std::numbers::pi / 4.0));
     EXPECT_NEAR(scan.angle_max - scan.angle_min, 7.0 * std::numbers::pi / 4.0, 1e-6);
-    EXPECT_NEAR(scan.time_increment, clockwise ? -0.0125 : 0.0125, 1e-9);
-    EXPECT_EQ(to_ns(scan.header.stamp), 5'000'000'000 + (clockwise ? 87'500'000 : 0));
+    EXPECT_NEAR(scan.angle_min, -std::numbers::pi, 1e-6);
+    EXPECT_NEAR(scan.time_increment, 0.0125, 1e-9);
+    EXPECT_EQ(to_ns(scan.header.stamp), 5'000'000'000);
+    EXPECT_FLOAT_EQ(scan.range_min, 0.25F);
     EXPECT_FLOAT_EQ(scan.scan_time, 0.1F);
     EXPECT_FLOAT_EQ(scan.range_max, 50.0F);
   }
@@ -170,7 +210,8 @@ TEST(LaserScanMessage, AnglesGrowCounterClockwiseAndTimesFollow) {
 
 TEST(LaserScanMessage, MissingReturnsFollowRep117) {
   Measured made = scanner(Spinning::RotationDirection::counterclockwise);
-  const std::size_t ring3 = ring_of(made.beams, 0) == 3 ? 0 : 8;
+  // the fifth of eight columns is at -pi, the first angle of the scan
+  const std::size_t ring3 = ring_of(made.beams, 0) == 3 ? 4 : 12;
   invalidate(made, ring3, Status::miss);
   invalidate(made, ring3 + 1, Status::too_near);
   invalidate(made, ring3 + 2, Status::dropped);
@@ -179,6 +220,26 @@ TEST(LaserScanMessage, MissingReturnsFollowRep117) {
   EXPECT_EQ(scan.ranges[1], -std::numeric_limits<float>::infinity());
   EXPECT_TRUE(std::isnan(scan.ranges[2]));
   EXPECT_FLOAT_EQ(scan.ranges[3], 2.0F);
+}
+
+/// Beams at a given azimuth have a range of 1 m plus a share of the angle.
+TEST(LaserScanMessage, EveryRangeIsAtTheAngleOfItsBeam) {
+  for (const auto direction :
+       {Spinning::RotationDirection::clockwise, Spinning::RotationDirection::counterclockwise}) {
+    for (const int turns : {0, 1, 2}) {
+      Measured made = scanner(direction);
+      for (std::size_t i = 0; i < made.beams.size(); ++i) {
+        const Eigen::Vector3d& d = made.beams.directions[i];
+        made.frame.range_m[i] = 10.0 + std::atan2(d.y(), d.x());
+      }
+      const LaserScan scan = laser_scan(made.source(), 3, "laser", turns);
+      for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+        const double angle = scan.angle_min + scan.angle_increment * static_cast<double>(i);
+        const double in_sensor = angle - 0.5 * std::numbers::pi * turns;
+        EXPECT_NEAR(std::cos(scan.ranges[i] - 10.0 - in_sensor), 1.0, 1e-9) << i << " " << turns;
+      }
+    }
+  }
 }
 
 TEST(LaserScanMessage, OtherPatternsAreErrors) {

@@ -1,0 +1,444 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""--as: bags have what the drivers of manufacturers publish, field by field, as an independent reader (rosbags) finds it.
+
+The expected values were read in the sources of the drivers:
+ros-drivers/velodyne 04a7ca7, ouster-lidar/ouster-ros f5c4ef8, ouster-lidar/ouster-sdk 46b7bce, Livox-SDK/livox_ros_driver2 13eb05e,
+HesaiTechnology/HesaiLidar_ROS_2.0 e7e112f, RoboSense-LiDAR/rslidar_sdk 78d2abb, realsenseai/realsense-ros 775b167,
+microsoft/Azure_Kinect_ROS_Driver 6ffb95a, Slamtec/sllidar_ros2 3430009."""
+
+import math
+import sys
+import unittest
+from pathlib import Path
+
+from cli_support import CliTest
+
+try:
+    import numpy as np
+    from rosbags.highlevel import AnyReader
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+
+ROOM = ("builtin:box:size=20,16,6", "--eye", "1,2,0", "--ground-truth")
+OPEN = ("builtin:box:size=4,4,4", "--eye", "6,0,0", "--ground-truth")  # most beams miss
+F32, F64, U8, U16, U32 = 7, 8, 2, 4, 6
+TYPES = {U8: "u1", U16: "<u2", U32: "<u4", F32: "<f4", F64: "<f8"}
+XYZI = [("x", 0, F32), ("y", 4, F32), ("z", 8, F32), ("intensity", 12, F32)]
+
+
+def stamp_s(message):
+    return message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+
+
+def stamp_ns(message):
+    return message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+
+
+def points(cloud):
+    """The points as a structured array in the shape of the message."""
+    kind = np.dtype({"names": [f.name for f in cloud.fields], "formats": [TYPES[f.datatype] for f in cloud.fields],
+                     "offsets": [f.offset for f in cloud.fields], "itemsize": cloud.point_step})
+    return np.frombuffer(bytes(cloud.data), kind).reshape(cloud.height, cloud.width)
+
+
+def layout(cloud):
+    return [(field.name, field.offset, field.datatype) for field in cloud.fields]
+
+
+def wrapped(angle):
+    return (np.asarray(angle) + np.pi) % (2 * np.pi) - np.pi
+
+
+def rotation(q):
+    x, y, z, w = q.x, q.y, q.z, q.w
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+class Drivers(CliTest):
+    def publish(self, *arguments, duration="0.1"):
+        """Messages by topic, with the time at which they were recorded."""
+        self.succeed("render", *arguments, "--duration", duration, "-o", "run.mcap")
+        found = {}
+        with AnyReader([Path(self.folder, "run.mcap")]) as reader:
+            for connection, time_ns, raw in reader.messages():
+                message = reader.deserialize(raw, connection.msgtype)
+                found.setdefault(connection.topic, []).append((time_ns, message))
+            self.qos = {c.topic: c.ext.offered_qos_profiles for c in reader.connections}
+        self.found = found
+        return found
+
+    def first(self, topic):
+        return self.found[topic][0][1]
+
+    def transforms(self):
+        return {t.child_frame_id: (t.header.frame_id, t.transform) for t in self.first("/tf_static").transforms}
+
+    def parents(self):
+        return {child: parent for child, (parent, _) in self.transforms().items()}
+
+    def matrix(self, frame):
+        """Pose of a frame in base_link."""
+        pose = np.eye(4)
+        while frame != "base_link":
+            parent, transform = self.transforms()[frame]
+            step = np.eye(4)
+            step[:3, :3] = rotation(transform.rotation)
+            step[:3, 3] = [transform.translation.x, transform.translation.y, transform.translation.z]
+            pose, frame = step @ pose, parent
+        return pose
+
+    def depth_of_queue(self, topic):
+        return [int(line.split(":")[1]) for line in str(self.qos[topic]).split("\n") if "depth:" in line] or [
+            profile.depth for profile in self.qos[topic]]
+
+    # -- velodyne ----------------------------------------------------------------------------------------------------
+
+    def test_velodyne_points_are_organised_with_times_before_the_stamp(self):
+        self.publish(*OPEN, "--sensor", "VLP-16", "--as", "velodyne", duration="0.2")
+        self.assertTrue({"/velodyne_points", "/velodyne_packets", "/scan"} <= set(self.found))
+        self.assertNotIn("/lidar/points", self.found)
+        record_ns, cloud = self.found["/velodyne_points"][0]
+        self.assertEqual(cloud.header.frame_id, "velodyne")
+        self.assertEqual(layout(cloud), [*XYZI, ("ring", 16, U16), ("time", 18, F32)])
+        self.assertEqual((cloud.point_step, cloud.width, cloud.is_dense), (22, 16, False))
+        self.assertIn(cloud.height, (1808, 1809))
+        data = points(cloud)
+        self.assertTrue((data["ring"] == np.arange(16)).all())
+        misses = np.isnan(data["x"])
+        self.assertGreater(misses.sum(), 1000)
+        self.assertTrue(np.isnan(data["intensity"][misses]).all())
+        self.assertTrue(np.isfinite(data["time"]).all())
+        self.assertLess(data["time"].min(), -0.098)
+        self.assertGreater(data["time"].max(), 0.0012)
+        self.assertLess(data["time"].max(), 0.00133)  # a packet
+        hits = ~misses
+        elevation = np.degrees(np.arctan2(data["z"], np.hypot(data["x"], data["y"])))
+        expected = np.broadcast_to(np.arange(-15, 16, 2), data.shape)
+        self.assertLess(np.abs(elevation - expected)[hits].max(), 0.05)
+        # azimuth 0 is +x, clockwise at 10 Hz; a packet is stamped when it is complete, after 24 firings of 55.296 us
+        fired_s = stamp_s(cloud) + data["time"].astype(float) - 24 * 55.296e-6
+        start_s = fired_s.min()
+        azimuth = np.arctan2(data["y"], data["x"])
+        self.assertLess(np.abs(wrapped(azimuth + 2 * np.pi * 10 * (fired_s - start_s)))[hits].max(), np.radians(0.05))
+        self.assertGreaterEqual(record_ns, stamp_ns(cloud))
+
+    def test_velodyne_scans_have_bins(self):
+        self.publish(*OPEN, "--sensor", "VLP-16", "--as", "velodyne")
+        scan = self.first("/scan")
+        self.assertEqual(scan.header, self.first("/velodyne_points").header)
+        self.assertAlmostEqual(scan.angle_min, -math.pi, 6)
+        self.assertAlmostEqual(scan.angle_max, math.pi, 6)
+        self.assertAlmostEqual(scan.angle_increment, 0.007, 7)
+        self.assertEqual((scan.time_increment, scan.range_min, scan.range_max), (0, 0, 200))
+        self.assertEqual(len(scan.ranges), 897)
+        self.assertTrue(np.isinf(scan.ranges).any())
+        cloud = points(self.first("/velodyne_points"))[:, 8]
+        hits = cloud[np.isfinite(cloud["x"])]
+        bins = ((np.arctan2(hits["y"], hits["x"]) + np.float32(np.pi)) / np.float32(0.007)).astype(int)
+        for index, x, y in zip(bins, hits["x"], hits["y"], strict=True):
+            near = scan.ranges[max(0, index - 1):index + 2]
+            self.assertLess(np.abs(near - math.hypot(x, y)).min(), 0.05)
+
+    def test_velodyne_leaves_out_ranges_beyond_its_limits(self):
+        self.publish("builtin:box:size=1,1,1", "--eye", "0,0,0", "--ground-truth", "--sensor", "VLP-16", "--as", "velodyne")
+        self.assertTrue(np.isnan(points(self.first("/velodyne_points"))["x"]).all())  # 0.5 to 0.87 m
+
+    # -- ouster ------------------------------------------------------------------------------------------------------
+
+    OUSTER = [("x", 0, F32), ("y", 4, F32), ("z", 8, F32), ("intensity", 16, F32), ("t", 20, U32),
+              ("reflectivity", 24, U16), ("ring", 26, U16), ("ambient", 28, U16), ("range", 32, U32)]
+
+    def test_ouster_points_are_destaggered_in_the_lidar_frame(self):
+        self.publish(*ROOM, "--sensor", "OS1-32", "--as", "ouster")
+        record_ns, cloud = self.found["/ouster/points"][0]
+        self.assertEqual(cloud.header.frame_id, "os_lidar")
+        self.assertEqual(layout(cloud), self.OUSTER)
+        self.assertEqual((cloud.point_step, cloud.height, cloud.width), (48, 32, 1024))
+        self.assertTrue(cloud.is_dense)
+        data = points(cloud)
+        self.assertTrue((data["ring"] == np.arange(32)[:, None]).all())
+        self.assertGreater(data["z"][0].mean(), data["z"][-1].mean())  # row 0 is the highest
+        azimuth = np.arctan2(data["y"], data["x"])
+        column = -2 * np.pi * np.arange(1024) / 1024  # 0 is +x, clockwise
+        self.assertLess(np.abs(wrapped(azimuth - column)).max(), np.radians(0.36 * 1.1))
+        self.assertEqual(data["t"].min(), 0)
+        self.assertLess(data["t"].max(), 10**8)
+        distance = np.sqrt(sum(data[axis].astype(float)**2 for axis in "xyz"))
+        self.assertLess(np.abs(distance * 1e3 - data["range"]).max(), 30)  # ranges count from near the axis
+        self.assertGreaterEqual(record_ns, stamp_ns(cloud) + data["t"].max())
+
+    def test_ouster_misses_are_nan_with_range_0(self):
+        self.publish(*OPEN, "--sensor", "OS1-32", "--as", "ouster")
+        cloud = self.first("/ouster/points")
+        data = points(cloud)
+        self.assertFalse(cloud.is_dense)
+        misses = np.isnan(data["x"])
+        self.assertTrue(misses.any() and not misses.all())
+        self.assertTrue((data["range"][misses] == 0).all())
+        self.assertTrue((data["range"][~misses] > 0).all())
+        self.assertGreater(np.unique(data["t"][misses]).size, 100)
+
+    def test_ouster_frames_images_and_imu(self):
+        self.publish(*ROOM, "--sensor", "OS1-32", "--imu", "ICM-20948", "--as", "ouster")
+        parent, transform = self.transforms()["os_lidar"]
+        self.assertEqual(parent, "os_sensor")
+        self.assertEqual((abs(transform.rotation.z), transform.rotation.w), (1, 0))
+        self.assertAlmostEqual(transform.translation.z, 0.03618, 9)
+        self.assertEqual(self.parents(), {"os_sensor": "base_link", "os_lidar": "os_sensor", "os_imu": "os_sensor"})
+        self.assertLess(np.abs(self.matrix("os_lidar")[:3, 3]).max(), 1e-9)  # the origin of the sensor
+        self.assertLess(np.abs(self.matrix("os_imu") - np.eye(4)).max(), 1e-9)
+        data = points(self.first("/ouster/points"))
+        ranges = self.first("/ouster/range_image")
+        self.assertEqual((ranges.encoding, ranges.height, ranges.width, ranges.header.frame_id),
+                         ("mono16", 32, 1024, "os_lidar"))
+        pixels = np.frombuffer(bytes(ranges.data), "<u2").reshape(32, 1024)
+        self.assertTrue((pixels == (data["range"] + 2) // 4).all())
+        for name in ("signal", "reflec", "nearir"):
+            self.assertEqual(self.first(f"/ouster/{name}_image").encoding, "mono16")
+        self.assertIn("lidar_data_format", self.first("/ouster/metadata").data)
+        imu = self.first("/ouster/imu")
+        self.assertEqual(imu.header.frame_id, "os_imu")
+        self.assertEqual((imu.orientation.x, imu.orientation.w), (0, 1))
+        self.assertTrue((imu.orientation_covariance == -1).all())
+        self.assertEqual(list(imu.linear_acceleration_covariance), [0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01])
+        self.assertEqual(list(imu.angular_velocity_covariance), [6e-4, 0, 0, 0, 6e-4, 0, 0, 0, 6e-4])
+        self.assertAlmostEqual(imu.linear_acceleration.z, 9.8, 0)
+        self.assertIn("2", str(self.qos["/ouster/points"][0].reliability))  # best effort
+
+    def test_ouster_scan_is_reversed(self):
+        self.publish(*ROOM, "--sensor", "OS1-32", "--as", "ouster")
+        scan = self.first("/ouster/scan")
+        self.assertEqual(scan.header.frame_id, "os_lidar")
+        self.assertAlmostEqual(scan.angle_increment, 2 * math.pi / 1024, 7)
+        self.assertAlmostEqual(scan.time_increment, 0.1 / 1024, 9)
+        self.assertAlmostEqual(scan.range_min, 0.1, 6)
+        self.assertEqual((scan.range_max, len(scan.ranges)), (120, 1024))
+        row = points(self.first("/ouster/points"))["range"][0] * 1e-3
+        expected = np.roll(row, -512)[::-1]
+        self.assertLess(np.abs(scan.ranges - expected).max(), 1e-5)
+
+    # -- livox -------------------------------------------------------------------------------------------------------
+
+    def test_livox_messages_have_all_points_and_the_stamp_of_the_first(self):
+        self.publish(*OPEN, "--sensor", "Livox-Mid-360", "--imu", "BMI088", "--as", "livox")
+        record_ns, message = self.found["/livox/lidar"][0]
+        self.assertEqual(type(message).__name__, "livox_ros_driver2__msg__CustomMsg")
+        self.assertEqual(message.header.frame_id, "livox_frame")
+        self.assertEqual(message.timebase, stamp_ns(message))
+        self.assertEqual((message.point_num, len(message.points)), (20000, 20000))
+        times = np.array([point.offset_time for point in message.points])
+        self.assertEqual(times[0], 0)
+        self.assertTrue((np.diff(times.astype(np.int64)) >= 0).all())
+        zeros = np.array([point.x == point.y == point.z == 0 for point in message.points])
+        self.assertTrue(zeros.any() and not zeros.all())
+        self.assertTrue((np.array([point.line for point in message.points]) == np.arange(20000) % 4).all())
+        self.assertGreaterEqual(record_ns, message.timebase + times[-1])
+        imu = self.first("/livox/imu")
+        self.assertEqual(imu.header.frame_id, "livox_frame")
+        self.assertAlmostEqual(imu.linear_acceleration.z, 1, 1)  # in g
+        self.assertEqual((imu.orientation.w, imu.orientation_covariance[0]), (1, 0))
+        self.assertFalse(np.any(imu.linear_acceleration_covariance))
+        self.assertEqual(self.parents(), {"livox_frame": "base_link"})
+
+    def test_livox_point_clouds_have_absolute_nanoseconds(self):
+        self.publish(*OPEN, "--sensor", "Livox-Mid-360", "--as", "livox", "--layout", "livox")
+        cloud = self.first("/livox/lidar")
+        self.assertEqual(layout(cloud), [*XYZI, ("tag", 16, U8), ("line", 17, U8), ("timestamp", 18, F64)])
+        self.assertEqual((cloud.point_step, cloud.height, cloud.is_dense), (26, 1, True))
+        self.assertEqual(points(cloud)["timestamp"].min(), stamp_ns(cloud))
+
+    # -- hesai -------------------------------------------------------------------------------------------------------
+
+    def test_hesai_points_have_the_time_of_their_packet_and_azimuth_0_on_y(self):
+        self.publish(*OPEN, "--sensor", "XT32", "--as", "hesai")
+        cloud = self.first("/lidar_points")
+        self.assertEqual(cloud.header.frame_id, "hesai_lidar")
+        self.assertEqual(layout(cloud), [*XYZI, ("ring", 16, U16), ("timestamp", 18, F64)])
+        self.assertEqual((cloud.point_step, cloud.height, cloud.is_dense), (26, 1, False))
+        data = points(cloud)[0]
+        self.assertEqual(data.size, 32 * 2000)
+        stamps, counts = np.unique(data["timestamp"], return_counts=True)
+        self.assertTrue((counts == 32 * 8).all())  # 8 blocks in a packet
+        self.assertLess(np.abs(np.diff(stamps) - 8 * 50e-6).max(), 2e-6)
+        self.assertLess(abs(data["timestamp"].min() - stamp_s(cloud)), 2e-6)
+        zeros = (data["x"] == 0) & (data["y"] == 0) & (data["z"] == 0)
+        self.assertTrue(zeros.any() and not zeros.all())
+        hits = ~zeros
+        azimuth = np.arctan2(data["x"], data["y"])  # 0 is +y, clockwise
+        fired_s = np.arange(data.size) // 32 * 50e-6
+        self.assertLess(np.abs(wrapped(azimuth - 2 * np.pi * 10 * fired_s))[hits].max(), np.radians(0.3))
+        elevation = np.degrees(np.arctan2(data["z"], np.hypot(data["x"], data["y"])))
+        self.assertLess(np.abs(elevation - (15 - data["ring"].astype(float)))[hits].max(), 0.05)  # 0 is the highest
+
+    def test_hesai_points_are_at_the_same_place_of_the_rig(self):
+        scene = ROOM + ("--sensor", "XT32")
+        self.publish(*scene)
+        plain = points(self.first("/lidar/points"))[0]
+        self.publish(*scene, "--layout", "hesai")
+        turned = points(self.first("/lidar/points"))[0]
+        self.assertTrue((turned["x"] == -plain["y"]).all())
+        self.assertTrue((turned["y"] == plain["x"]).all())
+        pose = self.matrix(self.first("/lidar/points").header.frame_id)
+        xyz = np.stack([turned[axis] for axis in "xyz"])
+        self.assertLess(np.abs(pose[:3, :3] @ xyz - np.stack([plain[axis] for axis in "xyz"])).max(), 1e-5)
+
+    # -- robosense ---------------------------------------------------------------------------------------------------
+
+    def test_robosense_points_are_organised_by_columns(self):
+        self.publish(*OPEN, "--sensor", "RS-LiDAR-16", "--as", "robosense")
+        cloud = self.first("/rslidar_points")
+        self.assertEqual(cloud.header.frame_id, "rslidar")
+        self.assertEqual(layout(cloud), XYZI)
+        self.assertEqual((cloud.point_step, cloud.width, cloud.is_dense), (16, 16, False))
+        data = points(cloud)
+        misses = np.isnan(data["x"])
+        self.assertTrue(misses.any() and not misses.all())
+        self.assertFalse(np.any(data["intensity"][misses]))
+        azimuth = np.where(misses, np.nan, np.arctan2(data["y"], data["x"]))
+        rows = np.nanmedian(azimuth, axis=1)
+        steps = np.diff(rows[np.isfinite(rows)])
+        self.assertLess(np.median(steps), 0)  # clockwise
+        self.publish(*OPEN, "--sensor", "RS-LiDAR-16", "--as", "robosense", "--layout", "robosense")
+        self.assertEqual(layout(self.first("/rslidar_points")), [*XYZI, ("ring", 16, U16), ("timestamp", 18, F64)])
+
+    # -- depth cameras -----------------------------------------------------------------------------------------------
+
+    def test_realsense_streams_and_frames(self):
+        self.publish(*ROOM, "--sensor", "D435", "--as", "realsense")
+        base = "/camera/camera/"
+        depth = self.first(base + "depth/image_rect_raw")
+        self.assertEqual((depth.encoding, depth.header.frame_id), ("16UC1", "camera_depth_optical_frame"))
+        info = self.first(base + "depth/camera_info")
+        self.assertEqual((info.header.frame_id, info.distortion_model, len(info.d)),
+                         ("camera_depth_optical_frame", "plumb_bob", 5))
+        self.assertEqual([info.p[0], info.p[2], info.p[5], info.p[6]], [info.k[0], info.k[2], info.k[4], info.k[5]])
+        colour = self.first(base + "color/image_raw")
+        self.assertEqual((colour.encoding, colour.header.frame_id), ("rgb8", "camera_color_optical_frame"))
+        self.assertEqual(self.first(base + "color/camera_info").header.frame_id, "camera_color_optical_frame")
+        aligned = self.first(base + "aligned_depth_to_color/image_raw")
+        self.assertEqual(aligned.header.frame_id, "camera_color_optical_frame")
+        cloud = self.first(base + "depth/color/points")
+        self.assertEqual(layout(cloud), [("x", 0, F32), ("y", 4, F32), ("z", 8, F32), ("rgb", 16, F32)])
+        self.assertEqual((cloud.point_step, cloud.height, cloud.is_dense), (20, 1, True))
+        self.assertEqual(cloud.header.frame_id, "camera_depth_optical_frame")
+        self.assertEqual(self.parents(), {
+            "camera_link": "base_link", "camera_depth_frame": "camera_link",
+            "camera_depth_optical_frame": "camera_depth_frame", "camera_color_frame": "camera_link",
+            "camera_color_optical_frame": "camera_color_frame"})
+        # x of the body is z of the optical frame, z up is -y
+        optical = self.matrix("camera_depth_optical_frame")[:3, :3]
+        self.assertLess(np.abs(optical - [[0, 0, 1], [-1, 0, 0], [0, -1, 0]]).max(), 1e-9)
+        pixels = np.frombuffer(bytes(depth.data), "<u2").reshape(depth.height, depth.width)
+        v, u = np.nonzero(pixels)
+        z = pixels[v, u] * 1e-3
+        xyz = np.stack([(u - info.k[2]) / info.k[0] * z, (v - info.k[5]) / info.k[4] * z, z])
+        data = points(cloud)[0]
+        self.assertEqual(data.size, z.size)
+        self.assertLess(np.abs(xyz - np.stack([data[axis] for axis in "xyz"])).max(), 0.002)
+
+    def test_realsense_infrared_images_have_a_baseline(self):
+        self.publish(*ROOM[:3], "--sensor", "D435", "--depth-model", "physical", "--as", "realsense", duration="0.03")
+        base = "/camera/camera/"
+        for name in ("infra1", "infra2"):
+            image = self.first(f"{base}{name}/image_rect_raw")
+            self.assertEqual((image.encoding, image.header.frame_id), ("mono8", f"camera_{name}_optical_frame"))
+        left, right = self.first(base + "infra1/camera_info"), self.first(base + "infra2/camera_info")
+        self.assertEqual(left.p[3], 0)
+        self.assertAlmostEqual(-right.p[3] / right.p[0], 0.05, 3)
+        self.assertEqual(right.header.frame_id, "camera_infra1_optical_frame")
+        baseline = self.matrix("camera_infra2_optical_frame") - self.matrix("camera_infra1_optical_frame")
+        self.assertAlmostEqual(baseline[1, 3], right.p[3] / right.p[0], 9)  # to the right: -y of the body
+
+    def test_realsense_imu_has_optical_axes(self):
+        self.publish(*ROOM, "--sensor", "D435", "--imu", "BMI088", "--as", "realsense")
+        imu = self.first("/camera/camera/imu")
+        self.assertEqual((imu.orientation.w, imu.orientation_covariance[0]), (0, -1))
+        self.assertEqual(imu.linear_acceleration_covariance[0], 0.01)
+        self.assertEqual(imu.angular_velocity_covariance[0], 0.01)
+        self.assertEqual(imu.header.frame_id, "camera_imu_optical_frame")
+
+    def test_azure_streams_and_frames(self):
+        self.publish(*ROOM, "--sensor", "Azure-Kinect-NFOV", "--as", "azure")
+        depth = self.first("/depth/image_raw")
+        self.assertEqual((depth.encoding, depth.header.frame_id), ("16UC1", "depth_camera_link"))
+        self.assertEqual(self.first("/rgb/image_raw").encoding, "bgra8")
+        self.assertEqual(self.first("/rgb/image_raw").header.frame_id, "rgb_camera_link")
+        self.assertEqual(self.first("/ir/image_raw").encoding, "mono16")
+        for name in ("rgb", "depth", "depth_to_rgb", "rgb_to_depth", "ir"):
+            self.assertIn(f"/{name}/camera_info", self.found)
+        cloud = self.first("/points2")
+        self.assertEqual(layout(cloud), [("x", 0, F32), ("y", 4, F32), ("z", 8, F32), ("rgb", 16, F32)])
+        self.assertEqual((cloud.point_step, cloud.is_dense, cloud.header.frame_id), (32, False, "rgb_camera_link"))
+        self.assertEqual((cloud.height, cloud.width), (depth.height, depth.width))
+        self.assertEqual(self.parents(), {"camera_base": "base_link", "depth_camera_link": "camera_base",
+                                          "rgb_camera_link": "depth_camera_link"})
+        _, transform = self.transforms()["depth_camera_link"]
+        self.assertAlmostEqual(transform.translation.z, 0.0018, 9)
+        forward = rotation(transform.rotation)[:, 2]  # the optical axis, 6 degrees down
+        self.assertLess(np.abs(forward - [math.cos(math.radians(6)), 0, -math.sin(math.radians(6))]).max(), 1e-9)
+
+    # -- rplidar -----------------------------------------------------------------------------------------------------
+
+    def test_rplidar_scan_has_bins_and_a_positive_time_increment(self):
+        self.publish("builtin:box:size=6,4,2", "--eye", "1,0,0", "--ground-truth", "--sensor", "RPLIDAR-A2M8", "--as", "rplidar")
+        record_ns, scan = self.found["/scan"][0]
+        self.assertEqual(scan.header.frame_id, "laser")
+        self.assertNotIn("/lidar/points", self.found)
+        count = 360 * 3  # 800 points of a turn: 2 in a degree, and one more
+        self.assertEqual(len(scan.ranges), count)
+        self.assertAlmostEqual(scan.angle_min, -math.pi, 6)
+        self.assertAlmostEqual(scan.angle_max, math.pi, 6)
+        self.assertAlmostEqual(scan.angle_increment, 2 * math.pi / (count - 1), 8)
+        self.assertAlmostEqual(scan.time_increment, scan.scan_time / (count - 1), 8)
+        self.assertAlmostEqual(scan.range_min, 0.05, 6)
+        self.assertEqual(scan.range_max, 12)
+        self.assertEqual(stamp_ns(scan), self.found["/clock"][0][0])  # the start of the turn
+        self.assertEqual(record_ns, stamp_ns(scan) + 10**8)
+        # zero of the device is at the ends of the array: the wall 2 m ahead; 4 m behind; 2 m to both sides
+        self.assertAlmostEqual(scan.ranges[0], 2, 2)
+        self.assertAlmostEqual(scan.ranges[-1], 2, 2)
+        self.assertAlmostEqual(scan.ranges[count // 2], 4, 2)
+        self.assertLess(np.abs(self.matrix("laser")[:3, :3] - np.diag([-1, -1, 1])).max(), 1e-9)
+
+    # -- rigs and errors ---------------------------------------------------------------------------------------------
+
+    RIG = """models: [{model: "builtin:box:size=20,16,6"}]
+sensors:
+  - {name: front, sensor: VLP-16, pose: {position: [1, 0, 0]}}
+  - {name: rear, sensor: VLP-16, pose: {position: [-1, 0, 0]}}
+  - {name: camera, sensor: D435, pose: {position: [0, 0, 1]}}
+imus: [{name: imu, imu: BMI088}]
+"""
+
+    def test_two_sensors_of_a_driver_have_namespaces(self):
+        self.write("rig.yaml", self.RIG)
+        self.publish("rig.yaml", "--as", "velodyne", "--as", "camera=realsense")
+        self.assertTrue({"/front/velodyne_points", "/rear/velodyne_points", "/front/scan",
+                         "/camera/camera/depth/image_rect_raw", "/camera/camera/imu"} <= set(self.found))
+        self.assertEqual(self.first("/rear/velodyne_points").header.frame_id, "rear_velodyne")
+        self.assertEqual(self.matrix("rear_velodyne")[0, 3], -1)
+        self.publish("rig.yaml", "--as", "front=velodyne", "--frame-prefix", "robot1/", duration="0.1")
+        self.assertTrue({"/velodyne_points", "/rear/points"} <= set(self.found))
+        frames = {name for t in self.first("/tf_static").transforms for name in (t.header.frame_id, t.child_frame_id)}
+        self.assertTrue(all(name.startswith("robot1/") for name in frames))
+        self.assertEqual(self.first("/velodyne_points").header.frame_id, "robot1/velodyne")
+
+    def test_drivers_must_suit_a_sensor(self):
+        room = ("render", *ROOM, "-o", "x.mcap")
+        self.assertIn("a spinning LiDAR", self.refused(*room, "--sensor", "D435", "--as", "velodyne"))
+        self.assertIn("a scanner with one row", self.refused(*room, "--sensor", "VLP-16", "--as", "rplidar"))
+        self.assertIn("did you mean 'velodyne'?", self.refused(*room, "--sensor", "VLP-16", "--as", "velodine"))
+        self.assertIn("no such sensor 'top'", self.refused(*room, "--sensor", "VLP-16", "--as", "top=velodyne"))
+        self.assertIn("--columns", self.refused(*room, "--sensor", "VLP-16", "--as", "velodyne", "--columns", "xyz"))
+        self.assertIn("--as: no output has ROS messages",
+                      self.refused("render", *ROOM, "--sensor", "VLP-16", "--as", "velodyne", "-o", "x.pcd"))
+        self.assertFalse(Path(self.folder, "x.mcap").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
