@@ -43,7 +43,7 @@ optics:
   const auto& s = std::get<Spinning>(sensor.optics);
   EXPECT_EQ(s.rotation_hz, 20.0);
   EXPECT_EQ(s.rotation_direction, Spinning::RotationDirection::counterclockwise);
-  EXPECT_DOUBLE_EQ(s.start_azimuth_rad, 90 * kDegree);
+  EXPECT_DOUBLE_EQ(s.start_azimuth_rad.value(), 90 * kDegree);
   EXPECT_EQ(s.firing_period_ns, 50'000.0);
   ASSERT_EQ(s.channels.size(), 2U);
   EXPECT_DOUBLE_EQ(s.channels[0].elevation_rad, -10 * kDegree);

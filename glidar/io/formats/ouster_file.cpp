@@ -97,7 +97,7 @@ void apply_column_window(const nlohmann::json& all, const std::string& file, Spi
   const double count = std::fmod(last - first + columns, columns) + 1.0;
   s.azimuth_width_rad = kTwoPi * count / columns;
   // half a column beyond the last one, so that rounding cannot lose a column at either end
-  s.azimuth_start_rad = s.start_azimuth_rad - kTwoPi * (first + count - 0.5) / columns;
+  s.azimuth_start_rad = azimuth_at_start_rad(s) - kTwoPi * (first + count - 0.5) / columns;
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ RevolutionAssembler::RevolutionAssembler(const Sensor& sensor, bool follow_rotat
 
 double RevolutionAssembler::phase(double azimuth_rad) const {
   const double sign = turn_rate_rad_per_ns(spinning_) < 0.0 ? -1.0 : 1.0;
-  const double turned = std::fmod(sign * (azimuth_rad - spinning_.start_azimuth_rad), kTwoPi);
+  const double turned = std::fmod(sign * (azimuth_rad - azimuth_at_start_rad(spinning_)), kTwoPi);
   return turned < 0.0 ? turned + kTwoPi : turned;
 }
 

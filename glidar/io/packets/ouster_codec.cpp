@@ -19,7 +19,7 @@ constexpr std::uint64_t kMaxInitId = (1U << 24U) - 1U;
 
 /// Number of the column: the encoder angle is 2 pi (1 - number / columns per turn).
 std::uint16_t measurement_of(const Spinning& spinning, double azimuth_rad) {
-  const double turned = (spinning.start_azimuth_rad - azimuth_rad) / kTwoPi;
+  const double turned = (azimuth_at_start_rad(spinning) - azimuth_rad) / kTwoPi;
   const double share = turned - std::floor(turned);
   const long number = std::lround(share * spinning.columns_per_turn);
   return static_cast<std::uint16_t>(number % static_cast<long>(spinning.columns_per_turn));
@@ -138,7 +138,7 @@ class OusterDecoder final : public PacketDecoder {
     FiringSequence sequence;
     sequence.stamp_ns = static_cast<std::int64_t>(column.stamp_ns);
     sequence.azimuth_rad =
-        spinning.start_azimuth_rad - kTwoPi * column.measurement / spinning.columns_per_turn;
+        azimuth_at_start_rad(spinning) - kTwoPi * column.measurement / spinning.columns_per_turn;
     const bool has_signal = source_.format.profile != OusterProfile::rng15_rfl8_nir8;
     for (const OusterPixel& pixel : column.pixels) {
       const double value = has_signal ? pixel.signal : pixel.reflectivity;

@@ -74,17 +74,17 @@ std::vector<int> pixel_shifts(const Spinning& spinning) {
   return shifts;
 }
 
+/// The first and the last column in the sector.
 std::vector<std::uint32_t> column_window(const Spinning& spinning) {
   const std::uint32_t columns = spinning.columns_per_turn;
-  if (spinning.azimuth_width_rad >= kTwoPi) return {0, columns - 1};
-  const double step = kTwoPi / columns;
-  const auto number = [&](double azimuth_rad) {
-    const double at = (spinning.start_azimuth_rad - azimuth_rad) / step;
-    const double wrapped = std::fmod(std::fmod(at, columns) + columns, columns);
-    return static_cast<std::uint32_t>(wrapped);
-  };
-  const double end_rad = spinning.azimuth_start_rad + spinning.azimuth_width_rad;
-  return {(number(end_rad) + 1) % columns, number(spinning.azimuth_start_rad)};
+  std::vector<std::uint32_t> window = {0, columns - 1};
+  for (std::uint32_t column = 0; column < columns; ++column) {
+    const auto k = std::int64_t{column};
+    if (!is_in_sector(spinning, k)) continue;
+    if (!is_in_sector(spinning, k - 1)) window[0] = column;
+    if (!is_in_sector(spinning, k + 1)) window[1] = column;
+  }
+  return window;
 }
 
 Json config_of(const Sensor& sensor, const OusterFormat& format, const OusterIdentity& identity) {

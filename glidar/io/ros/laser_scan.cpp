@@ -61,8 +61,10 @@ double spacing_of(const std::vector<ScanBeam>& scan, std::uint16_t ring) {
   for (std::size_t i = 1; i < scan.size(); ++i) {
     const double angle = scan[i].angle_rad - scan[i - 1].angle_rad;
     if (std::abs(angle - spacing) <= kTolerance * std::abs(spacing)) continue;
-    throw Error({where, fmt::format("beams {:.6g} and {:.6g} rad apart", angle, spacing),
-                 "equal angles between neighbours", "publish a cloud instead"});
+    throw Error(
+        {where, fmt::format("beams {:.6g} and {:.6g} rad apart", angle, spacing),
+         "equal angles between neighbours",
+         "let the frame start at an end of the sector (start_azimuth_deg), or publish a cloud"});
   }
   return spacing;
 }

@@ -47,8 +47,8 @@ void validate(const Spinning& s) {
                  "optics, number of channels", static_cast<double>(s.channels.size()), "1 to 4096");
   require_number(s.rotation_hz > 0.0 && s.rotation_hz <= kMaxTurns_hz, "optics, rotation",
                  s.rotation_hz, "above 0, up to 1e4 turns per second");
-  require_number(std::isfinite(s.start_azimuth_rad), "optics, start azimuth", s.start_azimuth_rad,
-                 "a finite angle");
+  require_number(std::isfinite(s.start_azimuth_rad.value_or(0.0)), "optics, start azimuth",
+                 s.start_azimuth_rad.value_or(0.0), "a finite angle");
   require_number(std::abs(s.beam_origin_m) <= 1e3, "optics, beam origin", s.beam_origin_m,
                  "-1000 to 1000 m");
   require_number(std::isfinite(s.azimuth_start_rad) && s.azimuth_width_rad > 0.0,
@@ -84,15 +84,14 @@ double rotation_sign(const Spinning& s) {
   return s.rotation_direction == Spinning::RotationDirection::clockwise ? -1.0 : 1.0;
 }
 
-/// Azimuth of the head at the start of sequence k.
-double head_azimuth_rad(const Spinning& s, std::int64_t k) {
-  return s.start_azimuth_rad + rotation_sign(s) * kTwoPi * turn_fraction(s, k);
+/// The angle between sequences, as a fraction of a turn.
+double step_turns(const Spinning& s) {
+  return sequence_period_ns(s) * s.rotation_hz / kSecond_ns;
 }
 
-bool is_in_sector(const Spinning& s, double azimuth_rad) {
-  if (s.azimuth_width_rad >= kTwoPi) return true;
-  const double into = std::fmod(azimuth_rad - s.azimuth_start_rad, kTwoPi);
-  return (into < 0.0 ? into + kTwoPi : into) <= s.azimuth_width_rad;
+/// Turns the head by a fraction of a turn from its azimuth at time 0.
+double head_azimuth_rad(const Spinning& s, double turns) {
+  return azimuth_at_start_rad(s) + rotation_sign(s) * kTwoPi * turns;
 }
 
 /// The loop of sequence k, which may be negative.
@@ -119,7 +118,7 @@ std::vector<std::int64_t> sequences_in(const Spinning& s, const FrameInterval& i
   std::vector<std::int64_t> sequences;
   sequences.reserve(range.size());
   for (std::int64_t k = range.begin; k < range.end; ++k) {
-    if (is_in_sector(s, head_azimuth_rad(s, k))) sequences.push_back(k);
+    if (is_in_sector(s, k)) sequences.push_back(k);
   }
   return sequences;
 }
@@ -184,7 +183,7 @@ FiringColumns columns_of(const Spinning& s, const std::vector<std::int64_t>& seq
     if (!s.firing_loops.empty() && loop_of(s, k) != loop) continue;
     columns.indices.push_back(col);
     columns.sequences.push_back(k);
-    columns.starts_rad.push_back(head_azimuth_rad(s, k));
+    columns.starts_rad.push_back(head_azimuth_rad(s, turn_fraction(s, k)));
   }
   return columns;
 }
@@ -265,6 +264,17 @@ void set_rings(const Spinning& s, Beams& beams) {
     beams.rings[i] = s.channels[rows[i / beams.cols]].ring;
 }
 
+void visit_start_azimuth(FieldVisitor& visitor, Spinning& s) {
+  constexpr NumberRule kAzimuth = {-360.0, 360.0, false, "degrees from -360 to 360"};
+  if (visitor.is_document() && !s.start_azimuth_rad) return;
+  double azimuth_rad =
+      visitor.is_report() ? azimuth_at_start_rad(s) : s.start_azimuth_rad.value_or(0.0);
+  visitor.number({"start_azimuth_deg", "direction of the head at time 0", kUnitDegree, false,
+                  "0; the start of the sweep with `azimuth_range`"},
+                 kAzimuth, azimuth_rad);
+  if (visitor.is_reading() && visitor.has("start_azimuth_deg")) s.start_azimuth_rad = azimuth_rad;
+}
+
 /// What starts a firing sequence: the encoder or a clock.
 void visit_column_timing(FieldVisitor& visitor, Spinning& s) {
   visitor.at_most_one({{"columns_per_turn", "firing_period_us"},
@@ -287,6 +297,27 @@ void visit_column_timing(FieldVisitor& visitor, Spinning& s) {
 double sequence_period_ns(const Spinning& s) {
   return s.columns_per_turn > 0 ? kSecond_ns / (s.rotation_hz * s.columns_per_turn)
                                 : s.firing_period_ns;
+}
+
+double azimuth_at_start_rad(const Spinning& s) {
+  if (s.start_azimuth_rad) return *s.start_azimuth_rad;
+  if (s.azimuth_width_rad >= kTwoPi) return 0.0;
+  const bool is_clockwise = s.rotation_direction == Spinning::RotationDirection::clockwise;
+  const double first_rad = s.azimuth_start_rad + (is_clockwise ? s.azimuth_width_rad : 0.0);
+  // a sequence at time 0 whose first channel fires earlier would be in the frame before
+  const double late = std::max(0.0, std::ceil(-first_firing_ns(s) / sequence_period_ns(s)));
+  return first_rad - rotation_sign(s) * kTwoPi * late * step_turns(s);
+}
+
+bool is_in_sector(const Spinning& s, std::int64_t k) {
+  constexpr double kTolerance = 1e-3;  // of a step
+  const double tolerance = kTolerance * step_turns(s);
+  const double width = s.azimuth_width_rad / kTwoPi;
+  if (width + 2.0 * tolerance >= 1.0) return true;
+  const double from_start =
+      (head_azimuth_rad(s, turn_fraction(s, k)) - s.azimuth_start_rad) / kTwoPi;
+  const double into = from_start - std::floor(from_start);
+  return into <= width + tolerance || into >= 1.0 - tolerance;
 }
 
 Beams make_beams(const Spinning& s, const FrameInterval& interval) {
@@ -325,14 +356,12 @@ void describe(Spinning& s, FieldVisitor& visitor) {
   using Direction = Spinning::RotationDirection;
   constexpr std::array<Named<Direction>, 2> kDirections = {
       {{"clockwise", Direction::clockwise}, {"counterclockwise", Direction::counterclockwise}}};
-  constexpr NumberRule kAzimuth = {-360.0, 360.0, false, "degrees from -360 to 360"};
   constexpr NumberRule kOffset = {-1e4, 1e4, false, "millimetres from -1e4 to 1e4"};
   if (visitor.is_report())
     visitor.number({"rotation_hz", "turns per second", kUnitHertz}, kAboveZero, s.rotation_hz);
   visit_choice(visitor, {"rotation_direction", "rotation seen from above"}, kDirections,
                s.rotation_direction);
-  visitor.number({"start_azimuth_deg", "direction of the head at time 0", kUnitDegree}, kAzimuth,
-                 s.start_azimuth_rad);
+  visit_start_azimuth(visitor, s);
   visit_column_timing(visitor, s);
   visitor.number(
       {"beam_origin_mm",

@@ -7,6 +7,7 @@
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
 #include <numbers>
+#include <optional>
 
 namespace glidar {
 
@@ -37,7 +38,9 @@ struct Spinning {
   std::vector<SpinningChannel> channels;
   double rotation_hz = 10.0;  ///< revolutions per second
   RotationDirection rotation_direction = RotationDirection::clockwise;
-  double start_azimuth_rad = 0.0;  ///< azimuth of the head at time 0
+  /// Azimuth of the head at time 0. Empty: such that time 0 starts a sweep of the sector; 0 for a
+  /// whole turn.
+  std::optional<double> start_azimuth_rad = {};
   /// Firing sequences per revolution, triggered by the encoder at equal angles; 0: by a clock.
   std::uint32_t columns_per_turn = 0;
   double firing_period_ns = 0.0;  ///< period of the sequences, if triggered by a clock
@@ -45,7 +48,8 @@ struct Spinning {
   /// the axis (Ouster: lidar_origin_to_beam_origin).
   double beam_origin_m = 0.0;
   /// Sequences fire only while the head's azimuth is in this sector: from its first azimuth, its
-  /// width to the left.
+  /// width to the left. Both ends belong to it, also when they are rounded by up to a thousandth of
+  /// the angle between sequences.
   double azimuth_start_rad = 0.0;
   double azimuth_width_rad = 2.0 * std::numbers::pi;
   /// Loops that take turns: sequence k fires loop k mod n. Empty: every sequence fires all channels
@@ -70,5 +74,11 @@ Beams make_beams(const Spinning& spinning, const FrameInterval& interval);
 
 /// Period of the firing sequences, nanoseconds.
 double sequence_period_ns(const Spinning& spinning);
+
+/// Whether the head is in the sector at the start of sequence k, which may be negative.
+bool is_in_sector(const Spinning& spinning, std::int64_t k);
+
+/// Azimuth of the head at time 0.
+double azimuth_at_start_rad(const Spinning& spinning);
 
 }  // namespace glidar

@@ -128,8 +128,8 @@ Sensor sector_sensor(const std::string& optics) {
 }
 
 TEST(BeamPicture, ASectorThatStartsInTheMiddleIsOneGrid) {
-  const Sensor sensor =
-      sector_sensor("elevation_deg: [4, 2, 0], azimuth_range: {from_deg: -60, to_deg: 60}");
+  const Sensor sensor = sector_sensor(
+      "elevation_deg: [4, 2, 0], start_azimuth_deg: 0, azimuth_range: {from_deg: -60, to_deg: 60}");
   const Beams beams = make_beams(sensor);
   const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
   ASSERT_EQ(picture.kind, BeamPicture::Kind::grid);

@@ -208,6 +208,21 @@ TEST(LaserScanMessage, OfAWholeTurnGoesFromMinusPiWithAPositiveTimeIncrement) {
   }
 }
 
+TEST(LaserScanMessage, ASectorIsOneScan) {
+  Spinning sector;
+  sector.channels = {{.elevation_rad = 0.0, .ring = 0}};
+  sector.columns_per_turn = 1440;
+  sector.azimuth_start_rad = -0.75 * std::numbers::pi;
+  sector.azimuth_width_rad = 1.5 * std::numbers::pi;
+  const LaserScan scan = laser_scan(measured(sector, 10.0).source(), 0);
+  EXPECT_EQ(scan.ranges.size(), 1081U);
+  EXPECT_NEAR(scan.angle_min, -0.75 * std::numbers::pi, 1e-6);
+  EXPECT_NEAR(scan.angle_max, 0.75 * std::numbers::pi, 1e-6);
+  sector.start_azimuth_rad = 0.0;
+  EXPECT_THAT(error_text([&] { laser_scan(measured(sector, 10.0).source(), 0); }),
+              HasSubstr("start_azimuth_deg"));
+}
+
 TEST(LaserScanMessage, MissingReturnsFollowRep117) {
   Measured made = scanner(Spinning::RotationDirection::counterclockwise);
   // the fifth of eight columns is at -pi, the first angle of the scan

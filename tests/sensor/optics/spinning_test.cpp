@@ -175,6 +175,84 @@ TEST(Spinning, FiresOnlyInItsSector) {
   }
 }
 
+/// One channel with `columns` a turn and a sector between two sixths of a column, converted from
+/// degrees as files are.
+Spinning sector(std::uint32_t columns, std::int64_t from_sixths, std::int64_t to_sixths) {
+  Spinning s;
+  s.channels.resize(1);
+  s.columns_per_turn = columns;
+  const auto degrees = [&](std::int64_t sixths) {
+    return static_cast<double>(sixths * 60) / static_cast<double>(columns);
+  };
+  s.azimuth_start_rad = degrees(from_sixths) * kDegree;
+  s.azimuth_width_rad = (degrees(to_sixths) - degrees(from_sixths)) * kDegree;
+  return s;
+}
+
+std::int64_t floor_sixth(std::int64_t sixths) {
+  return sixths >= 0 ? sixths / 6 : -((-sixths + 5) / 6);
+}
+
+void expect_columns(Spinning s, std::int64_t from, std::int64_t to) {
+  const std::int64_t frame_ns = kSecond_ns / 10;
+  for (const std::int64_t frame : {0, 1, 123'457}) {
+    const FrameInterval turn = {frame * frame_ns, (frame + 1) * frame_ns};
+    s.start_azimuth_rad.reset();
+    EXPECT_EQ(make_beams(s, turn).cols, (to - from) / 6 + 1)
+        << from << " to " << to << " sixths of " << s.columns_per_turn;
+    s.start_azimuth_rad = 0.0;
+    EXPECT_EQ(make_beams(s, turn).cols, floor_sixth(to) + floor_sixth(-from) + 1)
+        << from << " to " << to << " sixths of " << s.columns_per_turn << " from 0";
+  }
+}
+
+TEST(Spinning, BothEndsOfEverySectorOfRationalStepsBelongToIt) {
+  for (const std::uint32_t columns : {36U, 360U, 720U, 1024U, 1080U, 1440U, 1800U, 3600U}) {
+    const std::int64_t turn = 6 * std::int64_t{columns};
+    const std::int64_t stride = std::max<std::int64_t>(1, turn / 720);
+    for (std::int64_t half = stride; 2 * half < turn - 6; half += stride)
+      expect_columns(sector(columns, -half, half), -half, half);
+    for (std::int64_t from = -turn; from < turn; from += 53 * stride)
+      expect_columns(sector(columns, from, from + 6 * 17), from, from + 6 * 17);
+  }
+}
+
+TEST(Spinning, AWholeTurnHasEachColumnOnce) {
+  for (const std::uint32_t columns : {360U, 1024U, 1080U})
+    for (const std::int64_t from : {-1080, -77, 0, 5})
+      EXPECT_EQ(make_beams(sector(columns, from, from + 6 * columns), {0, kSecond_ns / 10}).cols,
+                columns);
+}
+
+TEST(Spinning, ColumnsBesideTheSectorAreOutside) {
+  Spinning s = sector(360, -60, 60);
+  s.start_azimuth_rad = 0.0;
+  s.azimuth_start_rad += 0.01 * kDegree;
+  s.azimuth_width_rad -= 0.02 * kDegree;
+  EXPECT_EQ(make_beams(s, {0, kSecond_ns / 10}).cols, 19U);
+}
+
+TEST(Spinning, AFrameIsOneSweepOfTheSector) {
+  using Direction = Spinning::RotationDirection;
+  for (const Direction direction : {Direction::clockwise, Direction::counterclockwise}) {
+    for (const double fire_time_ns : {0.0, -1.0, -54'670.0, -700'000.0, 40'000.0}) {
+      Spinning s = sector(1440, -540 * 6, 540 * 6);
+      s.rotation_direction = direction;
+      s.channels[0].fire_time_ns = fire_time_ns;
+      const Beams beams = make_beams(s, {kSecond_ns / 10, kSecond_ns / 5});
+      ASSERT_EQ(beams.cols, 1081U);
+      const double sign = direction == Direction::clockwise ? -1.0 : 1.0;
+      const double turned_deg = sign * 3600.0 * fire_time_ns * 1e-9;
+      for (std::size_t i = 0; i < beams.cols; ++i) {
+        const double azimuth_deg = sign * (0.25 * static_cast<double>(i) - 135.0) + turned_deg;
+        ASSERT_LT((beams.directions[i] - direction_at(azimuth_deg * kDegree, 0.0)).norm(), 1e-12);
+        ASSERT_NEAR(beams.times_ns[i] - beams.times_ns[0], static_cast<double>(i) * 1e8 / 1440,
+                    1.0);
+      }
+    }
+  }
+}
+
 TEST(Spinning, BeamsStartAtTheirOffsets) {
   Spinning s = puck();
   s.channels.resize(1);
