@@ -88,6 +88,7 @@ void invalidate_return(Frame& frame, std::size_t entry, Status why) {
   frame.status[entry] = why;
   frame.range_m[entry] = kNaN;
   frame.intensity[entry] = 0.0F;
+  if (!frame.sigma_m.empty()) frame.sigma_m[entry] = 0.0F;
   if (!frame.radial_velocity_m_s.empty()) {
     frame.radial_velocity_m_s[entry] = kNaN;
   }

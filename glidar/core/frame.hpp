@@ -145,8 +145,8 @@ struct Frame {
 /// Resizes the measured columns to `size` entries (contents unspecified).
 void resize(Frame& frame, std::size_t size);
 
-/// Removes the return of an entry: range and radial velocity NaN, intensity 0, status `why`, source
-/// none.
+/// Removes the return of an entry: range and radial velocity NaN, intensity and sigma 0, status
+/// `why`, source none.
 void invalidate_return(Frame& frame, std::size_t entry, Status why);
 
 /// The key of the random numbers of a beam of the frame.

@@ -328,12 +328,21 @@ void write_noise(TraceWriter& out) {
   }
 }
 
-Measurement final_measurement(const PointTrace& trace) {
-  return trace.noise.empty() ? trace.measured : trace.noise.back().after;
+/// What the limits remove after noise.
+void write_limits(TraceWriter& out) {
+  const Measurement& after =
+      out.trace.noise.empty() ? out.trace.measured : out.trace.noise.back().after;
+  const Status status = out.trace.reported.status;
+  if (after.status == status) return;
+  const Limits& limits = out.sensor.limits;
+  const bool is_near = status == Status::too_near;
+  out.line("limits", "{} m, the {} limit of the {}: {}", is_near ? limits.near_m : limits.far_m,
+           is_near ? "near" : "far", limits.along == Limits::Along::depth ? "depth" : "range",
+           name(status));
 }
 
 void write_result(TraceWriter& out) {
-  const Measurement measurement = final_measurement(out.trace);
+  const Measurement& measurement = out.trace.reported;
   Measurement reported = measurement;
   const double offset_m = out.beams.range_offset_m;
   if (measurement.status == Status::hit && offset_m != 0.0) {
@@ -368,6 +377,7 @@ std::string format_trace(const PointTrace& trace, const Simulator& simulator, co
   write_velocity(out);
   out.line("measured", "{}", measurement_text(trace.measured));
   write_noise(out);
+  write_limits(out);
   write_result(out);
   return out.text;
 }

@@ -84,14 +84,6 @@ void check_pinhole(const StructuredLightCamera& camera, const Pinhole& pinhole) 
 
 }  // namespace
 
-Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
-  const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
-                                                               : range_m + beams.range_offset_m;
-  if (limits.near_m > 0.0 && distance < limits.near_m) return Status::too_near;
-  if (distance > limits.far_m) return Status::too_far;
-  return Status::hit;
-}
-
 void set_depth_model(DepthModel model, const std::string& where, Sensor& sensor) {
   if (model == DepthModel::physical && !sensor.depth_camera) {
     throw Error({.where = where,
@@ -210,23 +202,6 @@ Beams make_beams(const Sensor& sensor, const FrameInterval& interval) {
 
 Beams make_beams(const Sensor& sensor) {
   return make_beams(sensor, frame_interval(sensor, 0));
-}
-
-void describe(Limits& limits, FieldVisitor& visitor) {
-  using Along = Limits::Along;
-  constexpr std::array<Named<Along>, 2> kNames = {
-      {{"depth", Along::depth}, {"range", Along::range}}};
-  visitor.number({"near_m", "shortest reported distance", kUnitMetre}, kFromZero, limits.near_m);
-  visitor.number(
-      {"far_m", "longest reported distance, beyond `near_m`", kUnitMetre, false, "no limit"},
-      kAboveZero, limits.far_m);
-  visit_choice(visitor,
-               {"along", "whether limits apply along the boresight or along the beam", kNoUnit,
-                false, "`depth` for cameras, else `range`"},
-               kNames, limits.along);
-  if (visitor.is_reading() && limits.far_m <= limits.near_m) {
-    visitor.reject("far_m", "{}, not beyond near_m", "a finite number above near_m");
-  }
 }
 
 }  // namespace glidar

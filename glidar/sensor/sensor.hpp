@@ -8,6 +8,7 @@
 #include <glidar/sensor/lidar/footprint.hpp>
 #include <glidar/sensor/lidar/lidar_equation.hpp>
 #include <glidar/sensor/lidar/weather.hpp>
+#include <glidar/sensor/limits.hpp>
 #include <glidar/sensor/noise/noise.hpp>
 #include <glidar/sensor/optics/line_scan.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
@@ -17,7 +18,6 @@
 #include <glidar/sensor/optics/wedge_mirror.hpp>
 #include <glidar/sensor/phong_shading.hpp>
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,17 +29,6 @@ namespace glidar {
 class FieldVisitor;
 
 using Optics = std::variant<Pinhole, Spinning, LineScan, Prism, WedgeMirror, RayTable>;
-
-/// The distances that the sensor reports. A surface outside them still blocks the beam.
-struct Limits {
-  enum class Along : std::uint8_t { depth, range };
-  double near_m = 0.0;  ///< 0: no limit, so depths below 0 (views wider than 180 degrees) count too
-  double far_m = std::numeric_limits<double>::infinity();
-  Along along = Along::depth;  ///< the limits apply to depth (boresight) or range (beam)
-};
-
-/// Keys of `limits` in sensor files.
-void describe(Limits& limits, FieldVisitor& visitor);
 
 /// A 3D sensor, as plain numbers.
 struct Sensor {
@@ -65,9 +54,6 @@ struct Sensor {
   std::string variant = {};                 ///< of a family of sensors in a file; empty: none
   std::string mode = {};                    ///< of the file, such as "1024x10"; empty: none
 };
-
-/// The status of a surface at this true range on a beam: hit, too_near or too_far.
-Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m);
 
 /// Selects how a depth camera is simulated. Throws Error naming `where` for DepthModel::physical
 /// when the sensor has no depth_camera.

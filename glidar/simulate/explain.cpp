@@ -50,6 +50,14 @@ void apply_first(const Simulation& s, std::size_t count, const Columns& measured
   if (sensor.doppler) complete_radial_velocities(*sensor.doppler, s.frame);
 }
 
+/// The frame as reported.
+void apply_all(const Simulation& s, const Columns& measured) {
+  const std::size_t steps = s.prepared.noise.steps.size();
+  apply_first(s, steps, measured);
+  if (steps == 0) return;
+  remove_returns_outside(s.prepared.sensor.limits, s.beams, s.renderer.thread_pool(), s.frame);
+}
+
 /// Of an entry of a frame before noise steps.
 std::optional<VelocityTrace> trace_velocity(const Simulation& s, const PointTrace& trace) {
   const Frame& frame = s.frame;
@@ -109,7 +117,7 @@ PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelect
   const Columns measured{frame.range_m, frame.intensity, frame.status, frame.return_source,
                          frame.radial_velocity_m_s};
   const NoisePlan& noise = s.prepared.noise;
-  apply_first(s, noise.steps.size(), measured);
+  apply_all(s, measured);
   PointTrace trace = begin_trace(s, pick(frame));
   apply_first(s, 0, measured);
   trace.measured = measurement_of(frame, trace.entry);
@@ -119,6 +127,8 @@ PointTrace explain(Simulator& simulator, const Motion& motion, const EntrySelect
     apply_first(s, k + 1, measured);
     trace.noise.push_back({std::move(samples[k]), measurement_of(frame, trace.entry)});
   }
+  apply_all(s, measured);
+  trace.reported = measurement_of(frame, trace.entry);
   return trace;
 }
 

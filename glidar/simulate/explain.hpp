@@ -51,6 +51,7 @@ struct PointTrace {
     Measurement after;
   };
   std::vector<Step> noise;  ///< one for each of the sensor's noise steps
+  Measurement reported;     ///< after the steps, if it is within the limits
 };
 
 /// Selects an entry of a simulated frame; its exceptions propagate.

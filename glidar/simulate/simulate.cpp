@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/simulate.hpp>
 
-#include <glidar/core/dot_product.hpp>
-#include <glidar/math/constants.hpp>
-#include <glidar/math/gaussian.hpp>
-#include <glidar/math/simd.hpp>
 #include <glidar/motion/beam_poses.hpp>
 #include <glidar/motion/radial_velocity.hpp>
 #include <glidar/simulate/depth_from_images.hpp>
@@ -14,7 +10,6 @@
 #include <glidar/simulate/pulse_cast.hpp>
 #include <glidar/simulate/waveforms.hpp>
 
-#include <cmath>
 #include <vector>
 
 namespace glidar {
@@ -84,66 +79,6 @@ void cast_beams(std::span<const Simulation> frames, const MeasureTile& measure) 
   cast(s, beam_request(s, on_tile_done), s.frame.ground_truth);
 }
 
-/// What the limits apply to: depths, or ranges as reported.
-GLIDAR_SIMD void find_distances(const Limits& limits, const Beams& beams, BeamRange range,
-                                const Hits& hits, Batch<double>& distance_m) {
-  const std::size_t count = range.end - range.begin;
-  const double* const range_m = hits.range_m.data() + range.begin;
-  if (limits.along == Limits::Along::range) {
-    const double offset_m = beams.range_offset_m;
-    for (std::size_t k = 0; k < count; ++k) distance_m[k] = range_m[k] + offset_m;
-    return;
-  }
-  const Eigen::Vector3d boresight = beams.boresight;
-  const Eigen::Vector3d* const directions = beams.directions.data() + range.begin;
-  for (std::size_t k = 0; k < count; ++k) {
-    distance_m[k] = range_m[k] * dot_product(directions[k], boresight);  // as depth_m()
-  }
-  if (beams.origins_m.empty()) return;
-  const Eigen::Vector3d* const origins_m = beams.origins_m.data() + range.begin;
-  for (std::size_t k = 0; k < count; ++k) {
-    distance_m[k] += dot_product(origins_m[k], boresight);
-  }
-}
-
-/// Ranges and statuses, as check_limits() of each hit.
-GLIDAR_SIMD void apply_limits(const Limits& limits, const Batch<double>& distance_m,
-                              BeamRange range, Frame& frame) {
-  static_assert(static_cast<unsigned>(Status::hit) == 0);
-  constexpr auto kMiss = static_cast<unsigned>(Status::miss);
-  constexpr auto kTooNear = static_cast<unsigned>(Status::too_near);
-  constexpr auto kTooFar = static_cast<unsigned>(Status::too_far);
-  const double near_m = limits.near_m > 0.0 ? limits.near_m : -kInfinity;
-  const double far_m = limits.far_m;
-  const double* const true_range_m = frame.ground_truth.range_m.data() + range.begin;
-  double* const range_m = frame.range_m.data() + range.begin;
-  Status* const status = frame.status.data() + range.begin;
-  for (std::size_t k = 0; k < range.end - range.begin; ++k) {
-    // Integers, of which at most one is 1, so that the loop vectorises.
-    const auto is_miss = static_cast<unsigned>(true_range_m[k] != true_range_m[k]);
-    const auto is_near = static_cast<unsigned>(distance_m[k] < near_m);
-    const auto is_far = static_cast<unsigned>(distance_m[k] > far_m) & (is_near ^ 1U);
-    status[k] = static_cast<Status>(is_miss * kMiss + is_near * kTooNear + is_far * kTooFar);
-    range_m[k] = (is_near | is_far) != 0 ? kNaN : true_range_m[k];
-  }
-}
-
-/// Range and status of a tile of beams from the ground truth.
-void check_limits(const Limits& limits, const Beams& beams, BeamRange tile, Frame& frame) {
-  const bool is_unlimited = limits.near_m <= 0.0 && std::isinf(limits.far_m);
-  Batch<double> distance_m{};
-  for (std::size_t begin = tile.begin; begin < tile.end; begin += kSampleBatch) {
-    const BeamRange run{begin, std::min(begin + kSampleBatch, tile.end)};
-    if (!is_unlimited) find_distances(limits, beams, run, frame.ground_truth, distance_m);
-    apply_limits(limits, distance_m, run, frame);
-  }
-  if (beams.pinhole) return;
-  for (std::size_t i = tile.begin; i < tile.end; ++i) {
-    if (frame.status[i] != Status::miss) continue;
-    if (std::isnan(beams.directions[i].x())) frame.status[i] = Status::invalid_pixel;
-  }
-}
-
 /// Radial velocities: of the ground truth if they are wanted, and with errors if the sensor
 /// measures them. Those of pulses are known from their echoes.
 void measure_velocities(const Simulation& s) {
@@ -180,6 +115,8 @@ void simulate(std::span<Simulation> frames) {
     record_beam_poses(s.motion, s.beams, s.hit_columns.poses, threads, s.frame);
     measure_velocities(s);
     apply_noise(s.prepared.noise, s.beams, threads, s.workspace.noise, s.frame, s.noise_steps);
+    if (!s.prepared.noise.steps.empty())
+      remove_returns_outside(sensor.limits, s.beams, threads, s.frame);
     if (sensor.doppler) complete_radial_velocities(*sensor.doppler, s.frame);
     if (s.fired != &s.beams) s.frame.true_directions.swap(s.workspace.fired.directions);
     if (s.hit_columns.boxes) find_boxes(s, BoxSelection::with_class, s.frame.boxes);
@@ -189,7 +126,7 @@ void simulate(std::span<Simulation> frames) {
 void measure_tile(const Simulation& s, BeamRange tile) {
   if (s.prepared.pulse_model) return measure_waveforms(s, tile);
   const Sensor& sensor = s.prepared.sensor;
-  check_limits(sensor.limits, *s.fired, tile, s.frame);
+  classify_surfaces(sensor.limits, *s.fired, tile, s.frame);
   if (sensor.lidar_equation) {
     shade_lidar(*sensor.lidar_equation, s.scene, sensor.wavelength_m, s.fired->rings, tile,
                 s.frame);

@@ -81,6 +81,8 @@ class PointTrace(SameContent):
     """The values before noise."""
     steps: tuple[NoiseStep, ...]
     """One for each noise step of the sensor."""
+    reported: Measurement
+    """The values after all steps, if they are within the limits."""
     echoes: tuple[Echo, ...]
     """Echoes of pulsed sensors with footprints, mirrors or several returns; else empty."""
     text: str
@@ -124,7 +126,7 @@ def entry_of(
 
 def trace_of(core: _core.PointTrace) -> PointTrace:
     """Converts the trace of the extension."""
-    measured, *after = (_measurement(one) for one in core.measurements)
+    measured, *after, reported = (_measurement(one) for one in core.measurements)
     steps = (NoiseStep(tuple(_sample(sample) for sample in core.samples(k)), one) for k, one in enumerate(after))
     echoes = (Echo(echo.range_m, echo.signal, echo.sigma_m, echo.is_mixed) for echo in core.echoes)
-    return PointTrace(core.entry, core.direction, measured, tuple(steps), tuple(echoes), core.text)
+    return PointTrace(core.entry, core.direction, measured, tuple(steps), reported, tuple(echoes), core.text)

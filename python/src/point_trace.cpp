@@ -40,6 +40,7 @@ TracedPoint trace_point(const Measured& measured, std::size_t entry) {
 std::vector<Measurement> measurements(const TracedPoint& traced) {
   std::vector<Measurement> all = {traced.trace.measured};
   for (const PointTrace::Step& step : traced.trace.noise) all.push_back(step.after);
+  all.push_back(traced.trace.reported);
   return all;
 }
 

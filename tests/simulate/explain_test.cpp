@@ -48,6 +48,14 @@ Stage noisy_stage() {
   return stage;
 }
 
+std::vector<double> depths_of(const Sensor& sensor, const Frame& frame) {
+  const Beams beams = make_beams(sensor);
+  std::vector<double> depths_m;
+  for (std::size_t i = 0; i < beams.size(); ++i)
+    depths_m.push_back(depth_m(beams, i, frame.range_m[i]));
+  return depths_m;
+}
+
 void expect_same(const Frame& one, const Frame& other) {
   EXPECT_EQ(one.status, other.status);
   EXPECT_EQ(one.intensity, other.intensity);
@@ -73,6 +81,39 @@ TEST(Explain, MakesTheSameFrameAsSimulate) {
       expect_same(stage.shoot(7, &trace), stage.shoot(7, nullptr));
     }
   }
+}
+
+/// Noise takes about half of the ranges out of the limits.
+Stage limited_stage() {
+  Stage stage;
+  stage.sensor.noise = {RangeGaussian{.sigma_m = 0.1}, RangeQuantization{.step_m = 0.05}};
+  stage.sensor.limits = {.near_m = 4.98, .far_m = 8.02};
+  return stage;
+}
+
+TEST(Explain, AppliesTheLimitsToTheSurfaceAndAfterNoise) {
+  const Stage stage = limited_stage();
+  PointTrace trace;
+  const Frame frame = stage.shoot(7, &trace);
+  expect_same(frame, stage.shoot(7, nullptr));
+  const std::vector<double> depths_m = depths_of(stage.sensor, frame);
+  std::size_t removed = 0;
+  for (std::size_t i = 0; i < frame.status.size(); i += 13) {
+    stage.shoot(i, &trace);
+    EXPECT_EQ(trace.reported.status, frame.status[i]);
+    if (frame.status[i] == Status::hit) {
+      EXPECT_GE(depths_m[i], 4.98);
+      EXPECT_LE(depths_m[i], 8.02);
+      EXPECT_EQ(trace.reported.range_m, frame.range_m[i]);
+      continue;
+    }
+    EXPECT_EQ(trace.measured.status, Status::hit);
+    EXPECT_EQ(trace.noise.back().after.status, Status::hit);
+    const bool is_near = trace.noise.back().after.range_m < 6.5;
+    EXPECT_EQ(frame.status[i], is_near ? Status::too_near : Status::too_far);
+    ++removed;
+  }
+  EXPECT_GT(removed, 20U);
 }
 
 TEST(Explain, TracesAnEntryThroughAllNoiseSteps) {

@@ -53,8 +53,9 @@ double seconds(double value_ns) {
   return value_ns * 1e-9;
 }
 
-double millimetres(double value_m) {
-  return value_m * 1e3;
+/// Of ranges, which apply_layout() has rounded.
+double whole_millimetres(double value_mm) {
+  return value_mm;
 }
 
 /// From 0 to 2 pi.
@@ -129,7 +130,7 @@ std::vector<LayoutField> ouster_fields(const LayoutField& ring, const std::strin
                    {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
                    ring,
                    {unused, U16{}, "", 0, nullptr},
-                   {"range", U32{}, "range", 0, millimetres}});
+                   {"range", U32{}, "range", 0, whole_millimetres}});
 }
 
 /// The sources of each layout are in docs/files/layouts.md.
@@ -391,6 +392,10 @@ PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const 
       numbers = reflectivity(cloud, wanted, sensor, beams);
     } else if (!field.column.empty()) {
       numbers = field_values(cloud, wanted, field.column, field.component);
+    }
+    if (field.convert == whole_millimetres) {
+      for (double& number : numbers)
+        number = to_whole_units(sensor.limits, Limits::Along::range, number, kMillimetre_m);
     }
     result.columns.push_back(made(field, numbers, cloud.size()));
   }

@@ -49,17 +49,20 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
   }
 }
 
-/// Writes a 16-bit grey image: depth times options.depth_png_units_per_m, rounded, at least 1; 0:
-/// no return. Throws Error when a depth is behind the sensor or above 65535 units.
+/// Writes a 16-bit grey image: depth times options.depth_png_units_per_m, rounded to a number
+/// within the sensor's limits, at least 1; 0: no return. Throws Error when a depth is behind the
+/// sensor or above 65535 units.
 void write_depth_png(const CloudFile& job, AtomicFile& file) {
   const auto& depths_m = std::get<std::vector<double>>(find_column(job.cloud, "depth")->values);
   const double units_per_m = job.options.depth_png_units_per_m;
+  const Limits& limits = job.context.sensor.limits;
   check_depths(depths_m, units_per_m, file);
   std::vector<std::uint16_t> grey(depths_m.size());
   std::transform(depths_m.begin(), depths_m.end(), grey.begin(), [&](double depth_m) {
     if (std::isnan(depth_m)) return std::uint16_t{0};
     // 0 means no return, so a surface nearer than half a unit counts as one unit
-    return static_cast<std::uint16_t>(std::max(1.0, std::round(depth_m * units_per_m)));
+    return static_cast<std::uint16_t>(
+        std::max(1.0, to_whole_units(limits, Limits::Along::depth, depth_m, 1.0 / units_per_m)));
   });
   write_png({PngKind::grey16, job.cloud.cols, job.cloud.rows, std::as_bytes(std::span(grey)),
              fmt::format("depth, {:.17g} units per metre, 0: no return", units_per_m)},

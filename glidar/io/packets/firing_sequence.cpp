@@ -91,7 +91,7 @@ double turn_rate_rad_per_ns(const Spinning& spinning) {
 }
 
 std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& frame,
-                                             const Beams& beams) {
+                                             const Beams& beams, double unit_m) {
   check_beams(sensor, frame, beams);
   std::vector<FiringSequence> sequences(beams.cols);
   if (beams.cols == 0) return sequences;
@@ -105,8 +105,9 @@ std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& 
     for (std::size_t col = 0; col < beams.cols; ++col) {
       const std::size_t entry = row * beams.cols + col;
       if (!(frame.range_m[entry] > 0.0)) continue;
-      sequences[col].returns[at] = {frame.range_m[entry] + beams.range_offset_m,
-                                    frame.intensity[entry], byte_of(unit[entry])};
+      const double units = to_whole_units(sensor.limits, Limits::Along::range,
+                                          frame.range_m[entry] + beams.range_offset_m, unit_m);
+      sequences[col].returns[at] = {units * unit_m, frame.intensity[entry], byte_of(unit[entry])};
     }
   }
   // the row that fires first: the least error of the rotation until it fires

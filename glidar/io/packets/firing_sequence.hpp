@@ -36,10 +36,10 @@ const Spinning& spinning_optics(const Sensor& sensor, const char* packets);
 /// Rotation of the head, radians per nanosecond; negative for clockwise.
 double turn_rate_rad_per_ns(const Spinning& spinning);
 
-/// The firing sequences of a frame, in time order. Throws Error when frame or beams are not those
-/// of the sensor.
+/// The firing sequences of a frame, in time order, with ranges in whole units within the limits.
+/// Throws Error when frame or beams are not those of the sensor.
 std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& frame,
-                                             const Beams& beams);
+                                             const Beams& beams, double unit_m);
 
 /// Collects firing sequences and joins those of a revolution to a frame.
 class RevolutionAssembler {

@@ -60,7 +60,7 @@ class HesaiEncoder final : public PacketEncoder {
         sequences_(model_.blocks / (returns_.is_dual() ? 2 : 1)) {}
 
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
-    for (FiringSequence& sequence : firing_sequences(sensor_, frame, beams)) {
+    for (FiringSequence& sequence : firing_sequences(sensor_, frame, beams, kUnit_m)) {
       const auto late_ns =
           static_cast<double>(waiting_.empty() ? 0 : sequence.stamp_ns - waiting_.back().stamp_ns);
       // a gap in time, as between frames that do not join: the packet ends before it

@@ -77,20 +77,22 @@ std::vector<std::uint8_t> reflectivities(const Sensor& sensor, const Frame& fram
   return livox_reflectivities(cloud, sensor, beams);
 }
 
-LivoxPoint point_at(const Eigen::Vector3d& xyz_m, LivoxDataType type) {
+/// A point in whole units, by a function that rounds coordinates and ranges.
+LivoxPoint point_at(const Eigen::Vector3d& xyz_m, LivoxDataType type, double (*round)(double)) {
   LivoxPoint point;
   if (type == LivoxDataType::spherical) {
     const auto centidegrees = [](double y, double x) {
       return std::llround(atan2_turns(y, x) * kCentidegreesPerTurn);
     };
-    point.numbers = {std::llround(xyz_m.norm() / kMillimetre_m),
+    point.numbers = {static_cast<std::int64_t>(round(xyz_m.norm() / kMillimetre_m)),
                      centidegrees(xyz_m.head<2>().norm(), xyz_m.z()),
                      centidegrees(xyz_m.y(), xyz_m.x()) % 36'000};
     return point;
   }
   const double unit_m = type == LivoxDataType::cartesian_mm ? kMillimetre_m : kCentimetre_m;
   for (int axis = 0; axis < 3; ++axis)
-    point.numbers[static_cast<std::size_t>(axis)] = std::llround(xyz_m[axis] / unit_m);
+    point.numbers[static_cast<std::size_t>(axis)] =
+        static_cast<std::int64_t>(round(xyz_m[axis] / unit_m));
   return point;
 }
 
@@ -105,6 +107,27 @@ Eigen::Vector3d position_of(const LivoxPoint& point, LivoxDataType type) {
   }
   const double unit_m = type == LivoxDataType::cartesian_mm ? kMillimetre_m : kCentimetre_m;
   return unit_m * Eigen::Vector3d(number(0), number(1), number(2));
+}
+
+double round_up(double value) {
+  return std::copysign(std::ceil(std::abs(value)), value);
+}
+
+/// The point of a measured range. Where rounding would take it out of the limits, it is rounded
+/// towards them.
+LivoxPoint point_within(const Limits& limits, const Beams& beams, std::size_t entry, double range_m,
+                        LivoxDataType type) {
+  const Eigen::Vector3d xyz_m = range_m * beams.directions[entry];
+  LivoxPoint nearest = point_at(xyz_m, type, std::round);
+  if (type == LivoxDataType::spherical) {
+    nearest.numbers[0] = static_cast<std::int64_t>(
+        to_whole_units(limits, Limits::Along::range, range_m, kMillimetre_m));
+    return nearest;
+  }
+  const Status status = check_limits(limits, beams, entry, position_of(nearest, type).norm());
+  if (status == Status::too_far) return point_at(xyz_m, type, std::trunc);
+  if (status == Status::too_near) return point_at(xyz_m, type, round_up);
+  return nearest;
 }
 
 class LivoxEncoder final : public PacketEncoder {
@@ -157,7 +180,7 @@ class LivoxEncoder final : public PacketEncoder {
                                  std::uint8_t reflectivity) const {
     const double range_m = frame.range_m[entry];
     if (!(range_m > 0.0) || !beams.directions[entry].allFinite()) return {};
-    LivoxPoint made = point_at(range_m * beams.directions[entry], type_);
+    LivoxPoint made = point_within(sensor_.limits, beams, entry, range_m, type_);
     if (!fits(made, type_)) return {};
     made.reflectivity = reflectivity;
     return made;

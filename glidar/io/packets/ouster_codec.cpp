@@ -42,7 +42,9 @@ class OusterEncoder final : public PacketEncoder {
         identity_(options.identity) {}
 
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
-    for (const FiringSequence& sequence : firing_sequences(sensor_, frame, beams)) {
+    const double unit_m =
+        (format_.profile == OusterProfile::rng15_rfl8_nir8 ? 8.0 : 1.0) * kMillimetre_m;
+    for (const FiringSequence& sequence : firing_sequences(sensor_, frame, beams, unit_m)) {
       const std::uint16_t number = measurement_of(spinning(), sequence.azimuth_rad);
       const std::size_t first = number - number % format_.columns_per_packet;
       const std::int64_t gap_ns = sequence.stamp_ns - last_ns_;

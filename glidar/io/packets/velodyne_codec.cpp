@@ -81,7 +81,7 @@ class VelodyneEncoder final : public PacketEncoder {
   }
 
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
-    for (FiringSequence& sequence : firing_sequences(sensor_, frame, beams)) {
+    for (FiringSequence& sequence : firing_sequences(sensor_, frame, beams, layout_.model.unit_m)) {
       // a gap in time, as between frames that do not join: the packet ends before it
       if (!waiting_.empty() && std::abs(static_cast<double>(sequence.stamp_ns - next_stamp_ns())) >
                                    0.5 * layout_.period_ns())

@@ -51,9 +51,9 @@ double measured_depth_m(const CloudSource& source, std::size_t beam) {
                "depths of 0 or more", "publish a cloud instead"});
 }
 
-std::uint16_t millimetres_of(double depth) {
+std::uint16_t millimetres_of(const Limits& limits, double depth) {
   constexpr double kMax = std::numeric_limits<std::uint16_t>::max();
-  const double millimetres = std::round(depth * 1e3);
+  const double millimetres = to_whole_units(limits, Limits::Along::depth, depth, 1e-3);
   return millimetres <= kMax ? static_cast<std::uint16_t>(std::max(1.0, millimetres)) : 0;
 }
 
@@ -141,7 +141,9 @@ Image depth_image(const CloudSource& source, DepthEncoding encoding, const std::
                  "one return", "use --returns strongest"});
   }
   const auto depth = [&](std::size_t beam) { return measured_depth_m(source, beam); };
-  const auto in_mm = [&](std::size_t beam) { return millimetres_of(depth(beam)); };
+  const auto in_mm = [&](std::size_t beam) {
+    return millimetres_of(source.sensor.limits, depth(beam));
+  };
   const auto in_m = [&](std::size_t beam) { return static_cast<float>(depth(beam)); };
   return encoding == DepthEncoding::metres_32fc1
              ? image_of<float>(source, "32FC1", frame_id, in_m)
