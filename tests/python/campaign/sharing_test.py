@@ -9,7 +9,6 @@ import re
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from waiting import MAX_WAIT_S, pauses, wait_until
@@ -71,32 +70,42 @@ def test_a_finished_run_keeps_temporary_files_of_another_run(campaign):
     assert not (root / "tmp").exists()
 
 
-def remove_tmp_before(monkeypatch, name, is_in_tmp):
-    """Another process removes the empty `tmp` before the first two calls of a function of `os` that use it."""
-    function, calls = getattr(os, name), itertools.count()
-
-    def call(path, *more):
-        tmp = Path(path).parent if is_in_tmp else Path(path)
-        if tmp.name == "tmp" and tmp.exists() and next(calls) < 2:
-            tmp.rmdir()
-        return function(path, *more)
-
-    monkeypatch.setattr(os, name, call)
-    return calls
+INTERFERE = """import contextlib, os, sys
+removed, wanted = 0, int(sys.argv[2])
+while removed < wanted:
+    with contextlib.suppress(OSError):
+        if sys.argv[3] == "make":
+            os.mkdir(sys.argv[1])
+        os.rmdir(sys.argv[1])
+        removed += 1
+"""
 
 
-def test_a_temporary_folder_is_made_although_another_process_removes_the_folder_above_it(campaign, monkeypatch):
-    calls = remove_tmp_before(monkeypatch, "mkdir", is_in_tmp=True)
-    with files.temp_folder(campaign.folder / "out") as temp:
-        temp.path("half.npz").write_text("half")
-    assert next(calls) > 2 and not (campaign.folder / "out" / "tmp").exists()
+def repeat_beside(action, tmp, removals, *, makes):
+    """Repeats an action while another process removes `tmp` so many times when it is empty; with `makes`, it makes it
+    before."""
+    def is_done():
+        action()
+        return other.poll() is not None
+
+    with subprocess.Popen([sys.executable, "-c", INTERFERE, tmp, str(removals), "make" if makes else "keep"]) as other:
+        try:
+            wait_until(is_done, "the other process", pause_s=0.0)
+        finally:
+            other.kill()
+    assert other.returncode == 0 and not tmp.exists()
 
 
-def test_stale_files_are_removed_although_another_process_removes_their_folder(campaign, monkeypatch):
-    (campaign.folder / "tmp").mkdir()
-    calls = remove_tmp_before(monkeypatch, "scandir", is_in_tmp=False)
-    files.remove_stale_files(campaign.folder)
-    assert next(calls) == 1 and not (campaign.folder / "tmp").exists()
+def test_temporary_folders_are_made_although_another_process_removes_the_folder_above_them(campaign):
+    def write():
+        with files.temp_folder(campaign.folder) as temp:
+            temp.path("half.npz").write_text("half")
+
+    repeat_beside(write, campaign.folder / "tmp", 100, makes=False)
+
+
+def test_stale_files_are_removed_although_another_process_removes_their_folder(campaign):
+    repeat_beside(lambda: files.remove_stale_files(campaign.folder), campaign.folder / "tmp", 2000, makes=True)
 
 
 def test_a_file_in_place_of_the_temporary_folder_is_reported(campaign):
