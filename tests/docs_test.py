@@ -9,17 +9,17 @@ import subprocess
 import sys
 import tempfile
 import unittest
-from importlib.util import find_spec
 from pathlib import Path
-
-if not (find_spec("numpy") and find_spec("zmq")):
-    print("skipped: the pages use NumPy and pyzmq")
-    sys.exit(77)
 
 sys.path[:0] = [str(Path(__file__).resolve().parent / folder) for folder in ("support", "apps")]
 from cli_support import free_ports  # noqa: E402
 from doc_blocks import ROOT, link_inputs, run_page  # noqa: E402
+from skipping import importing  # noqa: E402
 from waiting import MAX_WAIT_S  # noqa: E402
+
+with importing():  # the pages use them
+    import numpy  # noqa: F401
+    import zmq  # noqa: F401
 
 NAME = "tests/docs_test.py"
 DOCS = ROOT / "docs"

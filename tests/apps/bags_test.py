@@ -6,19 +6,16 @@
 import io
 import json
 import struct
-import sys
 import unittest
 from pathlib import Path
 
 import numpy as np
 from cli_support import CliTest
+from skipping import importing
 
-try:
+with importing():
     from PIL import Image
     from rosbags.highlevel import AnyReader
-except ImportError as error:
-    print(f"skipped: {error}")
-    sys.exit(77)
 
 ROOM = ("builtin:box:size=20,16,6", "--eye", "1,2,0", "--sensor-rate", "0,0.3,0", "--duration", "0.2", "--ground-truth")
 

@@ -5,13 +5,13 @@
 
 import os
 import subprocess
-import sys
 import unittest
 from pathlib import Path
 
 import lockstep_test as lockstep
 import numpy as np
 from cli_support import MAX_WAIT_S, CliTest
+from skipping import IN_CTEST, skip
 
 PROGRAM = os.environ.get("GLIDAR_LOCKSTEP_CLIENT", "")
 SOURCE = Path(__file__).resolve().parents[2] / "examples" / "lockstep_client.cpp"
@@ -47,6 +47,5 @@ class Client(CliTest):
 
 if __name__ == "__main__":
     if not PROGRAM:
-        print("skipped: GLIDAR_LOCKSTEP_CLIENT does not name the built examples/lockstep_client.cpp")
-        sys.exit(77)
+        skip("GLIDAR_LOCKSTEP_CLIENT is not set", IN_CTEST)
     unittest.main()

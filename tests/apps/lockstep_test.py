@@ -12,14 +12,13 @@ import sys
 import unittest
 from pathlib import Path
 
-try:
+from cli_support import MAX_WAIT_S, CliTest
+from skipping import importing
+
+with importing():
     import numpy as np
     import zmq
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
-from cli_support import MAX_WAIT_S, CliTest
 
 DOCS = (Path(__file__).resolve().parents[2] / "docs" / "link" / "lockstep.md").read_text(encoding="utf-8")
 EXAMPLE = re.search(r"<!-- run by tests/apps/lockstep_test.py -->\n```python\n(.*?)```", DOCS, re.DOTALL)[1]

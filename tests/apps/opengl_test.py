@@ -48,7 +48,7 @@ class OpenglRenderer(CliTest):
         with open(os.path.join(self.folder, "paper.csv.json"), encoding="utf-8") as file:
             self.assertIn("opengl, quantized framebuffer", json.dumps(json.load(file)))
 
-    @unittest.skipIf(np is None, "NumPy is not installed")
+    @unittest.skipIf(np is None, "no NumPy; ./dev test installs it")
     def test_the_paper_png_is_the_framebuffer_of_the_cloud(self):
         paper = ("--renderer", "opengl", "--quantized-framebuffer")
         self.succeed("render", *VIEW, *paper, "--columns", "xyz,depth,intensity,status", "-o", "a.npz",

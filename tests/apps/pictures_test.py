@@ -3,17 +3,14 @@
 """Pictures of clouds from the command line. The built program is found in PATH."""
 
 import os
-import sys
 import unittest
 
 from cli_support import CliTest
+from skipping import importing
 
-try:
+with importing():
     import numpy as np
     from PIL import Image
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
 NO_RETURN = (44, 44, 52)
 LIDAR = ("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0.2,0.1,0")

@@ -5,23 +5,19 @@ what the program renders of it. Exits with 77 (skipped) where the data, numpy or
 
 import json
 import os
-import sys
 import unittest
 from pathlib import Path
 
 from cli_support import CliTest
+from skipping import importing, skip
 
-try:
+with importing():
     import numpy as np
     from PIL import Image
-except ImportError:
-    print("numpy or Pillow is missing")
-    sys.exit(77)
 
 DATA = os.environ.get("GLIDAR_DATA")
 if not DATA:
-    print("GLIDAR_DATA is not set: no real data to test with")
-    sys.exit(77)
+    skip("GLIDAR_DATA is not set", "set it to a folder with real data")
 
 RECORDING = Path(DATA) / "recordings/m3t_realsense"
 # _sequence/depth_camera.yaml: pixel centres at whole numbers, and the depth camera in the colour camera's frame

@@ -4,15 +4,13 @@
 
 import json
 import subprocess
-import sys
-
-try:
-    import zmq
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
 from cli_support import MAX_WAIT_S, CliTest, box_of, free_ports, tcp
+from skipping import importing
+
+with importing():
+    import zmq
+
 from stream_client import Simulator, Subscriber
 from waiting import wait_until
 

@@ -63,7 +63,7 @@ TEST_F(OpenBeneath, AFolderReplacedByALinkIsNotEntered) {
   fs::rename(root_ / "sub", root_ / "old");
   fs::create_symlink(folder_ / "elsewhere", root_ / "sub");
   const UniqueFd opened = open(root_ / "sub/inside");
-  if (errno == ENOSYS) GTEST_SKIP() << "this kernel has no openat2";
+  if (errno == ENOSYS) GTEST_SKIP() << "no openat2; use Linux 5.6 or later";
   EXPECT_FALSE(opened);
 }
 

@@ -96,7 +96,7 @@ inline std::string gltf(const std::string& nodes, const std::string& materials =
 
 /// The sanitizers' own memory and signal handling hide what a test is about.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define GLIDAR_SKIP_SANITIZED() GTEST_SKIP() << "not under a sanitizer"
+#define GLIDAR_SKIP_SANITIZED() GTEST_SKIP() << "not under a sanitizer; run it by ./dev test"
 #else
 #define GLIDAR_SKIP_SANITIZED() static_cast<void>(0)
 #endif

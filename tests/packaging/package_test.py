@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import check_binaries  # noqa: E402
 
 BUILD = Path(shutil.which("glidar")).resolve().parents[2]
-TIME_LIMIT_S = 600
+TIME_LIMIT_S = 300
 DOCS = "usr/share/doc/glidar"
 
 

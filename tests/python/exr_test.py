@@ -18,7 +18,7 @@ KNOWN = {"depth": ["Z"], "xyz": ["P.X", "P.Y", "P.Z"], "normal": ["N.X", "N.Y", 
 @pytest.fixture(autouse=True)
 def has_openexr(program):
     if "OpenEXR" not in program("--version"):
-        pytest.skip("this build has no OpenEXR")
+        pytest.skip("this build has no OpenEXR; install libopenexr-dev and build again")
 
 
 @pytest.fixture

@@ -113,7 +113,7 @@ def assert_same_channels(found, expected, what):
         np.testing.assert_allclose(found[key], values, rtol=0, atol=tolerance, err_msg=f"{what}: {key}")
 
 
-pytestmark = pytest.mark.skipif(not TABLES.is_dir(), reason="no tables of manufacturers beside GLIDAR_DATA")
+pytestmark = pytest.mark.skipif(not TABLES.is_dir(), reason="no tables of manufacturers beside GLIDAR_DATA; set it to a folder with real data")
 
 
 @pytest.mark.parametrize("name", PRESETS)

@@ -50,7 +50,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_file_is_byte_identical_to_that_of_the_command_line(name, scene_file, tmp_path, program):
     if name.endswith(".exr") and "OpenEXR" not in program("--version"):
-        pytest.skip("this build has no OpenEXR")
+        pytest.skip("this build has no OpenEXR; install libopenexr-dev and build again")
     arguments, options = CASES[name]
     theirs, ours = tmp_path / "theirs", tmp_path / "ours"
     theirs.mkdir()

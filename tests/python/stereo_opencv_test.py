@@ -50,7 +50,7 @@ class RealPair(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         if not DATA:
-            raise unittest.SkipTest("GLIDAR_DATA is not set: no real pair to test with")
+            raise unittest.SkipTest("GLIDAR_DATA is not set; set it to a folder with real data")
         folder = Path(DATA, FOLDER)
         cls.left, cls.right = (cv2.imread(str(folder / f"0000_ir_{eye}.png"), cv2.IMREAD_GRAYSCALE) for eye in "lr")
         cls.depth_mm = cv2.imread(str(folder / "0000_depth.png"), cv2.IMREAD_UNCHANGED).astype(float)

@@ -135,7 +135,7 @@ def test_frames_at_rest_have_the_noise_of_real_cameras(z_m):
 def recorded_disparities():
     """Ten frames of a desk at rest, pixels of disparity."""
     if not DATA:
-        pytest.skip("GLIDAR_DATA is not set: no recording to compare with")
+        pytest.skip("GLIDAR_DATA is not set; set it to a folder with real data")
     frames = []
     for path in sorted(Path(DATA, RECORDING).glob("depth_image_*.bin")):
         height, width = struct.unpack_from("<II", path.read_bytes())

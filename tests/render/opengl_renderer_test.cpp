@@ -19,7 +19,7 @@ class OpenglRenderer : public ::testing::Test {
 
 TEST_F(OpenglRenderer, AnUnknownDeviceIsAnErrorThatListsTheDevices) {
   const std::vector<std::string> devices = opengl::graphics_devices();
-  if (devices.empty()) GTEST_SKIP() << "this machine's EGL does not list devices";
+  if (devices.empty()) GTEST_SKIP() << "this EGL does not list devices; install libegl-mesa0";
   const Scene scene;
   const std::string text = error_text(
       [&] { make_renderer(scene, {.kind = "opengl", .threads = 1, .graphics_device = 1000}); });

@@ -14,6 +14,9 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/support"))
+from skipping import IN_CTEST, skip  # noqa: E402
+
 LIBRARIES = os.environ.get("GLIDAR_LIBRARIES", "")
 READER = ["io/config/field_json", "io/config/provenance", "io/config/yaml_budget", "io/config/yaml_field_reader",
           "io/config/yaml_reader", "io/files/input_file", "io/files/nearest_file", "io/files/text_file"]
@@ -70,6 +73,5 @@ class NoiseStepExample(unittest.TestCase):
 
 if __name__ == "__main__":
     if not LIBRARIES:
-        print("skipped: CTest sets GLIDAR_LIBRARIES and the compiler")
-        sys.exit(77)
+        skip("GLIDAR_LIBRARIES is not set", IN_CTEST)
     unittest.main()

@@ -79,7 +79,7 @@ class Grouping(unittest.TestCase):
         text = run_clang_tidy.findings(self.build, sources, stamps)
         return text, [file.stem for file, stamp in stamps.items() if stamp.exists()]
 
-    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
+    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy; ./dev lint installs it")
     def test_a_fault_of_one_source_is_told_of_it_and_good_ones_pass(self):
         good = [self.source(f"glidar/{name}.cpp", GOOD.format(name)) for name in "ab"]
         self.assertEqual(self.check(good), ("", ["a", "b"]))
@@ -88,7 +88,7 @@ class Grouping(unittest.TestCase):
         self.assertRegex(text, r"glidar/c\.cpp:2:22: error: parameter 'unused' is unused")
         self.assertEqual(passed, ["a", "b"])
 
-    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
+    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy; ./dev lint installs it")
     def test_sources_that_do_not_compile_together_are_checked_apart(self):
         both = [self.source("glidar/a.cpp", "namespace {\nint hidden;\n}\nint glidar_a = hidden;\n"),
                 self.source("glidar/b.cpp", "namespace {\nlong hidden;\n}\nlong glidar_b = hidden;\n")]
@@ -96,7 +96,7 @@ class Grouping(unittest.TestCase):
         self.assertFalse(run_clang_tidy.check_together(self.build, both))
         self.assertEqual(self.check(both), ("", ["a", "b"]))
 
-    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy")
+    @unittest.skipIf(shutil.which(run_clang_tidy.CLANG_TIDY) is None, "no clang-tidy; ./dev lint installs it")
     def test_a_source_is_checked_again_when_what_it_includes_or_its_options_change(self):
         header = self.root / "glidar/a.hpp"
         source = self.source("glidar/a.cpp", "#include <glidar/a.hpp>\n")

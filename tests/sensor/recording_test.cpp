@@ -67,7 +67,7 @@ double turned_deg(double from_deg, double to_deg) {
 
 TEST(Recording, OfAVlp16HasTheSimulatedTimesAndAzimuths) {
   const char* folder = std::getenv("GLIDAR_DATA");
-  if (folder == nullptr) GTEST_SKIP() << "GLIDAR_DATA is not set: no real data to test with";
+  if (folder == nullptr) GTEST_SKIP() << "GLIDAR_DATA is not set; set it to a folder with real data";
   const std::vector<Packet> packets = read_capture(
       std::filesystem::path(folder) / "recordings/velodyne/sample_velodyne_vlp16_gps.pcap");
   ASSERT_GT(packets.size(), 100U);
@@ -187,7 +187,7 @@ class OusterRecording : public ::testing::TestWithParam<const char*> {
 
 TEST_P(OusterRecording, HasTheSimulatedTimesOfColumns) {
   if (std::getenv("GLIDAR_DATA") == nullptr) {
-    GTEST_SKIP() << "GLIDAR_DATA is not set: no real data to test with";
+    GTEST_SKIP() << "GLIDAR_DATA is not set; set it to a folder with real data";
   }
   const Beams beams = ouster_turn();
   std::vector<std::int64_t> simulated_ns;
@@ -219,7 +219,7 @@ TEST_P(OusterRecording, HasTheSimulatedTimesOfColumns) {
 
 TEST_P(OusterRecording, HasTheSimulatedQuantumOfRange) {
   if (std::getenv("GLIDAR_DATA") == nullptr) {
-    GTEST_SKIP() << "GLIDAR_DATA is not set: no real data to test with";
+    GTEST_SKIP() << "GLIDAR_DATA is not set; set it to a folder with real data";
   }
   constexpr double kQuantum_m = 0.008;  // of the profile of low data rate; others count 1 mm
   for (const auto& [frame, columns] : frames()) EXPECT_EQ(quantum_mm(columns), 8U) << frame;

@@ -12,10 +12,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples"))
-for package in ("numpy", "scipy", "open3d", "small_gicp", "glidar"):
-    if importlib.util.find_spec(package) is None:
-        print(f"skipped: no package {package}")
-        sys.exit(77)
+sys.path.insert(0, str(ROOT / "tests/support"))
+from skipping import importing
+
+with importing():
+    import scipy  # noqa: F401
+    import open3d  # noqa: F401
+    import small_gicp  # noqa: F401
+    import glidar  # noqa: F401
 
 import icp_monte_carlo as study
 import numpy as np
@@ -142,7 +146,7 @@ class PlaneIcp(unittest.TestCase):
 class Command(unittest.TestCase):
     def test_writes_a_table_and_a_picture(self):
         if importlib.util.find_spec("matplotlib") is None:
-            self.skipTest("no matplotlib")
+            self.skipTest("no matplotlib; ./dev test installs it from PyPI")
         with tempfile.TemporaryDirectory() as folder:
             table, picture = Path(folder, "icp.csv"), Path(folder, "icp.png")
             study.main(["--target", "asteroid", "--trials", "1", "--workers", "1", "--table", str(table),

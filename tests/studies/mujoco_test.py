@@ -14,15 +14,14 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples"))
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 
-try:
+from skipping import importing
+
+with importing():
     import matplotlib  # noqa: F401
     import mujoco
     import numpy as np
     import small_gicp  # noqa: F401
     import zmq  # noqa: F401
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
 import mujoco_rendezvous as example
 from mujoco_links import Body, Lockstep, Woods2016Protocol, Trouble, rotation

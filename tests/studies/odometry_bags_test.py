@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """examples/odometry_bags.py, shortened: KISS-ICP reads our bags, and drifts more without the times of points."""
 
-import importlib.util
 import sys
 import tempfile
 import unittest
@@ -11,10 +10,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples"))
-for package in ("numpy", "kiss_icp", "matplotlib", "rosbags", "glidar"):
-    if importlib.util.find_spec(package) is None:
-        print(f"skipped: no package {package}")
-        sys.exit(77)
+sys.path.insert(0, str(ROOT / "tests/support"))
+from skipping import importing
+
+with importing():
+    import kiss_icp  # noqa: F401
+    import matplotlib  # noqa: F401
+    import rosbags  # noqa: F401
+    import glidar  # noqa: F401
 
 import odometry_bags as study
 from odometry_pictures import draw_runs

@@ -10,15 +10,15 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
 
-try:
+from skipping import importing
+
+with importing():
     import matplotlib  # noqa: F401
     import numpy as np
     import zmq  # noqa: F401
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
 import soak
 

@@ -23,7 +23,7 @@ inline std::filesystem::path data_folder() {
 
 #define GLIDAR_NEEDS_DATA()                                              \
   if (::glidar::testing::data_folder().empty()) {                        \
-    GTEST_SKIP() << "GLIDAR_DATA is not set: no real data to test with"; \
+    GTEST_SKIP() << "GLIDAR_DATA is not set; set it to a folder with real data"; \
   }
 
 /// A model of the data folder with the axes of its file, which the references have, without

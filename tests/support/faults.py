@@ -11,7 +11,7 @@ from pathlib import Path
 
 CALLS = ("open", "write", "sync", "rename", "close")
 ERRORS = {"EIO": "Input/output error", "ENOSPC": "No space left on device"}
-NO_LIBRARY = "no fault injection: it is built with the program's tests, and not with sanitizers"
+NO_LIBRARY = "no fault injection with sanitizers; run it by ./dev test"
 PATH_BYTES = 4096
 STATE = struct.Struct(f"QQQ16s16s{PATH_BYTES}s{PATH_BYTES}s")  # as in fault_injection.cpp
 

@@ -8,8 +8,9 @@
 /// Waiting for conditions; the only place in the C++ tests that sleeps.
 namespace glidar::testing {
 
-/// Long, because machines may be very busy; a passing test never waits this long.
-constexpr std::chrono::minutes kMaxWait{10};
+/// Long, because machines may be very busy; a passing test never waits this long. Half of CTest's
+/// limit for a test program, so that the message of a wait appears before it.
+constexpr std::chrono::minutes kMaxWait{5};
 
 /// Repeats an action until it returns true; false when that takes longer than kMaxWait.
 template <class Action>

@@ -5,13 +5,15 @@
 import re
 import time
 
-MAX_WAIT_S = 600  # machines may be very busy; a test that goes well never waits so long
+# Machines may be very busy; a test that goes well never waits so long. Half of CTest's limit for a test program, so that
+# the message of a wait appears before it.
+MAX_WAIT_S = 300
 PAUSE_S = 0.02
 
 
-def wait_until(condition, what, process=None, pause_s=PAUSE_S):
-    """The first true value of condition(). Fails after MAX_WAIT_S, and once the process has ended without it."""
-    end = time.monotonic() + MAX_WAIT_S
+def wait_until(condition, what, process=None, pause_s=PAUSE_S, max_s=MAX_WAIT_S):
+    """The first true value of condition(). Fails after max_s, and once the process has ended without it."""
+    end = time.monotonic() + max_s
     while True:
         has_ended = process is not None and process.poll() is not None
         value = condition()
@@ -20,7 +22,7 @@ def wait_until(condition, what, process=None, pause_s=PAUSE_S):
         if has_ended:
             raise AssertionError(f"{process.args} ended with {process.returncode} before {what}")
         if time.monotonic() > end:
-            raise AssertionError(f"waited {MAX_WAIT_S} s in vain for {what}")
+            raise AssertionError(f"waited {max_s} s in vain for {what}")
         time.sleep(pause_s)
 
 

@@ -49,7 +49,7 @@ TEST_F(CacheFolderOfModels, AFolderThatOtherUsersCanAccessIsNotUsed) {
 }
 
 TEST_F(CacheFolderOfModels, AFolderOfAnotherUserIsNotUsed) {
-  if (::geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give a folder away; run it as root";
   load();
   ASSERT_EQ(::chown(options_.cache_folder.c_str(), 12345, 0), 0);
   EXPECT_FALSE(load().from_cache);

@@ -115,7 +115,7 @@ TEST(FileSink, AFolderNeedsItsOwnWritePermissionOnly) {
     refused_folder = error_text([&] { make_file_sink(folder / "in/x.kitti", {}, context); });
   });
   fs::permissions(folder / "in/x.kitti", fs::perms::all);
-  if (!done) GTEST_SKIP() << "cannot become an ordinary user";
+  if (!done) GTEST_SKIP() << "cannot become an ordinary user; run it without a user namespace";
   EXPECT_THAT(refused_parent, HasSubstr("cannot be written to"));
   EXPECT_THAT(refused_folder, HasSubstr("x.kitti cannot be written to"));
 }

@@ -17,16 +17,16 @@ import tempfile
 import unittest
 from pathlib import Path
 
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from skipping import importing
+
+with importing():
     import numpy as np
     import velodyne_decoder as vd
     import yaml
     from ouster.sdk import open_source
     from ouster.sdk.core import XYZLut
     from scipy.spatial import cKDTree
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
 EPOCH = 1_700_001_234.567891  # kPacketEpoch_ns
 MODELS = {  # preset: model, calibration, unit in metres
@@ -284,7 +284,7 @@ def nearest_distances(points, others):
     return cKDTree(others).query(points)[0]
 
 
-@unittest.skipUnless(DATA.exists(), "GLIDAR_DATA is not set: no recordings")
+@unittest.skipUnless(DATA.exists(), "GLIDAR_DATA is not set; set it to a folder with real data")
 class Recordings(unittest.TestCase):
     def test_velodyne_is_decoded_as_by_velodyne_decoder(self):
         capture = DATA / "recordings/velodyne/sample_velodyne_vlp16_gps.pcap"

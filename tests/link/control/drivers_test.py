@@ -22,16 +22,16 @@ import unittest
 import urllib.request
 from pathlib import Path
 
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from skipping import importing, skip
+
+with importing():
     import livox_sdk
     import numpy as np
     from hydra4.decoders.pandar_xt32 import PandarXT32
     from hydra4.msgs import pandar_msgs__msg__PandarPacket
     from ouster.sdk import open_source
     from ouster.sdk.core import XYZLut
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
 MAX_WAIT_S = 300
 NAMESPACE = "ip link set lo up && ip route add 255.255.255.255 dev lo && exec \"$0\" \"$@\""
@@ -43,8 +43,7 @@ def enter_namespace():
     """Runs this test again in its own namespace; exits."""
     command = ["unshare", "-rn", "sh", "-c", NAMESPACE]
     if shutil.which("ip") is None or subprocess.run([*command, "true"], capture_output=True, check=False).returncode != 0:
-        print("skipped: no network namespaces for this user")
-        sys.exit(77)
+        skip("no network namespaces for this user", "run it as root, or install iproute2")
     os.execvp(command[0], [*command, sys.executable, "-B", *sys.argv, "--inside"])
 
 

@@ -12,6 +12,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from skipping import IN_CTEST, skip  # noqa: E402
 from waiting import wait_for_line, wait_until  # noqa: E402
 
 PEER = os.environ.get("GLIDAR_DDS_PEER")
@@ -22,8 +23,7 @@ def skip_without(*variables):
     """Ends the test program when a build lacks what these variables name."""
     for variable in variables:
         if variable not in os.environ:
-            print(f"skipped: {variable} is not set, so the build does not contain that program")
-            sys.exit(77)
+            skip(f"the build has no {variable}", "install the packages of scripts/packages.txt, and " + IN_CTEST)
 
 
 def free_domain():

@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { createInterface } from "node:readline";
 
 const SKIPPED = 77;
-const MAX_WAIT_MS = 600_000; // machines may be very busy; a passing test never waits so long
+const MAX_WAIT_MS = 300_000; // machines may be very busy; a passing test never waits so long
 const PAUSE_MS = 20;
 
 export function skip(reason) {
@@ -19,7 +19,7 @@ export function skip(reason) {
 /** Loads packages of package.json; skips the test if they are not installed. */
 export function loadPackages(...names) {
   const folder = process.env.GLIDAR_NODE_MODULES ?? "";
-  if (!existsSync(join(folder, names[0]))) skip(`no npm packages in '${folder}'; ./dev test installs them if npm is available`);
+  if (!existsSync(join(folder, names[0]))) skip(`no packages from npm in '${folder}'; ./dev test installs them where npm and its registry are available`);
   const require = createRequire(join(folder, "x.js"));
   return names.map((name) => require(name));
 }

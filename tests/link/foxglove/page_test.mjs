@@ -10,7 +10,7 @@ import { loadPackages, skip, startFeed, waitUntil } from "./node_support.mjs";
 
 const CHROMIUM = "/usr/bin/chromium";
 const [{ chromium }] = loadPackages("playwright-core");
-if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed`);
+if (!existsSync(CHROMIUM)) skip(`no ${CHROMIUM}; ./dev test installs it`);
 
 const profile = mkdtempSync(join(tmpdir(), "glidar-page-"));
 const feed = await startFeed(process.argv[2] ?? "VLP-16");

@@ -24,4 +24,6 @@ if(NODE_PROGRAM)
     set_tests_properties("node: ${script}" PROPERTIES SKIP_RETURN_CODE 77 ENVIRONMENT
       "GLIDAR_FOXGLOVE_FEED=$<TARGET_FILE:glidar_foxglove_feed>;GLIDAR_PROGRAM=$<TARGET_FILE:glidar_app>;GLIDAR_NODE_MODULES=${GLIDAR_NODE_MODULES}")
   endforeach()
+else()
+  glidar_skipped_test("node: live view" "there is no Node.js; ./dev test installs it")
 endif()

@@ -199,7 +199,7 @@ def test_masks_and_pixel_counts_match_the_projected_boxes(dataset):
 
 
 def test_the_bop_toolkit_reads_the_data_set(dataset):
-    inout = pytest.importorskip("bop_toolkit_lib.inout", reason="bop_toolkit is not installed")
+    inout = pytest.importorskip("bop_toolkit_lib.inout", reason="bop_toolkit is not installed; install it from its repository")
     scene = dataset / "val" / "000000"
     camera = inout.load_scene_camera(str(scene / "scene_camera.json"))
     truth = inout.load_scene_gt(str(scene / "scene_gt.json"))
@@ -297,7 +297,7 @@ def test_trials_with_an_unreadable_or_distorted_camera_fail_alone(campaign):
     assert "width" in table["error"][0] and "a camera with distortion" in table["error"][3]
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk")
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk; run it as root")
 @pytest.mark.parametrize("model, models_fit", [("builtin:box", True), ("builtin:asteroid", False)])
 def test_a_full_disk_is_reported_for_images_and_models(campaign, model, models_fit):
     out = campaign.folder / "disk" / "out"
@@ -307,7 +307,7 @@ def test_a_full_disk_is_reported_for_images_and_models(campaign, model, models_f
     mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", out.parent],
                              capture_output=True, check=False)
     if mounted.returncode != 0:
-        pytest.skip("mount is not allowed here")
+        pytest.skip("mount is not allowed here; run it outside of a container")
     try:
         printed = campaign.run("disk/out", "--workers", "1", code=2)
         assert "No space left on device" in printed and "make room" in printed and "Traceback" not in printed

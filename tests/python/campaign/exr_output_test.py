@@ -17,7 +17,7 @@ def channels(path):
 
 def test_images_contain_the_arrays_of_the_same_trials(campaign):
     if "OpenEXR" not in subprocess.run(["glidar", "--version"], capture_output=True, text=True, check=True).stdout:
-        pytest.skip("this build has no OpenEXR")
+        pytest.skip("this build has no OpenEXR; install libopenexr-dev and build again")
     campaign.add("outputs: {exr: {columns: [instance, range], every: 3}, npz: {columns: [depth, instance, range]}}\n")
     campaign.run("out")
     images = sorted((campaign.folder / "out" / "exr").iterdir())

@@ -16,7 +16,7 @@ from waiting import MAX_WAIT_S
 from glidar.campaign import rotations
 
 ROOT = Path(__file__).resolve().parents[3]
-pytestmark = pytest.mark.skipif(not shutil.which("glidar"), reason="the program glidar is not in PATH")
+pytestmark = pytest.mark.skipif(not shutil.which("glidar"), reason="the program glidar is not in PATH; run it by ./dev test")
 
 
 def glidar_program(folder, *arguments, path=None):

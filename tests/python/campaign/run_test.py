@@ -231,14 +231,14 @@ def test_a_full_disk_is_reported_and_the_campaign_can_resume(campaign):
     assert campaign.contents("out") == campaign.contents("whole")
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk")
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk; run it as root")
 def test_a_full_file_system_is_reported(campaign):
     disk = campaign.folder / "disk"
     disk.mkdir()
     mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=128k", "tmpfs", disk],
                              capture_output=True, check=False)
     if mounted.returncode != 0:
-        pytest.skip("mount is not allowed here")
+        pytest.skip("mount is not allowed here; run it outside of a container")
     try:
         printed = campaign.run("disk/out", code=2)
         assert "No space left on device" in printed and "make room" in printed

@@ -15,10 +15,9 @@ from waiting import wait_until
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "sinfo"]
 MISSING = [name for name in PROGRAMS if not shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin")]
 pytestmark = [
-    pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Debian: slurmctld "
-                       "slurmd slurm-client munge)"),
-    pytest.mark.skipif(os.geteuid() != 0, reason="slurmd runs jobs as root only"),
-    pytest.mark.skipif(not os.path.ismount("/sys/fs/cgroup"), reason="slurmd needs /sys/fs/cgroup"),
+    pytest.mark.skipif(bool(MISSING), reason=f"no {', '.join(MISSING)}; ./dev test installs them"),
+    pytest.mark.skipif(os.geteuid() != 0, reason="slurmd runs jobs as root only; run it as root"),
+    pytest.mark.skipif(not os.path.ismount("/sys/fs/cgroup"), reason="slurmd needs /sys/fs/cgroup; mount it"),
 ]
 
 CONF = """ClusterName=campaign

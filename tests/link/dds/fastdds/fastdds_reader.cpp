@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reads a topic with Fast DDS, as nodes of ROS 2 with rmw_fastrtps do, and prints the bytes of
 // every message in hexadecimal: fastdds_reader TOPIC TYPE COUNT. Prints "matched" before.
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -11,6 +10,14 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
+
+#if __has_include(<fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>)
+#define FASTDDS_VERSION 3
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#else
+#define FASTDDS_VERSION 2
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#endif
 
 #include <condition_variable>
 #include <cstdio>
@@ -23,21 +30,57 @@
 namespace {
 
 using namespace eprosima::fastdds::dds;  // NOLINT(google-build-using-namespace)
-using eprosima::fastrtps::rtps::SerializedPayload_t;
 
 using Bytes = std::vector<unsigned char>;
+constexpr std::uint32_t kMax_bytes = 16'000'000;
 
 /// Messages as they come.
+#if FASTDDS_VERSION == 3
+namespace rtps = eprosima::fastdds::rtps;
+constexpr auto kOk = RETCODE_OK;
+
 class SerializedType : public TopicDataType {
  public:
   explicit SerializedType(const std::string& name) {
-    constexpr std::uint32_t kMax_bytes = 16'000'000;
+    set_name(name);
+    max_serialized_type_size = kMax_bytes;
+  }
+  bool serialize(const void* /*data*/, rtps::SerializedPayload_t& /*payload*/,
+                 DataRepresentationId_t /*kind*/) override {
+    return false;
+  }
+  bool deserialize(rtps::SerializedPayload_t& payload, void* data) override {
+    static_cast<Bytes*>(data)->assign(payload.data, payload.data + payload.length);
+    return true;
+  }
+  std::uint32_t calculate_serialized_size(const void* /*data*/,
+                                          DataRepresentationId_t /*kind*/) override {
+    return 0;
+  }
+  void* create_data() override { return new Bytes; }
+  void delete_data(void* data) override { delete static_cast<Bytes*>(data); }
+  bool compute_key(rtps::SerializedPayload_t& /*payload*/, rtps::InstanceHandle_t& /*handle*/,
+                   bool /*force_md5*/) override {
+    return false;
+  }
+  bool compute_key(const void* /*data*/, rtps::InstanceHandle_t& /*handle*/,
+                   bool /*force_md5*/) override {
+    return false;
+  }
+};
+#else
+namespace rtps = eprosima::fastrtps::rtps;
+const auto kOk = ReturnCode_t::RETCODE_OK;
+
+class SerializedType : public TopicDataType {
+ public:
+  explicit SerializedType(const std::string& name) {
     setName(name.c_str());
     m_typeSize = kMax_bytes;
     m_isGetKeyDefined = false;
   }
-  bool serialize(void* /*data*/, SerializedPayload_t* /*payload*/) override { return false; }
-  bool deserialize(SerializedPayload_t* payload, void* data) override {
+  bool serialize(void* /*data*/, rtps::SerializedPayload_t* /*payload*/) override { return false; }
+  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
     static_cast<Bytes*>(data)->assign(payload->data, payload->data + payload->length);
     return true;
   }
@@ -46,11 +89,11 @@ class SerializedType : public TopicDataType {
   }
   void* createData() override { return new Bytes; }
   void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
-  bool getKey(void* /*data*/, eprosima::fastrtps::rtps::InstanceHandle_t* /*handle*/,
-              bool /*force_md5*/) override {
+  bool getKey(void* /*data*/, rtps::InstanceHandle_t* /*handle*/, bool /*force_md5*/) override {
     return false;
   }
 };
+#endif
 
 class Printer : public DataReaderListener {
  public:
@@ -63,7 +106,7 @@ class Printer : public DataReaderListener {
   void on_data_available(DataReader* reader) override {
     Bytes bytes;
     SampleInfo info;
-    while (reader->take_next_sample(&bytes, &info) == ReturnCode_t::RETCODE_OK) {
+    while (reader->take_next_sample(&bytes, &info) == kOk) {
       if (!info.valid_data) continue;
       for (const unsigned char byte : bytes) std::printf("%02x", byte);
       std::puts("");
@@ -106,8 +149,7 @@ int main(int argc, char** argv) {
   qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
   qos.history().depth = 10;
   // rmw_fastrtps: memory grows with the messages.
-  qos.endpoint().history_memory_policy =
-      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   Printer printer;
   DataReader* reader = subscriber->create_datareader(topic, qos, &printer);
   if (reader == nullptr) return 1;
