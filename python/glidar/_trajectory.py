@@ -42,8 +42,9 @@ class Trajectory(Immutable):
     """A pose as a pure function of time: of a sensor (world_from_sensor) or an object (world_from_object).
 
     Poses are (4, 4), m. Times are seconds from -9.2e9 to 9.2e9, rounded to nanoseconds; those since 1970 are exact as
-    whole nanoseconds only, because a float has steps of 238 ns there. Trajectories are immutable. Two are equal when they have the same type and bit-identical numbers; they can be hashed, copied
-    and pickled. Every constructor raises Error for a wrong shape or a number that is not finite.
+    whole nanoseconds only, because a float has steps of 238 ns there. Trajectories are immutable. Two are equal when
+    they have the same type and bit-identical numbers; they can be hashed, copied and pickled. Every constructor raises
+    Error for a wrong shape or a number that is not finite.
     """
 
     __slots__ = ("_core",)

@@ -186,10 +186,12 @@ class Times(CliTest):
         self.assertIn("--to: 1700000000.123456789 s; allowed: after 1700000000.123456789 s",
                       self.refused(*run, "--to", "+0"))
         self.assertIn("--to", self.refused(*run, "--to", "+1", "--duration", "1"))
-        self.assertIn("--from, start on the trajectory: the sensor has none", self.refused(*ROOM, "--from", "3"))
+        self.assertIn("--from, start on the trajectory: the sensor has none",
+                      self.refused(*ROOM, "--from", "3", "-o", "a.csv"))
+        self.assertIn("--to: the sensor has no trajectory", self.refused(*ROOM, "--to", "3", "-o", "a.csv"))
         for text in ("soon", "-1", "2026-01-01", "nowhere", "1e30"):
             self.assertIn("seconds since 1970, a date in UTC, now or trajectory",
-                          self.refused(*ROOM, f"--start-time={text}"))
+                          self.refused(*ROOM, f"--start-time={text}", "-o", "a.csv"))
         self.assertIn("--pose-source and --start-time", self.refused(
             "stream", "builtin:box", "--port", "5555", "--pose-source", "tcp://127.0.0.1:5557", "--start-time", "now"))
 

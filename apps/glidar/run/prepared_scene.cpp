@@ -198,6 +198,8 @@ std::int64_t own_time_ns(const TrajectoryTime& time, const TimeInterval& known) 
 /// The duration of the run until --to; `known` are the trajectory's own times.
 double duration_until(const TrajectoryTime& end, const TimeInterval& known,
                       const PreparedScene& prepared) {
+  if (known.first_ns == TimeInterval{}.first_ns)
+    throw Error({"--to", "the sensor has no trajectory", "a file of timed poses", "leave it out"});
   const std::int64_t first_ns = valid_interval(prepared.motion.world_from_rig).first_ns;
   const std::int64_t start_ns = known.first_ns + (prepared.start_ns - first_ns);
   const std::int64_t end_ns = own_time_ns(end, known);
@@ -220,13 +222,8 @@ void set_times(const RenderFlags& flags, PreparedScene& prepared) {
                .origin_ns = has_dates ? kDefaultDate_ns : 0,
                .moves_trajectory = given.starts_now};
   if (given.starts_now && !run.time_ns) run.time_ns = now_ns();
-  if (given.from) {
-    run.from_ns = own_time_ns(*given.from, known);
-  } else if (given.to) {
-    run.from_ns = known.first_ns;
-  }
-  const bool is_segment = run.from_ns.has_value();
-  with_option_name(is_segment ? (given.from ? "--from" : "--to") : "--start-time", [&] {
+  if (given.from) run.from_ns = own_time_ns(*given.from, known);
+  with_option_name(given.from ? "--from" : "--start-time", [&] {
     prepared.start_ns = set_run_clock(run, motion.world_from_rig, motion.world_from_instance);
   });
   if (given.to) prepared.duration_s = duration_until(*given.to, known, prepared);
