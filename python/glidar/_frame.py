@@ -215,12 +215,13 @@ class Frame(DepthImages, Immutable):
         *,
         columns: str | Iterable[str] | None = None,
         layout: str | None = None,
-        frame: str = "sensor",
+        frame: str | None = None,
         drop_invalid: bool = False,
         deskew: bool = False,
         pcd: str = "binary",
         ply_ascii: bool = False,
         depth_units_per_m: float = 1000.0,
+        crs: str | os.PathLike[str] = "",
         sidecar: bool = True,
         colour_by: str = "height",
         picture_size: tuple[int, int] = (1400, 1000),
@@ -234,11 +235,13 @@ class Frame(DepthImages, Immutable):
         several frames to one.
 
         Args:
-            columns, frame, drop_invalid, deskew: as for ``cloud``.
+            columns, frame, drop_invalid, deskew: as for ``cloud``. By default "sensor"; .las files are in "world" and
+                deskewed.
             layout: point format of a sensor's driver instead of columns, such as "velodyne".
             pcd: "ascii", "binary" or "binary_compressed".
             ply_ascii: whether PLY files are text.
             depth_units_per_m: scale of 16-bit depth images; 1000 stores millimetres.
+            crs: coordinate reference system of .las: "EPSG:CODE" of a UTM zone, well-known text, or a file with it.
             sidecar: whether to write PATH.json beside a cloud or image.
             colour_by: of .bev.png and .view.png: "height", "range", "intensity", "ring", "class", "instance" or
                 "radial_velocity".
@@ -257,7 +260,8 @@ class Frame(DepthImages, Immutable):
             self.write_to(bag)
             bag.finish()
             return
-        options.frame = frame
+        options.frame = frame or ""
+        options.set_crs(os.fspath(crs))
         options.deskew = deskew
         options.set_drop_invalid(drop_invalid)
         options.set_sidecar(sidecar)

@@ -147,7 +147,7 @@ std::vector<std::string> column_names_of(const CloudHandle& handle) {
 /// Options of an output file, as for `glidar render`.
 struct SaveOptions {
   std::vector<std::string> columns;
-  std::string frame = "sensor";
+  std::string frame;  ///< empty: by the format
   bool deskew = false;
   FileSinkOptions sink;
 };
@@ -180,7 +180,9 @@ void save_to(Measured& m, const std::filesystem::path& path, const SaveOptions& 
                                     .renderer = m.scene().kind,
                                     .inputs = inputs},
                                    report);
-  sink->write(make_cloud(m, columns, options.frame, options.deskew), m.frame);
+  sink->write(
+      make_cloud(m, columns, frame_for(format, options.frame), options.deskew || format.is_survey),
+      m.frame);
 }
 
 void save(Measured& measured, const std::filesystem::path& path, SaveOptions options,
@@ -232,6 +234,7 @@ void bind_save_options(nb::module_& module) {
       .def("set_ply_ascii", sink_member<&FileSinkOptions::ply_ascii>(), nb::arg("value"))
       .def("set_drop_invalid", sink_member<&FileSinkOptions::drop_invalid>(), nb::arg("value"))
       .def("set_sidecar", sink_member<&FileSinkOptions::sidecar>(), nb::arg("value"))
+      .def("set_crs", sink_member<&FileSinkOptions::crs>(), nb::arg("value"))
       .def("set_layout", sink_member<&FileSinkOptions::layout>(), nb::arg("value"))
       .def("set_depth_units_per_m", sink_member<&FileSinkOptions::depth_png_units_per_m>(),
            nb::arg("value"));

@@ -32,11 +32,15 @@ def written(measured, folder, **options):
 
 
 def hits(frame, *columns):
-    """Columns of the points that have a return."""
-    cloud = frame.cloud(columns=["xyz", *columns])
-    xyz = np.asarray(cloud["xyz"]).reshape(-1, 3)
-    is_hit = np.isfinite(xyz).all(1)
-    return [np.asarray(cloud[name]).reshape(len(xyz), -1).squeeze()[is_hit] for name in ("xyz", *columns)]
+    """Columns of the points that have a return, in the order of time, in the world."""
+    names = list(dict.fromkeys(["xyz", *columns, "stamp", "row", "col", "range"]))
+    cloud = frame.cloud(columns=names, frame="world", deskew=True)
+    values = {name: np.asarray(cloud[name]).reshape(cloud["xyz"].shape[0] * cloud["xyz"].shape[1], -1) for name in names}
+    is_hit = np.isfinite(values["xyz"]).all(1)
+    values = {name: value[is_hit].squeeze() for name, value in values.items()}
+    pulse = values["row"].astype(np.int64) % 16 * 100000 + values["col"]
+    order = np.lexsort((values["range"], pulse, values["stamp"]))
+    return [values[name][order] for name in ("xyz", *columns)]
 
 
 def test_coordinates_times_and_classes_are_those_of_the_cloud(frame, tmp_path):
@@ -77,7 +81,7 @@ def test_small_objects_keep_their_shape(size_m, tmp_path):
     frame = glidar.simulate(glidar.Scene(scene), glidar.camera(32, 32, fov_deg=20.0),
                             pose=glidar.look_at([5 * size_m, 0, 0], [0, 0, 0]))  # fmt: skip
     _, las = written(frame, tmp_path)
-    xyz = np.asarray(frame.cloud(columns=["xyz"], drop_invalid=True)["xyz"]).reshape(-1, 3)
+    xyz = np.asarray(frame.cloud(columns=["xyz"], frame="world", drop_invalid=True)["xyz"]).reshape(-1, 3)
     assert len(xyz) > 100
     assert np.abs(np.asarray(las.xyz) - xyz).max() <= 1e-6 * np.ptp(xyz, axis=0).max()
 
@@ -117,8 +121,8 @@ def test_returns_are_counted_by_range_within_their_pulse(frame, tmp_path):
 def test_intensities_are_those_of_kitti_files(frame, tmp_path):
     _, las = written(frame, tmp_path)
     frame.save(tmp_path / "scan.bin")
-    kitti = np.fromfile(tmp_path / "scan.bin", np.float32).reshape(-1, 4)[:, 3]
-    assert np.abs(np.asarray(las.intensity) / 65535 - kitti).max() <= 0.5 / 65535 + 1e-7
+    kitti = np.sort(np.fromfile(tmp_path / "scan.bin", np.float32).reshape(-1, 4)[:, 3])
+    assert np.abs(np.sort(np.asarray(las.intensity)) / 65535 - kitti).max() <= 0.5 / 65535 + 1e-7
 
 
 def test_dates_are_adjusted_standard_gps_time(tmp_path):
@@ -164,3 +168,138 @@ def test_the_same_cloud_has_the_same_bytes(frame, tmp_path):
     frame.save(tmp_path / "a.las")
     frame.save(tmp_path / "b.las")
     assert (tmp_path / "a.las").read_bytes() == (tmp_path / "b.las").read_bytes()
+
+
+def sensor_of(folder, text):
+    (folder / "sensor.yaml").write_text(text)
+    return glidar.load_sensor(folder / "sensor.yaml")
+
+
+def ground():
+    scene = glidar.Scene()
+    scene.add_model("builtin:plane", scale=1000.0)
+    return scene
+
+
+def survey(folder, bidirectional=False, yaw_deg=0.0):
+    """A line scanner 100 m above the ground that looks down; the upper side of the sensor is ahead."""
+    sensor = sensor_of(folder, "{rate_hz: 10, optics: {type: line_scan, azimuth_deg: {from: -30, to: 30, count: 61}, "
+                       f"elevation_deg: [0, 1], point_us: 1, bidirectional: {str(bidirectional).lower()}}}}}")  # fmt: skip
+    yaw = np.radians(yaw_deg)
+    turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+    pose = np.eye(4)
+    pose[:3, :3] = turn @ np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]])  # x down, y left, z ahead
+    pose[:3, 3] = [3.0, 4.0, 100.0]
+    scene = ground()
+    return glidar.simulate(scene, sensor, pose=pose, columns="all"), turn
+
+
+def expected_angles(las, eye, turn):
+    ahead = turn @ np.array([1.0, 0, 0])
+    right = np.cross(ahead, [0, 0, 1.0])
+    ray = np.asarray(las.xyz) - eye
+    return np.degrees(np.arctan2(ray @ right, -ray[:, 2]))
+
+
+def test_points_are_in_the_order_of_time(frame, tmp_path):
+    _, las = written(frame, tmp_path)
+    assert (np.diff(np.asarray(las.gps_time)) >= 0).all() and len(set(np.asarray(las.ring)[:16])) > 8
+
+
+@pytest.mark.parametrize("yaw_deg", [0.0, 130.0])
+def test_scan_angles_are_around_the_direction_of_flight(yaw_deg, tmp_path):
+    measured, turn = survey(tmp_path, yaw_deg=yaw_deg)
+    _, las = written(measured, tmp_path)
+    angles = np.asarray(las.scan_angle) * 0.006
+    assert len(angles) == 122 and np.abs(angles - expected_angles(las, [3.0, 4.0, 100.0], turn)).max() <= 0.0031
+    assert angles.min() == pytest.approx(-30, abs=0.01) and angles.max() == pytest.approx(30, abs=0.01)
+
+
+def test_the_last_points_of_lines_are_edges_and_directions_change_with_the_mirror(tmp_path):
+    for bidirectional in (False, True):
+        measured, _ = survey(tmp_path, bidirectional=bidirectional)
+        _, las = written(measured, tmp_path)
+        edge = np.asarray(las.edge_of_flight_line)
+        assert list(np.flatnonzero(edge)) == [60, 121]
+        # azimuths grow to the left, so scan angles fall
+        direction = np.asarray(las.scan_direction_flag)
+        assert set(direction[:61]) == {0} and set(direction[61:]) == {int(bidirectional)}
+
+
+def test_scan_angles_follow_the_motion_of_the_sensor(tmp_path):
+    """Level flight to the north of a spinning sensor: east is to the right."""
+    sensor = sensor_of(tmp_path, "{rate_hz: 10, optics: {type: spinning, elevation_deg: [-30], columns_per_turn: 360}}")
+    start = np.eye(4)
+    start[:3, 3] = [0, 0, 10.0]
+    motion = glidar.Trajectory.twist(start, linear_m_s=[0, 20.0, 0])
+    frame = glidar.simulate(ground(), sensor, pose=motion, columns="all")
+    _, las = written(frame, tmp_path, columns=["xyz", "sensor_pose"])
+    place = np.array([np.asarray(las[name]) for name in ("sensor_pose_x", "sensor_pose_y", "sensor_pose_z")]).T
+    ray = np.asarray(las.xyz) - place
+    assert np.allclose(np.asarray(las.scan_angle) * 0.006, np.degrees(np.arctan2(ray[:, 0], -ray[:, 2])), rtol=0, atol=0.01)
+    assert np.ptp(place[:, 1]) == pytest.approx(20.0 * 0.1 * 359 / 360, abs=1e-6)
+    assert np.abs(np.asarray(las.z)).max() < 1e-3  # on the ground
+
+
+def test_cameras_have_angles_but_no_scan_lines(tmp_path):
+    frame = glidar.simulate(glidar.Scene("builtin:box"), glidar.camera(8, 8, fov_deg=20.0), pose=glidar.look_at([5, 0, 0], [0, 0, 0]))
+    _, las = written(frame, tmp_path)
+    assert not np.asarray(las.edge_of_flight_line).any() and len(set(np.asarray(las.scan_angle))) > 8
+
+
+def crs_of(las):
+    return next(vlr.string for vlr in las.header.vlrs if vlr.record_id == 2112)
+
+
+@pytest.mark.parametrize(("code", "zone", "meridian"), [
+    (32601, "WGS 84 / UTM zone 1N", -177), (32633, "WGS 84 / UTM zone 33N", 15), (32760, "WGS 84 / UTM zone 60S", 177),
+    (25832, "ETRS89 / UTM zone 32N", 9), (26910, "NAD83 / UTM zone 10N", -123),
+])  # fmt: skip
+def test_codes_of_utm_zones_are_stored_as_well_known_text(code, zone, meridian, tmp_path):
+    measured, _ = survey(tmp_path)
+    _, las = written(measured, tmp_path, crs=f"EPSG:{code}")
+    text = crs_of(las)
+    assert text.startswith(f'PROJCS["{zone}",') and f'PARAMETER["central_meridian",{meridian}]' in text
+    pyproj = pytest.importorskip("pyproj")
+    crs = pyproj.CRS.from_wkt(text)
+    assert crs.to_epsg() == code and crs.equals(pyproj.CRS.from_epsg(code), ignore_axis_order=True)
+
+
+def test_well_known_text_and_files_with_it_are_stored(tmp_path):
+    measured, _ = survey(tmp_path)
+    text = 'LOCAL_CS["site",UNIT["metre",1]]'
+    (tmp_path / "site.wkt").write_text(text.replace(",", ",\n    ") + "\n")
+    _, las = written(measured, tmp_path, crs=text)
+    assert crs_of(las) == text
+    _, las = written(measured, tmp_path, crs=tmp_path / "site.wkt")
+    assert crs_of(las).replace(" ", "") == text
+
+
+@pytest.mark.parametrize(("crs", "message"), [
+    ("EPSG:2154", "EPSG:2154 is not a UTM zone"), ("EPSG:32661", "EPSG:32661"), ("EPSG:", "'EPSG:'"),
+    ("EPSG:32633x", "EPSG:32633x"), ('GEOGCS["WGS 84"]', "GEOGCS"), ('LOCAL_CS["a",UNIT["metre",1]', "brackets"),
+    ('PROJCS["a",UNIT["foot",0.3048]]', "the unit"), ("no_such_file.wkt", "no_such_file.wkt"),
+])  # fmt: skip
+def test_other_coordinate_systems_are_refused_before_anything_is_written(crs, message, tmp_path):
+    measured, _ = survey(tmp_path)
+    with pytest.raises(glidar.Error, match=message):
+        measured.save(tmp_path / "a.las", crs=crs)
+    assert not (tmp_path / "a.las").exists()
+
+
+def test_coordinates_of_the_sensor_have_no_coordinate_system_of_the_earth(tmp_path):
+    measured, _ = survey(tmp_path)
+    with pytest.raises(glidar.Error, match="leave the frame out"):
+        measured.save(tmp_path / "a.las", crs="EPSG:32633", frame="sensor")
+    done = subprocess.run(["glidar", "render", "builtin:box", "-o", "a.pcd", "--crs", "EPSG:32633"], cwd=tmp_path,
+                          capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 2 and "--crs" in done.stderr and not (tmp_path / "a.pcd").exists()
+
+
+def test_explain_finds_a_point_by_its_number_in_the_file(tmp_path):
+    command = ["glidar", "render", str(STREET), "--sensor", "VLP-16", "--eye", "0,0,2", "-o", "a.las", "--columns", "all"]
+    subprocess.run(command, cwd=tmp_path, capture_output=True, check=True)
+    las = laspy.read(tmp_path / "a.las")
+    index = len(las.points) // 3
+    done = subprocess.run(["glidar", "explain", "a.las", "--index", str(index)], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert f"row {las.row[index]}, col {las.col[index]}," in done.stdout

@@ -149,12 +149,14 @@ void decode_packets(const DecodeFlags& flags, Console& console, Written& written
   sender.sensor.doppler.reset();  // packets have no velocities
   check_columns(sender.sensor, flags.output.columns);
   const Scene nothing;
+  OutputFlags output = flags.output;
+  if (output.frame.empty()) output.frame = "sensor";
   DecodedFrame decoded;
   while (!written.is_enough() && frames.next(decoded)) {
     const SidecarContext context{
         .scene = nothing, .sensor = sender.sensor, .beams = decoded.beams, .renderer = ""};
-    const std::vector<Output> outputs = plan_outputs(numbered(flags.output, written.next()),
-                                                     flags.input, context, console.report());
+    const std::vector<Output> outputs =
+        plan_outputs(numbered(output, written.next()), flags.input, context, console.report());
     write_outputs(outputs, decoded.frame, decoded.beams, nothing);
     written.add();
   }
@@ -168,7 +170,7 @@ void decode_packets(const DecodeFlags& flags, Console& console, Written& written
 /// Options that need what only a measurement has.
 void check_cloud_options(const DecodeFlags& flags) {
   const OutputFlags& output = flags.output;
-  if (!output.columns.empty() || !output.sink.layout.empty() || output.frame != "sensor" ||
+  if (!output.columns.empty() || !output.sink.layout.empty() || !output.frame.empty() ||
       output.deskew) {
     throw Error({"--columns, --layout, --frame and --deskew", "given for clouds of a bag",
                  "the columns and axes of the messages", "leave them out"});

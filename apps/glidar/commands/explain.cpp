@@ -9,11 +9,13 @@
 #include <apps/glidar/run/recorded_command.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/explain/trace_text.hpp>
+#include <glidar/io/formats/las_scan.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 
@@ -87,13 +89,12 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
                  fmt::format("below {}, the number of points in the cloud", sidecar.points)});
   }
   if (sidecar.points == beams.size()) return index;
-  std::size_t hits = 0;  // the cloud has only hits
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (frame.status[i] == Status::hit && hits++ == index) return i;
-  }
+  std::vector<std::uint32_t> hits = las_order(frame, beams);  // the cloud has only hits
+  if (!sidecar.path.string().ends_with(".las.json")) std::ranges::sort(hits);
+  if (index < hits.size()) return hits[index];
   throw Error({sidecar.path.string(),
                fmt::format("a cloud of {} points from {} beams with {} hits", sidecar.points,
-                           beams.size(), hits),
+                           beams.size(), hits.size()),
                "all beams, or all hits", "write the cloud again"});
 }
 

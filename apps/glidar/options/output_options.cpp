@@ -78,9 +78,13 @@ void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
             parse_columns);
   group.add("--layout", "NAME", "Point layout of another sensor's clouds, see below",
             flags.sink.layout, one_of(layout_names()));
-  group.add("--frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]",
+  group.add("--frame", "NAME",
+            "Axes: sensor, optical, ros, gl, legacy or world [.las: world, else sensor]",
             flags.frame, one_of({output_frame_names().begin(), output_frame_names().end()}));
-  group.add_flag("--deskew", "Compensate the motion of the sensor within a frame", flags.deskew);
+  group.add_flag("--deskew", "Compensate the motion of the sensor within a frame (.las: always)",
+                 flags.deskew);
+  group.add("--crs", "CRS", "Coordinate system of .las: EPSG:CODE, WKT or its file [local]",
+            flags.sink.crs);
   group.add_flag("--drop-invalid", "Drop points without a return", flags.sink.drop_invalid);
   group.add("--pcd-encoding", "NAME", "ascii, binary or binary_compressed [binary]", flags.sink.pcd,
             one_of<PcdEncoding>({{"ascii", PcdEncoding::ascii},

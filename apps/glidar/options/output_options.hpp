@@ -22,7 +22,7 @@ struct OutputFlags {
   std::string format;                ///< of standard output, without the dot; empty: not given
   std::string legacy_name;           ///< --legacy-output NAME; empty: not given
   std::vector<std::string> columns;  ///< of clouds; empty: default_columns()
-  std::string frame = "sensor";      ///< axes of clouds
+  std::string frame;                 ///< axes of clouds; empty: by the format, see frame_for()
   bool deskew = false;
   std::optional<OusterProfile> ouster_profile;  ///< of packets; empty: by the number of returns
   std::optional<LivoxDataType> livox_type;      ///< of points in packets; empty: in mm

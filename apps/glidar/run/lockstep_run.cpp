@@ -254,7 +254,8 @@ void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> momen
 lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, const Frame& frame,
                                            const Beams& beams) {
   const OutputFlags& output = flags_.render.output;
-  OutputFrame axes = output_frame(output.frame, beams, frame.world_from_sensor);
+  const std::string axes_name = output.frame.empty() ? "sensor" : output.frame;
+  OutputFrame axes = output_frame(axes_name, beams, frame.world_from_sensor);
   axes.deskew = output.deskew;
   axes.thread_pool = &prepared_.renderer->thread_pool();
   std::shared_ptr<PointCloud> cloud = clouds_.take();

@@ -87,8 +87,8 @@ Output plan_output(const std::string& path, const OutputFlags& flags,
   const FileFormat& format = format_of(flags, path);
   Output output{.path = path == kStandardOutput ? std::filesystem::path(path) : output_path(path),
                 .columns = columns_of(format, requested_columns(flags)),
-                .frame_name = flags.frame,
-                .deskew = flags.deskew,
+                .frame_name = frame_for(format, flags.frame),
+                .deskew = flags.deskew || format.is_survey,
                 .has_boxes = path != kStandardOutput && has_boxes(format, options),
                 .sink = nullptr};
   if (path == kStandardOutput) {
@@ -139,6 +139,17 @@ void commit_all(const std::vector<Output>& outputs) {
   }
 }
 
+/// Throws Error when a coordinate reference system is given, but no output takes one.
+void check_crs(const OutputFlags& flags) {
+  if (flags.sink.crs.empty()) return;
+  const auto is_survey = [&](const std::string& path) { return format_of(flags, path).is_survey; };
+  if (std::any_of(flags.paths.begin(), flags.paths.end(), is_survey)) return;
+  throw Error({.where = "--crs",
+               .found = "no output takes a coordinate reference system",
+               .allowed = "an output with the suffix .las",
+               .remedy = "add one, such as -o survey.las, or leave --crs out"});
+}
+
 }  // namespace
 
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
@@ -166,6 +177,7 @@ OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
 }
 
 void check_layout(const OutputFlags& flags) {
+  check_crs(flags);
   if (flags.sink.layout.empty()) return;
   const std::vector<std::string>& recordings = flags.recording_paths;
   if (std::any_of(recordings.begin(), recordings.end(), bags::is_bag_name)) return;

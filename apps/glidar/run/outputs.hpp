@@ -33,7 +33,7 @@ struct Output {
   std::unique_ptr<FileSink> sink;
 };
 
-/// Throws Error when a layout is given, but no output takes one.
+/// Throws Error when a layout or a coordinate reference system is given, but no output takes one.
 void check_layout(const OutputFlags& flags);
 
 /// All files, checked as far as possible before any work: suffix, folder, columns, no name twice,

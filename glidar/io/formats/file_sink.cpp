@@ -7,6 +7,7 @@
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/format_table.hpp>
 #include <glidar/io/formats/kitti_file.hpp>
+#include <glidar/io/formats/las_crs.hpp>
 #include <glidar/io/formats/sidecar_file.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
 
@@ -226,6 +227,7 @@ class FormatSink : public FileSink {
 
 void check(const FileSinkOptions& options) {
   if (!options.layout.empty()) find_layout(options.layout);
+  if (!options.crs.empty()) crs_text(options.crs);
   check_picture_size(options.picture);
   if (options.depth_png_units_per_m > 0.0 && !std::isinf(options.depth_png_units_per_m)) return;
   throw Error({"depth_png_units_per_m", fmt::format("{}", options.depth_png_units_per_m),
@@ -233,6 +235,11 @@ void check(const FileSinkOptions& options) {
 }
 
 }  // namespace
+
+std::string frame_for(const FileFormat& format, const std::string& requested) {
+  if (!requested.empty()) return requested;
+  return format.is_survey ? "world" : "sensor";
+}
 
 std::span<const std::string> colour_by_names() {
   static const std::vector<std::string> kSinkNames = {

@@ -52,6 +52,7 @@ struct FileSinkOptions {
   bool drop_invalid = false;  ///< point formats omit points without a return
   bool sidecar = true;        ///< write FILE.json for a cloud
   std::string layout = {};    ///< of cloud_layouts(), for formats that take columns; empty: none
+  std::string crs = {};       ///< of LAS files, as crs_text() takes it; empty: a local system
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
   CloudPictureOptions picture = {};
   ProgressCallback progress = {};  ///< of one file, by its points; not for images and NPZ
@@ -86,6 +87,7 @@ struct FileFormat {
   std::vector<std::string> optional_columns = {};
   bool reads_framebuffer = false;  ///< requires Frame::framebuffer
   bool reads_boxes = false;        ///< requires Frame::boxes
+  bool is_survey = false;          ///< unless requested otherwise: in the world's axes, deskewed
   std::string missing = {};  ///< library without which this build cannot write it; empty: it can
 };
 
@@ -105,6 +107,10 @@ std::string all_suffixes();
 
 /// The suffixes of formats that store any column: ".pcd .ply .npz .csv .las .exr".
 std::string suffixes_with_columns();
+
+/// The axes of clouds in a format: `requested`, or by default those of the world for surveys, else
+/// those of the sensor.
+std::string frame_for(const FileFormat& format, const std::string& requested);
 
 /// Whether the file of this name has the fields of a layout, and the suffixes of such files. Throws
 /// Error as format_for() does.

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/las_file.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/las_classes.hpp>
+#include <glidar/io/formats/las_crs.hpp>
 #include <glidar/io/formats/las_grid.hpp>
+#include <glidar/io/formats/las_scan.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 #include <glidar/motion/run_clock.hpp>
 
@@ -146,7 +149,8 @@ std::vector<std::uint8_t> las_classifications(const CloudFile& job) {
 }
 
 /// The point records as a cloud whose columns are their fields.
-PointCloud las_records(const CloudFile& job, LasGrid& grid, const PulseReturns& returns) {
+PointCloud las_records(const CloudFile& job, LasGrid& grid, const PulseReturns& returns,
+                       const LasScan& scan) {
   const std::size_t size = job.cloud.size();
   PointCloud records{job.cloud.rows, job.cloud.cols, job.cloud.frame_id, Pose::Identity(), {}};
   const auto add = [&](const char* name, auto values) {
@@ -159,10 +163,10 @@ PointCloud las_records(const CloudFile& job, LasGrid& grid, const PulseReturns& 
   for (std::size_t i = 0; i < size; ++i)
     bits[i] = static_cast<std::uint8_t>(returns.number[i] | returns.total[i] << 4U);
   add("returns", std::move(bits));
-  add("flags", std::vector<std::uint8_t>(size, 0));
+  add("flags", scan.flags);
   add("classification", las_classifications(job));
   add("user_data", std::vector<std::uint8_t>(size, 0));
-  add("scan_angle", std::vector<std::uint16_t>(size, 0));
+  add("scan_angle", std::vector<std::uint16_t>(scan.angles.begin(), scan.angles.end()));
   add("point_source", std::vector<std::uint16_t>(size, 0));
   add("gps_time", gps_times(job));
   return records;
@@ -215,11 +219,17 @@ void put_vlr_header(Bytes& to, const char* user, std::uint16_t record, std::size
   to.put_text(description, 32);
 }
 
-/// The records between header and points: the coordinate system, and the list of extra fields.
-std::string variable_records(const CloudFile& job, std::span<const PointField> extra) {
+/// The coordinate system in well-known text.
+std::string las_coordinate_system(const CloudFile& job) {
+  if (!job.options.crs.empty()) return crs_text(job.options.crs);
   std::string frame = one_line(job.cloud.frame_id);
   std::erase(frame, '"');
-  const std::string system = fmt::format("LOCAL_CS[\"{}\",UNIT[\"metre\",1]]", frame);
+  return fmt::format("LOCAL_CS[\"{}\",UNIT[\"metre\",1]]", frame);
+}
+
+/// The records between header and points: the coordinate system, and the list of extra fields.
+std::string variable_records(const CloudFile& job, std::span<const PointField> extra) {
+  const std::string system = las_coordinate_system(job);
   Bytes to;
   put_vlr_header(to, "LASF_Projection", 2112, system.size() + 1, "coordinate system (WKT)");
   to.put_text(system, system.size() + 1);
@@ -273,18 +283,55 @@ std::string las_header(const CloudFile& job, const LasGrid& grid, const PulseRet
   return to.text();
 }
 
+/// The points in the order of las_order(); `places` are those of its entries in the cloud.
+PointCloud in_las_order(const PointCloud& cloud, std::span<const std::uint32_t> places) {
+  PointCloud sorted{cloud.rows, cloud.cols, cloud.frame_id, cloud.world_from_cloud, {}};
+  sorted.columns.resize(cloud.columns.size());
+  for (std::size_t i = 0; i < cloud.columns.size(); ++i)
+    select_points(cloud.columns[i], places, sorted.columns[i]);
+  return sorted;
+}
+
+/// The place of each entry among the entries with a return.
+std::vector<std::uint32_t> las_places(std::vector<std::uint32_t> entries) {
+  const std::vector<std::uint32_t> order = entries;
+  std::ranges::sort(entries);
+  std::vector<std::uint32_t> places(order.size());
+  std::ranges::transform(order, places.begin(), [&](std::uint32_t entry) {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(entries, entry) - entries.begin());
+  });
+  return places;
+}
+
+void check_crs_frame(const CloudFile& job, const AtomicFile& file) {
+  if (job.options.crs.empty() || job.cloud.frame_id == "world") return;
+  throw Error({file.path().string(),
+               fmt::format("a coordinate reference system for coordinates in {}",
+                           one_line(job.cloud.frame_id)),
+               "coordinates in the world's axes", "leave the frame out"});
+}
+
 void write_las(const CloudFile& job, AtomicFile& file) {
-  const auto* xyz = values_of<double>(job.cloud, "xyz");
-  LasGrid grid = make_las_grid(*xyz);
-  const PulseReturns returns = returns_of(job);
-  const std::vector<PointField> extra = extra_fields(job.cloud);
-  const std::string variable = variable_records(job, extra);
-  const PointCloud records = las_records(job, grid, returns);
+  check_crs_frame(job, file);
+  const Beams& beams = job.context.beams;
+  std::vector<std::uint32_t> order = las_order(job.frame, beams);
+  const bool is_measured = order.size() == job.cloud.size();  // else decoded from other clouds
+  const PointCloud cloud = is_measured ? in_las_order(job.cloud, las_places(order)) : job.cloud;
+  const LasScan scan =
+      is_measured ? las_scan(job.frame, beams, job.context.sensor, cloud.world_from_cloud, order)
+                  : LasScan{std::vector<std::int16_t>(cloud.size()),
+                            std::vector<std::uint8_t>(cloud.size())};
+  const CloudFile sorted{cloud, job.frame, job.options, job.context, job.fields};
+  LasGrid grid = make_las_grid(*values_of<double>(cloud, "xyz"));
+  const PulseReturns returns = returns_of(sorted);
+  const std::vector<PointField> extra = extra_fields(cloud);
+  const std::string variable = variable_records(sorted, extra);
+  const PointCloud records = las_records(sorted, grid, returns, scan);
   std::vector<PointField> fields = native_fields(records);
   fields.insert(fields.end(), extra.begin(), extra.end());
-  file.write(las_header(job, grid, returns, row_bytes(fields), extra, variable.size()));
+  file.write(las_header(sorted, grid, returns, row_bytes(fields), extra, variable.size()));
   file.write(variable);
-  write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
+  write_binary_rows(fields, cloud.size(), file, job.options.progress);
 }
 
 std::string las_warning(const PointCloud& cloud) {
@@ -307,7 +354,8 @@ Format las_format() {
                    .description = "LAS 1.4, hits only",
                    .columns = {"xyz", "intensity"},
                    .takes_more = true,
-                   .optional_columns = {"range", "row", "col", "stamp", "class"}},
+                   .optional_columns = {"range", "row", "col", "stamp", "class"},
+                   .is_survey = true},
           .content = Content::hits,
           .fields = las_fields,
           .write = write_las,
