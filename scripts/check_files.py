@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks every tracked source file: licence head, length; and that no test sleeps.
+"""Checks every tracked source file: licence head, length; that no test sleeps; and that the product calls no function
+whose bits differ between machines.
 
 usage: check_files.py; exit status 1 when a file breaks a rule.
 """
@@ -27,6 +28,26 @@ SLEEPERS = {
     "tests/io/model/import_process_test.cpp": "programs that hang, which the library ends",
     "tests/scripts/check_files_test.py": "the test of this rule",
 }
+# Functions of the C library that are not exactly defined, also where Eigen calls them, and long double: their bits differ
+# between libraries, their versions and processors. glidar/math has its own.
+ELEMENTARY = ("a?(?:sin|cos|tan)h?|atan2|sincos|exp|exp2|exp10|expm1|pow|cbrt|hypot|erfc?|[lt]gamma|"
+              "log2|log10|log1p")
+NOT_PORTABLE = re.compile(
+    rf"\bstd::(?:{ELEMENTARY}|log|polar)[fl]?\s*\(|(?<![\w:.>~])(?:::)?(?:{ELEMENTARY})[fl]?\(|\blong double\b|"
+    r"\bEigen::(?:AngleAxis|Rotation2D)|[.>](?:slerp|angularDistance|eulerAngles|canonicalEulerAngles|"
+    r"sin|cos|tan|exp|log|pow)\(")
+CODE_ELSE = re.compile(r'"(?:\\.|[^"\\])*"|//.*')  # strings and comments
+PORTABLE_FOLDERS = ("glidar/", "apps/", "python/src/")
+NOT_ON_THE_DATA_PATH = {
+    "glidar/verify/shapes.hpp": "the closed forms that results are compared with",
+    "glidar/verify/moving_case.cpp": "the closed forms that results are compared with",
+}
+
+
+def must_be_portable(path):
+    """True where the rule holds."""
+    return (path.startswith(PORTABLE_FOLDERS) and path.endswith((".cpp", ".hpp"))
+            and not path.startswith("glidar/math/") and path not in NOT_ON_THE_DATA_PATH)
 
 
 def is_source(path):
@@ -45,6 +66,11 @@ def check_text(path, text):
     if path.startswith("tests/") and path not in SLEEPERS:
         complaints += [f"{path}:{number}: a test sleeps; wait for a condition with tests/support/waiting.py or .hpp"
                        for number, line in enumerate(lines, 1) if SLEEP.search(line)]
+    if must_be_portable(path):
+        for number, line in enumerate(lines, 1):
+            if found := NOT_PORTABLE.search(CODE_ELSE.sub("", line)):
+                complaints.append(f"{path}:{number}: '{found[0].strip('.>(')}' has other bits on other machines; "
+                                  "use glidar/math/portable.hpp, elementary.hpp or double_double.hpp")
     return complaints
 
 

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 # Compiles the program for 64-bit ARM on a bare Debian 12 in a folder, runs it there by QEMU, and compares its clouds
-# with those of this machine's program: every preset, with noise, the two renderers on the CPU, and a street. Needs root and
-# debootstrap (see bare_debian.sh).
+# with those of this machine's program: every preset, with noise, the two renderers on the CPU, a street, depths from images,
+# and a moving sensor with an IMU and radial velocities. Needs root and debootstrap (see bare_debian.sh).
 # usage: try_aarch64.sh [PROGRAM [FOLDER]]
 #   PROGRAM  this machine's program; default: build/dev/apps/glidar/glidar
 #   FOLDER   where the system is made; default: build/try-aarch64; a system of an earlier run is used again
@@ -46,7 +46,7 @@ END
     ninja -C build glidar_app'
 }
 
-# clouds OUT PROGRAM...: every preset, and each renderer on the CPU
+# clouds OUT PROGRAM...: every preset, each renderer on the CPU, images and motion
 clouds() {
   local out=$1 preset renderer
   shift
@@ -59,6 +59,12 @@ clouds() {
     "$@" render builtin:asteroid --renderer "$renderer" --quiet -o "$out/$renderer.npz"
   done
   "$@" render examples/street.yaml --quiet -o "$out/street.npz" 2>>"$out/messages.txt"
+  for preset in D435 Kinect-v2; do
+    "$@" render builtin:torus --sensor "$preset" --depth-model physical --seed 7 --quiet -o "$out/$preset-physical.npz"
+  done
+  printf '0 -4 0 0.5 0 0 0 1\n0.3 -3.5 0.2 0.6 0.2 -0.1 0.3 0.927362\n' >"$out/moving.tum"
+  "$@" render examples/two_rocks.yaml --sensor examples/fmcw.yaml --trajectory "$out/moving.tum" --imu BMI088 --rain 30 \
+    --duration 0.2 --quiet -o "$out/moving.npz" -o "$out/moving.imu.npz" 2>>"$out/messages.txt"
   rm -f "$out"/*.json "$out/messages.txt"  # they contain the command
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/texture_use.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 
@@ -32,8 +34,8 @@ Wrap wrap_mode(const aiMaterial& material, const char* key, aiTextureType type) 
 /// (KHR_texture_transform). Assimp returns a modified translation, from which the offset is
 /// recovered; the result is for v up.
 void set_gltf_transform(const aiUVTransform& t, TextureUse& use) {
-  const float c = std::cos(-t.mRotation);
-  const float s = std::sin(-t.mRotation);
+  const auto c = static_cast<float>(portable_cos(-t.mRotation));
+  const auto s = static_cast<float>(portable_sin(-t.mRotation));
   const float sx = t.mScaling.x;
   const float sy = t.mScaling.y;
   const float ox = t.mTranslation.x - 0.5F * sx * (1.0F - c + s);
@@ -45,7 +47,9 @@ void set_gltf_transform(const aiUVTransform& t, TextureUse& use) {
 /// Assimp's convention for all other formats: scale, translate, then rotate about the image's
 /// centre.
 void set_transform(const aiUVTransform& t, TextureUse& use) {
-  const Eigen::Matrix2f turn = Eigen::Rotation2Df(t.mRotation).toRotationMatrix();
+  const auto c = static_cast<float>(portable_cos(t.mRotation));
+  const auto s = static_cast<float>(portable_sin(t.mRotation));
+  const Eigen::Matrix2f turn{{c, -s}, {s, c}};
   const Eigen::Vector2f scale(t.mScaling.x, t.mScaling.y);
   const Eigen::Vector2f moved(t.mTranslation.x, t.mTranslation.y);
   const Eigen::Vector2f middle = Eigen::Vector2f::Constant(0.5F);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/framing.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,12 +17,12 @@ constexpr double kMargin = 1.1;  // free space around framed objects
 
 /// The distance at which a sphere fits into this half angle.
 double distance_to_see(double radius_m, double half_angle_rad) {
-  return kMargin * radius_m / std::sin(half_angle_rad);
+  return kMargin * radius_m / portable_sin(half_angle_rad);
 }
 
 bool contains(const Orbit& orbit, std::span<const Eigen::Vector3d> points, double aspect) {
   const Pose eye_from_anchor = anchor_from_eye(orbit).inverse();
-  const double half_height = std::tan(kOrbitFov_rad / 2.0);
+  const double half_height = portable_tan(kOrbitFov_rad / 2.0);
   return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
     const Eigen::Vector3d seen = eye_from_anchor * point;
     const double reach = half_height * seen.z();
@@ -43,7 +45,8 @@ Sphere sphere_around(std::span<const Eigen::Vector3d> corners_m) {
 
 void frame_sphere(Orbit& orbit, const Sphere& anchored, double aspect) {
   constexpr double kMinRadius_m = 1e-6;
-  const double half_rad = std::atan(std::tan(kOrbitFov_rad / 2.0) * std::clamp(aspect, 1e-3, 1.0));
+  const double half_rad =
+      portable_atan(portable_tan(kOrbitFov_rad / 2.0) * std::clamp(aspect, 1e-3, 1.0));
   orbit.pivot_m = anchored.middle_m;
   orbit.distance_m = distance_to_see(std::max(anchored.radius_m, kMinRadius_m), half_rad);
 }
@@ -57,7 +60,7 @@ Orbit view_of_all(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& sensor_
   const double size_m = box.isEmpty() ? 1.0 : box.diagonal().norm();
   const bool is_among = !box.isEmpty() && box.contains(sensor_m);
   Orbit orbit{.pivot_m = 0.45 * sensor_m,
-              .yaw_rad = std::atan2(sensor_m.y(), sensor_m.x()) + 0.9,
+              .yaw_rad = portable_atan2(sensor_m.y(), sensor_m.x()) + 0.9,
               .pitch_rad = 0.45,
               .distance_m = is_among ? 0.5 * size_m : 1.8 * std::max(size_m, sensor_m.norm())};
   std::vector<Eigen::Vector3d> ends_m = {sensor_m};
@@ -127,7 +130,7 @@ std::optional<Pose> pose_to_show(const FieldOfView& field, const Pose& world_fro
   std::optional<Pose> pose = aimed_at(field, world_from_sensor, sphere.middle_m);
   if (!pose || is_among || visibility(field, *pose, corners_m) == Visibility::inside) return pose;
   const double tangent = std::min({field.left, field.right, field.up, field.down});
-  const double distance_m = distance_to_see(sphere.radius_m, std::atan(tangent));
+  const double distance_m = distance_to_see(sphere.radius_m, portable_atan(tangent));
   pose->translation() = sphere.middle_m - distance_m * way_m.normalized();
   return pose;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/guide_lines.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -64,7 +66,7 @@ void add_edge(const Beams& beams, const Pose& anchor_from_sensor, double range_m
 
 double grid_spacing_m(double extent_m) {
   const double wanted = extent_m / 10.0;
-  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
+  const double power = power_of_ten(decimal_exponent(wanted));
   for (const double digit : {5.0, 2.0}) {
     if (digit * power <= wanted) return digit * power;
   }

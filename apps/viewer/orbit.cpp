@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/orbit.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,12 +13,13 @@ namespace glidar::app {
 namespace {
 
 Eigen::Vector3d to_eye(const Orbit& orbit) {
-  return {std::cos(orbit.pitch_rad) * std::cos(orbit.yaw_rad),
-          std::cos(orbit.pitch_rad) * std::sin(orbit.yaw_rad), std::sin(orbit.pitch_rad)};
+  return {portable_cos(orbit.pitch_rad) * portable_cos(orbit.yaw_rad),
+          portable_cos(orbit.pitch_rad) * portable_sin(orbit.yaw_rad),
+          portable_sin(orbit.pitch_rad)};
 }
 
 double half_height() {
-  return std::tan(kOrbitFov_rad / 2.0);
+  return portable_tan(kOrbitFov_rad / 2.0);
 }
 
 }  // namespace
@@ -39,7 +42,8 @@ void pan(Orbit& orbit, const Eigen::Vector2d& drag) {
 void zoom(Orbit& orbit, double steps) {
   constexpr double kNearest_m = 1e-6;
   constexpr double kFarthest_m = 1e9;
-  orbit.distance_m = std::clamp(orbit.distance_m * std::pow(0.9, steps), kNearest_m, kFarthest_m);
+  orbit.distance_m =
+      std::clamp(orbit.distance_m * portable_pow(0.9, steps), kNearest_m, kFarthest_m);
 }
 
 Pose anchor_from_eye(const Orbit& orbit) {

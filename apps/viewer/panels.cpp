@@ -7,6 +7,7 @@
 #include <glidar/io/config/noise_text.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -67,8 +68,8 @@ void show_sensor_numbers(const Snapshot& snapshot) {
   if (beams.pinhole) {
     const PinholeIntrinsics& k = *beams.pinhole;
     text(fmt::format("fx {:.1f} fy {:.1f}, {:.1f} x {:.1f} deg", k.fx, k.fy,
-                     2.0 * kDegreesPerRadian * std::atan(0.5 * k.width / k.fx),
-                     2.0 * kDegreesPerRadian * std::atan(0.5 * k.height / k.fy)));
+                     2.0 * kDegreesPerRadian * portable_atan(0.5 * k.width / k.fx),
+                     2.0 * kDegreesPerRadian * portable_atan(0.5 * k.height / k.fy)));
   }
   text(limit_text(sensor.limits));
   text(sensor.lidar_equation ? "pulsed light" : "light at the sensor (paper)");

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/shown_numbers.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <cmath>
 #include <regex>
 
 namespace glidar::app {
 
 double rounded(double value, int decimals) {
-  const double unit = std::pow(10.0, decimals);
+  const double unit = power_of_ten(decimals);
   const double scaled = value * unit;
   constexpr double kAllWhole = 9007199254740992.0;  // 2^53: larger numbers have no fraction
   if (!(std::abs(scaled) < kAllWhole)) return value;

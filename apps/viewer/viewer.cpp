@@ -4,6 +4,8 @@
 
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/viewer/cloud_points.hpp>
+#include <glidar/core/pose.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +30,8 @@ Pose translation_by(const Eigen::Vector3d& by_m) {
   return Pose(Eigen::Translation3d(by_m));
 }
 
-Pose rotation_about(const Eigen::Vector3d& point_m, const Eigen::AngleAxisd& by) {
-  return translation_by(point_m) * Pose(by) * translation_by(-point_m);
+Pose rotation_about(const Eigen::Vector3d& point_m, const Pose& by) {
+  return translation_by(point_m) * by * translation_by(-point_m);
 }
 
 bool is_static(const Trajectory& trajectory) {
@@ -332,9 +334,7 @@ void Viewer::rotate_objects(const Eigen::Vector2d& drag) {
   const Eigen::Vector3d up = rotation * axes.up;
   // a point on the near side follows the pointer
   const Eigen::Vector3d turn_rad = std::numbers::pi * (drag.x() * up + drag.y() * right);
-  const double angle_rad = turn_rad.norm();
-  if (angle_rad == 0.0) return;
-  const Pose turn = rotation_about(middle_m(), Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad));
+  const Pose turn = rotation_about(middle_m(), se3_exp(turn_rad, Eigen::Vector3d::Zero()));
   for (std::size_t i = 0; i < snapshot()->prepared->scene.instances.size(); ++i) {
     if (selection_.includes(i)) moved_object(i) = orthonormalized(turn * moved_object(i));
   }
@@ -345,7 +345,7 @@ void Viewer::step_sensor(double steps) {
   if (!is_open()) return;
   constexpr double kStep = 0.05;
   const Eigen::Vector3d way_m = middle_m() - snapshot()->frame.world_from_sensor.translation();
-  const double share = 1.0 - std::pow(1.0 - kStep, steps);
+  const double share = 1.0 - portable_pow(1.0 - kStep, steps);
   request_.sensor_moved = translation_by(share * way_m) * request_.sensor_moved;
   update();
 }

@@ -5,6 +5,8 @@
 #include <glidar/math/constants.hpp>
 
 #include <apps/viewer/shown_numbers.hpp>
+#include <glidar/core/axis_angle.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <imgui.h>
 
@@ -60,21 +62,16 @@ bool edit_pose(const char* name, Pose& pose) {
   Eigen::Vector3d position_m = pose.translation();
   const Eigen::Matrix3d r = pose.linear();
   Eigen::Vector3d rpy_deg =
-      kDegreesPerRadian * Eigen::Vector3d(std::atan2(r(2, 1), r(2, 2)),
-                                          std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
-                                          std::atan2(r(1, 0), r(0, 0)));
+      kDegreesPerRadian * Eigen::Vector3d(portable_atan2(r(2, 1), r(2, 2)),
+                                          portable_asin(std::clamp(-r(2, 0), -1.0, 1.0)),
+                                          portable_atan2(r(1, 0), r(0, 0)));
   ImGui::PushItemWidth(ImGui::GetFontSize() * 15.5F);
   bool is_changed = edit_numbers("m", {6, "%.6g"}, position_m);
   is_changed = edit_numbers("rpy deg", {2, "%.2f"}, rpy_deg) || is_changed;
   ImGui::PopItemWidth();
   ImGui::PopID();
   if (!is_changed || !position_m.allFinite() || !rpy_deg.allFinite()) return false;
-  using Axis = Eigen::Vector3d;
-  const Eigen::Quaterniond attitude =
-      Eigen::AngleAxisd(rpy_deg[2] / kDegreesPerRadian, Axis::UnitZ()) *
-      Eigen::AngleAxisd(rpy_deg[1] / kDegreesPerRadian, Axis::UnitY()) *
-      Eigen::AngleAxisd(rpy_deg[0] / kDegreesPerRadian, Axis::UnitX());
-  pose = make_pose(position_m, attitude);
+  pose = make_pose(position_m, roll_pitch_yaw(rpy_deg / kDegreesPerRadian));
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <glidar/core/beams.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <cmath>
 
@@ -29,12 +30,12 @@ SensorAxes axes_of(const Beams& beams) {
 }
 
 double azimuth_rad(const SensorAxes& axes, const Eigen::Vector3d& direction) {
-  return std::atan2(axes.left.dot(direction), axes.ahead.dot(direction));
+  return portable_atan2(axes.left.dot(direction), axes.ahead.dot(direction));
 }
 
 double elevation_rad(const SensorAxes& axes, const Eigen::Vector3d& direction) {
-  const double level = std::hypot(axes.left.dot(direction), axes.ahead.dot(direction));
-  return std::atan2(axes.up.dot(direction), level);
+  const double level = portable_hypot(axes.left.dot(direction), axes.ahead.dot(direction));
+  return portable_atan2(axes.up.dot(direction), level);
 }
 
 void validate(const Beams& beams) {

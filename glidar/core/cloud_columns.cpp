@@ -3,6 +3,7 @@
 #include <glidar/core/cloud_columns.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -113,7 +114,8 @@ void fill_shading_normal(const ColumnSource& s, Column& column) {
 
 void fill_incidence(const ColumnSource& s, Column& column) {
   fill_each<float>(s, column, [&](std::size_t i) {
-    return std::acos(std::min(s.frame.ground_truth.cos_incidence[i], 1.0F));
+    const double cosine = std::min(s.frame.ground_truth.cos_incidence[i], 1.0F);
+    return static_cast<float>(portable_acos(cosine));
   });
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/pose.hpp>
 
+#include <glidar/core/axis_angle.hpp>
 #include <glidar/core/error.hpp>
 
 #include <cmath>
@@ -81,14 +82,14 @@ Pose se3_exp(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& transla
   Pose pose = Pose::Identity();
   pose.translation() = translation_m;
   if (angle == 0.0) return pose;
-  pose.linear() = Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
+  pose.linear() = axis_angle(rotation_rad / angle, angle).toRotationMatrix();
   // Coefficients for axis times angle: a = (1 - cos) / angle^2, b = (angle - sin) / angle^3,
   // without cancellation.
   constexpr double kSmall = 0.1;  // up to it the first omitted term is at most 3e-16
   const double x = angle * angle;
-  const double half = std::sin(0.5 * angle) / angle;
+  const double half = portable_sin(0.5 * angle) / angle;
   const double b = angle < kSmall ? 1.0 / 6.0 - x / 120.0 + x * x / 5040.0 - x * x * x / 362880.0
-                                  : (angle - std::sin(angle)) / (angle * x);
+                                  : (angle - portable_sin(angle)) / (angle * x);
   const Eigen::Vector3d once = rotation_rad.cross(translation_m);
   pose.translation() += 2.0 * half * half * once + b * rotation_rad.cross(once);
   return pose;

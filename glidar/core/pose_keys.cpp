@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/pose_keys.hpp>
 
+#include <glidar/core/axis_angle.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 
@@ -51,8 +52,7 @@ void visit_rotation_vector(FieldVisitor& visitor, Quaterniond& rotation) {
     return;
   }
   const double angle_rad = vector.stableNorm();
-  rotation = angle_rad == 0.0 ? Quaterniond::Identity()
-                              : Quaterniond(Eigen::AngleAxisd(angle_rad, vector / angle_rad));
+  rotation = angle_rad == 0.0 ? Quaterniond::Identity() : axis_angle(vector / angle_rad, angle_rad);
 }
 
 void visit_euler_angles(FieldVisitor& visitor, Quaterniond& rotation) {
@@ -69,9 +69,7 @@ void visit_euler_angles(FieldVisitor& visitor, Quaterniond& rotation) {
                       false, FieldVisitor::Describe(body))) {
     return;
   }
-  rotation = Eigen::AngleAxisd(rpy_rad.z(), Vector3d::UnitZ()) *
-             Eigen::AngleAxisd(rpy_rad.y(), Vector3d::UnitY()) *
-             Eigen::AngleAxisd(rpy_rad.x(), Vector3d::UnitX());
+  rotation = roll_pitch_yaw(rpy_rad);
 }
 
 /// The rows [R t] of the matrix, in which documents keep every bit.

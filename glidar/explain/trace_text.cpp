@@ -5,6 +5,7 @@
 #include <glidar/core/excerpt.hpp>
 #include <glidar/io/config/noise_text.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -120,7 +121,8 @@ void write_hit(TraceWriter& out) {
   if (out.trace.waveform && out.trace.waveform->sub_rays > 1)
     out.line("", "of the sub-ray with the strongest contribution");
   out.line("", "range {:.9g} m, depth {:.9g} m, incidence {:.4f} deg", hits.range_m[i],
-           hits.depth_m[i], kDegreesPerRadian * std::acos(std::min(1.0F, hits.cos_incidence[i])));
+           hits.depth_m[i],
+           kDegreesPerRadian * portable_acos(std::min(1.0F, hits.cos_incidence[i])));
   out.line("", "at {} of the object, normal {} in the sensor's frame",
            triple(hits.object_point_m[i]), triple(hits.normal[i].cast<double>()));
   if (out.sensor.doppler) {
@@ -149,7 +151,7 @@ void write_lidar_equation(TraceWriter& out, const LidarEquation& light) {
   if (const auto& weather = out.sensor.weather) {
     const double per_m = extinction_per_m(*weather, out.sensor.wavelength_m);
     out.line("", "weather: extinction {:.4g} per m, transmission of both ways {:.4g}", per_m,
-             std::exp(-2.0 * per_m * hits.range_m[i]));
+             portable_exp(-2.0 * per_m * hits.range_m[i]));
   }
   if (!out.trace.waveform && !out.trace.receiver_noise.empty()) {
     out.line("", "noise of sigma {:.3g}, standard normal {:.6f}; threshold 1", light.noise_sigma,

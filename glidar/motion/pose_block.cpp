@@ -4,12 +4,12 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/simd.hpp>
+#include <glidar/motion/rotation_vector.hpp>
 #include <glidar/motion/times.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace glidar {
@@ -24,18 +24,11 @@ struct InterpolationWeights {
   PoseBlock::Component after;
 };
 
-/// As Eigen::Quaterniond::slerp(), bit for bit; what is the same at all times is computed once.
-void find_slerp_weights(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after,
-                        InterpolationWeights& weights) {
-  const double cosine = before.dot(after);
-  const double sign = cosine < 0.0 ? -1.0 : 1.0;
-  const bool is_straight = std::abs(cosine) >= 1.0 - std::numeric_limits<double>::epsilon();
-  const double angle = is_straight ? 0.0 : std::acos(std::abs(cosine));
-  const double sine = std::sin(angle);
+GLIDAR_SIMD void weigh(const RotationArc& arc, InterpolationWeights& weights) {
   for (std::size_t i = weights.begin; i < weights.end; ++i) {
-    const double t = weights.fraction[i];
-    weights.before[i] = is_straight ? 1.0 - t : std::sin((1.0 - t) * angle) / sine;
-    weights.after[i] = sign * (is_straight ? t : std::sin(t * angle) / sine);
+    const RotationArc::Weights at = arc.at(weights.fraction[i]);
+    weights.before[i] = at.before;
+    weights.after[i] = at.after;
   }
 }
 
@@ -124,7 +117,7 @@ class Interval {
     for (std::size_t i = 0; i < t_ns.size(); ++i) {
       weights.fraction[first + i] = seconds_between(before.t_ns, t_ns[i]) / duration;
     }
-    find_slerp_weights(before.orientation, after.orientation, weights);
+    weigh({before.orientation, after.orientation}, weights);
     interpolate_positions(before, after, weights, out);
     interpolate_rotations(before.orientation, after.orientation, weights, out);
   }

@@ -3,7 +3,8 @@
 #include <glidar/motion/rotation_vector.hpp>
 
 #include <glidar/math/constants.hpp>
-#include <glidar/math/elementary.hpp>
+
+#include <cmath>
 
 namespace glidar {
 namespace {
@@ -47,6 +48,13 @@ Vector3d rotation_between(const Eigen::Quaterniond& from, const Eigen::Quaternio
   if (sine == 0.0) return Vector3d::Zero();
   const double half_turns = atan2_turns(sine, turn.w());
   return (2.0 * kTwoPi * half_turns / sine) * turn.vec();
+}
+
+RotationArc::RotationArc(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after) {
+  const Eigen::Quaterniond turn = before.conjugate() * after;
+  sign_ = turn.w() < 0.0 ? -1.0 : 1.0;
+  turns_ = atan2_turns(turn.vec().norm(), std::abs(turn.w()));
+  sine_ = sincos_turns(turns_).sine;
 }
 
 RotationVector::RotationVector(const Vector3d& vector) : r_(vector) {

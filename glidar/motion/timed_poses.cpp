@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/motion/kinematics.hpp>
 #include <glidar/motion/pose_spline.hpp>
+#include <glidar/motion/rotation_vector.hpp>
 #include <glidar/motion/times.hpp>
 
 #include <algorithm>
@@ -108,7 +109,11 @@ void TimedPoses::between(std::size_t next, std::int64_t t_ns, Pose& pose) const 
       seconds_between(before.t_ns, t_ns) / seconds_between(before.t_ns, after.t_ns);
   TimedPose middle;
   middle.position_m = before.position_m + fraction * (after.position_m - before.position_m);
-  middle.orientation = before.orientation.slerp(fraction, after.orientation).normalized();
+  const RotationArc::Weights weights =
+      RotationArc(before.orientation, after.orientation).at(fraction);
+  middle.orientation.coeffs() =
+      weights.before * before.orientation.coeffs() + weights.after * after.orientation.coeffs();
+  middle.orientation.normalize();
   to_pose(middle, pose);
 }
 

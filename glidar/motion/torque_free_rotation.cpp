@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/pose_keys.hpp>
+#include <glidar/math/double_double.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/motion/elliptic.hpp>
 #include <glidar/motion/integral_table.hpp>
@@ -41,38 +42,15 @@ bool is_steady(const Vector3d& moments, const Vector3d& rate) {
   return gyroscopic(moments, rate).norm() <= kNone * moments.maxCoeff() * rate.squaredNorm();
 }
 
-/// An unevaluated sum of two doubles.
-struct Sum {
-  double high;
-  double low;
-};
-
-/// Knuth, "The Art of Computer Programming" 2, 4.2.2, theorem B.
-Sum exact_sum(double a, double b) {
-  const double sum = a + b;
-  const double part = sum - a;
-  return {sum, (a - (sum - part)) + (b - part)};
-}
-
-/// With a relative error of about 1e-31: Dekker, Numer. Math. 18 (1971) 224.
-Sum product(const Sum& a, const Sum& b) {
-  const double high = a.high * b.high;
-  const double low = std::fma(a.high, b.high, -high) + (a.high * b.low + a.low * b.high);
-  return exact_sum(high, low);
-}
-
 /// L^2 - 2 E I_2 for ordered axes. Its sign decides about which axis the body rotates. Near the
 /// separatrix, where it cancels, its value decides when the body flips; therefore it is computed in
 /// double-double precision.
 double about_last(const Vector3d& moments, const Vector3d& rate) {
   const auto term = [&](int axis) {
-    const Sum momentum = product({moments[axis], 0.0}, {rate[axis], 0.0});
-    return product(product(momentum, {rate[axis], 0.0}), exact_sum(moments[axis], -moments[1]));
+    return exact_product(moments[axis], rate[axis]) * rate[axis] *
+           exact_sum(moments[axis], -moments[1]);
   };
-  const Sum first = term(0);
-  const Sum last = term(2);
-  const Sum high = exact_sum(first.high, last.high);
-  return high.high + (high.low + (first.low + last.low));
+  return (term(0) + term(2)).high;
 }
 
 /// The rotation to axes of which the second has the intermediate moment and the third always has a

@@ -2,24 +2,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/instance_view.hpp>
 
+#include <glidar/math/double_double.hpp>
 #include <glidar/math/simd.hpp>
 
 namespace glidar {
+namespace {
+
+/// The sensor's position relative to that of the mesh's origin, in the axes of the world, rounded
+/// once: a mesh whose vertices are 1000 km from its origin would lose 1e-10 m if that offset were
+/// rotated in double.
+Eigen::Vector3d from_mesh_origin(const Instance& instance, const Mesh& mesh,
+                                 const Pose& world_from_object, const Pose& world_from_sensor) {
+  Eigen::Vector3d offset;
+  for (int row = 0; row < 3; ++row) {
+    DoubleDouble sum = exact_sum(world_from_sensor(row, 3), -world_from_object(row, 3));
+    for (int col = 0; col < 3; ++col) {
+      sum -= exact_product(instance.scale, mesh.origin_m[col]) * world_from_object(row, col);
+    }
+    offset[row] = sum.high;
+  }
+  return offset;
+}
+
+}  // namespace
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
                      const Pose& world_from_sensor) {
-  using Wide = Eigen::Matrix<long double, 3, 1>;
   const Eigen::Matrix3d object_from_world = world_from_object.linear().transpose();
-  // Positions are subtracted first, in extended precision: a mesh whose vertices are 1000 km from
-  // its origin would lose 1e-10 m if that offset were rotated in double.
-  const Wide offset = world_from_sensor.translation().cast<long double>() -
-                      world_from_object.translation().cast<long double>();
-  const Wide origin =
-      world_from_object.linear().cast<long double>() *
-      (static_cast<long double>(instance.scale) * mesh.origin_m.cast<long double>());
-  return {.object_from_sensor = object_from_world * world_from_sensor.linear(),
-          .sensor_in_object = object_from_world * (offset - origin).cast<double>() / instance.scale,
-          .scale = instance.scale};
+  return {
+      .object_from_sensor = object_from_world * world_from_sensor.linear(),
+      .sensor_in_object = object_from_world *
+                          from_mesh_origin(instance, mesh, world_from_object, world_from_sensor) /
+                          instance.scale,
+      .scale = instance.scale};
 }
 
 Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {

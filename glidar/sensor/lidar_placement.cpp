@@ -3,6 +3,7 @@
 #include <glidar/sensor/lidar_placement.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +36,10 @@ Elevations elevations_of(const Beams& beams) {
   double side_rad = 0.0;
   for (const Eigen::Vector3d& d : beams.directions) {
     if (std::isnan(d.x())) continue;
-    const double elevation_rad = std::asin(std::clamp(d.z(), -1.0, 1.0));
+    const double elevation_rad = portable_asin(std::clamp(d.z(), -1.0, 1.0));
     low_rad = std::min(low_rad, elevation_rad);
     high_rad = std::max(high_rad, elevation_rad);
-    side_rad = std::max(side_rad, std::abs(std::atan2(d.y(), d.x())));
+    side_rad = std::max(side_rad, std::abs(portable_atan2(d.y(), d.x())));
   }
   if (low_rad > high_rad) refuse_placing("the sensor has no beams", "");
   const double half_rad = 0.5 * (high_rad - low_rad);
@@ -64,10 +65,10 @@ Pose place_lidar_beside(const Beams& beams, const Scene& scene,
   if (!(side.norm() > 1e-9 * from_direction.norm())) {
     refuse_placing("the up vector is parallel to the line of sight", "choose another up vector");
   }
-  const double distance_m = 0.5 * box.diagonal().norm() / std::sin(fan.half_rad);
+  const double distance_m = 0.5 * box.diagonal().norm() / portable_sin(fan.half_rad);
   const Eigen::Vector3d eye =
-      box.center() +
-      distance_m * (std::cos(fan.middle_rad) * side.normalized() - std::sin(fan.middle_rad) * z);
+      box.center() + distance_m * (portable_cos(fan.middle_rad) * side.normalized() -
+                                   portable_sin(fan.middle_rad) * z);
   return look_at(eye, eye - side, z) * optical_from_body();
 }
 

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -124,7 +125,7 @@ CameraPath fit_window(const Window& window, const Scene& scene, const Pose& worl
 CameraPath fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene& scene,
                     const Pose& world_from_camera) {
   const double slope =
-      (1.0 - kFramingMargin) * std::tan(std::min(half_angle_rad, kMaxHalfAngle_rad));
+      (1.0 - kFramingMargin) * portable_tan(std::min(half_angle_rad, kMaxHalfAngle_rad));
   const Pose camera_from_world = world_from_camera.inverse();
   double distance = -kInfinity;
   double nearest = kInfinity;
@@ -177,7 +178,7 @@ double enclosed_angle_rad(const Beams& beams, const Eigen::Vector3d& axis) {
       if (inner) continue;
       const Eigen::Vector3d& d = beams.directions[static_cast<std::size_t>(row) * beams.cols +
                                                   static_cast<std::size_t>(col)];
-      smallest = std::min(smallest, std::atan2(axis.cross(d).norm(), axis.dot(d)));
+      smallest = std::min(smallest, portable_atan2(axis.cross(d).norm(), axis.dot(d)));
     }
   }
   return smallest;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/direction_grid.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -63,7 +65,7 @@ void DirectionGrid::find(const Eigen::Vector3d& axis, double angle_rad,
   static const std::vector<Eigen::Vector3d> kCentres = make_cell_centres(kSide);
   indices.clear();
   const double limit_rad = angle_rad + kCellRadius_rad;
-  const double min_cosine = limit_rad < std::numbers::pi ? std::cos(limit_rad) : -2.0;
+  const double min_cosine = limit_rad < std::numbers::pi ? portable_cos(limit_rad) : -2.0;
   for (std::uint32_t cell = 0; cell < kCells; ++cell) {
     if (begin_[cell] == begin_[cell + 1] || kCentres[cell].dot(axis) < min_cosine) continue;
     indices.insert(indices.end(), indices_.begin() + begin_[cell],

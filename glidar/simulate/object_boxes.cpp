@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/object_boxes.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/motion/kinematics.hpp>
 #include <glidar/simulate/simulation.hpp>
 
@@ -125,7 +126,7 @@ const std::vector<std::uint32_t>& firings_near(const ObservedBeams& observed, co
   const Eigen::Vector3d& centre_m = box.sensor_from_box.translation();
   const double distance_m = centre_m.norm();
   const double sine = (radius_m + observed.reach_m) / distance_m;
-  const double angle_rad = sine < 1.0 ? std::asin(sine) : std::numbers::pi;
+  const double angle_rad = sine < 1.0 ? portable_asin(sine) : std::numbers::pi;
   memory.grid.find(centre_m / distance_m, angle_rad, memory.near);
   return memory.near;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/tof/sample_images.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/tof/tof_camera.hpp>
 #include <glidar/tof/tof_exposure.hpp>
 
@@ -110,7 +111,7 @@ TofSample sample_tof_images() {
       const double u = column + 0.5;
       const double v = row + 0.5;
       sample.depth_per_range.push_back(static_cast<float>(1.0 / range_per_depth(u, v)));
-      const double from_centre = std::hypot(u - 0.5 * kWidth, v - 0.5 * kHeight);
+      const double from_centre = portable_hypot(u - 0.5 * kWidth, v - 0.5 * kHeight);
       sample.is_illuminated.push_back(from_centre < kLitRadius_px ? 1 : 0);
     }
   }

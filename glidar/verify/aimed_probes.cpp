@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/aimed_probes.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/verify/probes.hpp>
 
 #include <algorithm>
@@ -105,7 +106,7 @@ Beams beams_beside_outline(const AimTarget& at) {
       const std::array<double, 4> u = probe_uniforms(at.number, index++);
       const RealVector from = view.vertex(edge.first);
       const RealVector point = from + static_cast<Real>(u[0]) * (view.vertex(edge.second) - from);
-      const double beside = (u[1] < 0.5 ? -1.0 : 1.0) * std::pow(10.0, -9.0 + 3.0 * u[2]);
+      const double beside = (u[1] < 0.5 ? -1.0 : 1.0) * portable_pow(10.0, -9.0 + 3.0 * u[2]);
       directions.push_back(direction_to(
           at, point + static_cast<Real>(beside * at.placed.scale) * view.outwards(triangles)));
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/cases.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/verify/comparison.hpp>
 #include <glidar/verify/probes.hpp>
 
@@ -17,7 +18,7 @@ constexpr double kViewOverShape = 1.15;  // field of view over the angle of the 
 
 /// Half the field of view: that of the sphere around the shape, and a margin.
 double half_view_rad(const VerifyCase& c) {
-  return kViewOverShape * std::asin(c.radius_m / (c.distance_m + c.radius_m));
+  return kViewOverShape * portable_asin(c.radius_m / (c.distance_m + c.radius_m));
 }
 
 /// A scene of one shape, and the sensor's pose.
@@ -63,8 +64,9 @@ std::vector<VerifyCase> make_cases(std::size_t shape, double distance_m) {
       {{0.0, false}, {1e3, false}, {1e6, false}, {1e6, true}}};
   constexpr std::uint32_t kNumberStep = 1000;  // so that no two cases share random numbers
   std::vector<VerifyCase> cases;
-  auto number = static_cast<std::uint32_t>(shape) * kNumberStep +
-                static_cast<std::uint32_t>(10.0 * (5.0 + std::log10(distance_m)));
+  auto number =
+      static_cast<std::uint32_t>(shape) * kNumberStep +
+      static_cast<std::uint32_t>(10.0 * (5.0 + portable_log(distance_m) * std::numbers::log10e));
   for (const double radius_m : {kScaledRadius * distance_m, kFixedRadius_m}) {
     for (const Offset& offset : kOffsets) {
       cases.push_back({.shape = shape,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/comparison.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -75,8 +77,8 @@ void add_errors(const ExactHit& exact, const ReportedHit& reported, VerifyResult
   result.range_error_ulp =
       std::max(result.range_error_ulp, error_m / float_step(static_cast<double>(exact.range_m)));
   const RealVector& normal = reported.normal;
-  const auto angle_rad =
-      static_cast<double>(std::atan2(exact.normal.cross(normal).norm(), exact.normal.dot(normal)));
+  const double angle_rad = portable_atan2(static_cast<double>(exact.normal.cross(normal).norm()),
+                                          static_cast<double>(exact.normal.dot(normal)));
   result.normal_error_rad = std::max(result.normal_error_rad, angle_rad);
 }
 

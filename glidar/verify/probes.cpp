@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/probes.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/math/random.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 
@@ -22,15 +23,16 @@ Eigen::Quaterniond random_rotation(const std::array<double, 4>& u) {
   const double b = std::sqrt(u[0]);
   const double s = 2.0 * std::numbers::pi * u[1];
   const double t = 2.0 * std::numbers::pi * u[2];
-  return Eigen::Quaterniond(b * std::cos(t), a * std::sin(s), a * std::cos(s), b * std::sin(t))
+  return Eigen::Quaterniond(b * portable_cos(t), a * portable_sin(s), a * portable_cos(s),
+                            b * portable_sin(t))
       .normalized();
 }
 
 Eigen::Vector3d random_direction(double u0, double u1, double half_angle_rad) {
-  const double z = 1.0 - u0 * (1.0 - std::cos(half_angle_rad));
+  const double z = 1.0 - u0 * (1.0 - portable_cos(half_angle_rad));
   const double r = std::sqrt(1.0 - z * z);
   const double angle = 2.0 * std::numbers::pi * u1;
-  return Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z).normalized();
+  return Eigen::Vector3d(r * portable_cos(angle), r * portable_sin(angle), z).normalized();
 }
 
 Beams camera_probes(double half_view_rad) {
@@ -52,9 +54,9 @@ Beams scanner_probes() {
     const double elevation_rad = 0.5 * part + 1.2 * part * part * part;
     for (std::uint32_t col = 0; col < kColumns; ++col) {
       const double azimuth_rad = kStep_rad * (col + 0.25 * (row % 4));
-      const Eigen::Vector3d direction(std::cos(azimuth_rad) * std::cos(elevation_rad),
-                                      std::sin(azimuth_rad) * std::cos(elevation_rad),
-                                      std::sin(elevation_rad));
+      const Eigen::Vector3d direction(portable_cos(azimuth_rad) * portable_cos(elevation_rad),
+                                      portable_sin(azimuth_rad) * portable_cos(elevation_rad),
+                                      portable_sin(elevation_rad));
       beams.directions.push_back(direction.normalized());
     }
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/shapes.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,8 +65,8 @@ Shape make_cylinder() {
   Face top;
   for (std::uint32_t i = 0; i < kFacets; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kFacets;
-    v.emplace_back(kRadius * std::cos(angle), kRadius * std::sin(angle), -kHalfHeight);
-    v.emplace_back(kRadius * std::cos(angle), kRadius * std::sin(angle), kHalfHeight);
+    v.emplace_back(kRadius * portable_cos(angle), kRadius * portable_sin(angle), -kHalfHeight);
+    v.emplace_back(kRadius * portable_cos(angle), kRadius * portable_sin(angle), kHalfHeight);
     const std::uint32_t next = (i + 1) % kFacets;
     faces.push_back({2 * i, 2 * next, 2 * next + 1, 2 * i + 1});
     top.push_back(2 * i + 1);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/special_cases.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/verify/aimed_probes.hpp>
 #include <glidar/verify/comparison.hpp>
 #include <glidar/verify/moving_case.hpp>
@@ -103,8 +104,8 @@ VerifyResult several_instances(const VerifySubject& subject, const std::vector<S
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
   ExactScene exact = exact_scene(instances, world_from_sensor.translation());
   exact.edge_tolerance_m = kExactTolerance * distance_m;
-  VerifyResult result =
-      cast_view(subject, *renderer, exact, world_from_sensor, std::atan(kHalfView_m / distance_m));
+  VerifyResult result = cast_view(subject, *renderer, exact, world_from_sensor,
+                                  portable_atan(kHalfView_m / distance_m));
   result.add(cast_view(subject, *renderer, exact, world_from_sensor, kWide_rad));
   if (subject.casts != BeamKind::any) return result;
   // Single precision is wrong for about one beam in a thousand here, and for fewer at short range:
@@ -115,7 +116,7 @@ VerifyResult several_instances(const VerifySubject& subject, const std::vector<S
   for (std::uint32_t i = 0; i < casts; ++i) {
     result.add(
         cast_and_compare(*renderer, exact, world_from_sensor,
-                         random_probes(kNumber + i, std::atan(kHalfView_m / distance_m), 0.1)));
+                         random_probes(kNumber + i, portable_atan(kHalfView_m / distance_m), 0.1)));
   }
   return result;
 }

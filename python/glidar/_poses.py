@@ -53,6 +53,14 @@ def _rigid(rotation: FloatArray, position: FloatArray, name: str) -> FloatArray:
     return checked
 
 
+def inverse(pose: FloatArray) -> FloatArray:
+    """The inverse of a rigid transform (4, 4), with the same bits on every machine, unlike ``numpy.linalg.inv``."""
+    result = np.eye(4)
+    result[:3, :3] = pose[:3, :3].T
+    result[:3, 3] = -(pose[:3, :3] * pose[:3, 3, None]).sum(axis=0)
+    return result
+
+
 def look_at(
     eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike | None = None, *, boresight: str = "z"
 ) -> FloatArray:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._errors import Error
 from ._frame import Frame
+from ._poses import inverse
 from ._scene import Scene
 from ._scene_data import not_a_scene
 from ._sensor import Sensor
@@ -175,7 +176,7 @@ def simulate_rig(
     rig = scene._core.rig_motion() if pose is None else trajectories(pose, "pose")
     if rig is None:
         first, simulator = simulators[0]
-        rig = _core.mounted(simulator._core.usual_motion(), np.asarray(np.linalg.inv(first.rig_from_sensor)[None], np.float64))
+        rig = _core.mounted(simulator._core.usual_motion(), inverse(first.rig_from_sensor)[None])
     return {
         sensor.name: simulator.simulate(
             Trajectory(_core.mounted(rig, sensor.rig_from_sensor[None])),

@@ -7,6 +7,7 @@
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/fisher_information_file.hpp>
+#include <glidar/math/portable.hpp>
 #include <glidar/sensor/fisher_information.hpp>
 #include <glidar/verify/verify.hpp>
 
@@ -16,6 +17,8 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+
+#include <map>
 
 namespace glidar::python {
 namespace {
@@ -89,6 +92,20 @@ void write_file(const std::filesystem::path& path, const nb::bytes& data) {
   file.commit();
 }
 
+/// A function with the same bits on any machine, of every number. NumPy's and SciPy's differ.
+nb::object portable(const std::string& name, const Numbers<double>& numbers) {
+  using Function = double (*)(double);
+  static const std::map<std::string, Function> kFunctions = {
+      {"sin", portable_sin},        {"cos", portable_cos},     {"arcsin", portable_asin},
+      {"cbrt", portable_cbrt},      {"exp", portable_exp},     {"log", portable_log},
+      {"ndtr", normal_probability}, {"ndtri", normal_quantile}};
+  const Function function = kFunctions.at(name);
+  std::vector<double> results(numbers.data(), numbers.data() + numbers.size());
+  for (double& number : results) number = function(number);
+  const std::size_t size = results.size();
+  return array_from(std::move(results), std::array{size});
+}
+
 void bind_information(nb::module_& module) {
   nb::class_<EigenDirection>(module, "EigenDirection")
       .def_ro("eigenvalue", &EigenDirection::eigenvalue)
@@ -123,6 +140,7 @@ void bind_information(nb::module_& module) {
 
 void bind_tools(nb::module_& module) {
   bind_information(module);
+  module.def("portable", portable, nb::arg("name"), nb::arg("numbers"));
   nb::class_<AccuracyCase>(module, "AccuracyCase")
       .def_ro("name", &AccuracyCase::name)
       .def_ro("shape", &AccuracyCase::shape)

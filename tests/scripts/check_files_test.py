@@ -39,6 +39,30 @@ class CheckFiles(unittest.TestCase):
     def test_what_is_no_test_may_sleep(self):
         self.assertEqual(check_files.check_text("scripts/a.py", HEAD + "time.sleep(1)\n"), [])
 
+    def test_functions_whose_bits_differ_between_machines_are_found_with_their_line(self):
+        for line in ("x = std::sin(y);", "return std::pow(2.0, x);", "std::log(x)", "std::hypotf (a, b)", "::cosl(x)",
+                     "atan2(y, x)", "a * expf(x)", "erfc(x)", "long double x;", "Eigen::AngleAxisd(a, axis)",
+                     "Eigen::Rotation2Df(a)", "a.slerp(t, b)", "m.eulerAngles(0, 1, 2)", "v.array().exp()", "std::tgamma(x)"):
+            for path in ("glidar/sensor/a.cpp", "apps/glidar/a.hpp", "python/src/a.cpp"):
+                found = check_files.check_text(path, HEAD + line + "\n")
+                self.assertEqual(len(found), 1, line)
+                self.assertRegex(found[0], rf"^{path}:3: '.*' has other bits on other machines; use glidar/math/")
+
+    def test_exact_functions_own_functions_and_words_pass(self):
+        lines = ("std::sqrt(x) + std::fma(a, b, c) + std::floor(x) + std::abs(x) + std::ldexp(x, 2)", "portable_sin(x)",
+                 "log(severity, message); // std::sin(x)", '"e sin(φ)" "std::exp(x)"', "exponent(x); distance(x); sinus",
+                 "sincos_turns(x).sine; asin_table[0]; q.norm()")
+        self.assertEqual(check_files.check_text("glidar/a.cpp", HEAD + "\n".join(lines)), [])
+
+    def test_glidars_own_functions_and_what_is_no_product_may_call_the_library(self):
+        for path in ("glidar/math/a.cpp", "tests/math/a_test.cpp", "bench/a.cpp", "scripts/a.py"):
+            self.assertEqual(check_files.check_text(path, HEAD + "x = std::sin(long double{1});\n"), [])
+
+    def test_every_file_off_the_data_path_needs_its_exception(self):
+        for path, reason in check_files.NOT_ON_THE_DATA_PATH.items():
+            self.assertRegex((ROOT / path).read_text(encoding="utf-8"), check_files.NOT_PORTABLE, path)
+            self.assertTrue(reason)
+
     def test_every_exception_is_a_file_that_needs_it(self):
         for path, reason in check_files.SLEEPERS.items():
             self.assertRegex((ROOT / path).read_text(encoding="utf-8"), check_files.SLEEP, path)

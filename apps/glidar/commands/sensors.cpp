@@ -16,6 +16,8 @@
 #include <glidar/math/constants.hpp>
 #include <glidar/sensor/lidar/return_names.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -82,7 +84,7 @@ double span_deg(const Beams& beams, std::size_t first, std::size_t count, std::s
   }
   if (seen.empty()) return 0.0;
   const double cosine = std::clamp(seen.front().dot(seen.back()), -1.0, 1.0);
-  return 180.0 / std::numbers::pi * std::acos(cosine);
+  return 180.0 / std::numbers::pi * portable_acos(cosine);
 }
 
 /// For a camera with distortion: between the outermost pixels of its middle row and column.
@@ -97,9 +99,9 @@ void measure_view(const Beams& beams, const PinholeIntrinsics& k, Summary& summa
 void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
   if (beams.pinhole) {
     summary.across_deg =
-        2.0 * kDegreesPerRadian * std::atan(0.5 * beams.pinhole->width / beams.pinhole->fx);
+        2.0 * kDegreesPerRadian * portable_atan(0.5 * beams.pinhole->width / beams.pinhole->fx);
     summary.upright_deg =
-        2.0 * kDegreesPerRadian * std::atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
+        2.0 * kDegreesPerRadian * portable_atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
     return;
   }
   if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/options/option_values.hpp>
 
+#include <glidar/core/axis_angle.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -110,7 +112,7 @@ Eigen::Quaterniond parse_angle_axis(const std::string& text) {
   const std::vector<double> n = parse_numbers(text, 4, "angle,x,y,z (radians, axis)");
   const Eigen::Vector3d axis(n[1], n[2], n[3]);
   if (axis.isZero(0.0)) throw Error({"", "an axis of length 0", "any other length"});
-  return Eigen::Quaterniond(Eigen::AngleAxisd(n[0], axis.stableNormalized()));
+  return axis_angle(axis.stableNormalized(), n[0]);
 }
 
 Pose parse_pose(const std::string& text) {

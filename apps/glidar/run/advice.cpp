@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/advice.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +38,7 @@ struct ViewGeometry {
 };
 
 double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return portable_atan2(a.cross(b).norm(), a.dot(b));
 }
 
 double pixel_angle_rad(const Beams& beams) {
@@ -142,7 +144,7 @@ std::string reason_for_no_hits(const View& view, const ViewGeometry& geometry,
   }
   const bool around = geometry.distance_m <= 0.5 * geometry.size_m;  // it may surround the sensor
   const double half_size_rad =
-      around ? std::numbers::pi : std::asin(0.5 * geometry.size_m / geometry.distance_m);
+      around ? std::numbers::pi : portable_asin(0.5 * geometry.size_m / geometry.distance_m);
   if (geometry.off_axis_rad - half_size_rad > geometry.view_rad) {
     return fmt::format(
         "the scene is outside the view: its centre is {:.1f} degrees off the "

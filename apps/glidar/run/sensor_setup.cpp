@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 
@@ -45,7 +46,7 @@ bool camera_given(const SensorFlags& f) {
 double field_of_view_rad(const SensorFlags& flags, std::uint32_t height) {
   const double fov_deg = flags.fov_deg.value_or(kDefaultFov_deg);
   const double fov_rad = fov_deg * std::numbers::pi / 180.0;
-  const double focal_px = 0.5 * static_cast<double>(height) / std::tan(0.5 * fov_rad);
+  const double focal_px = 0.5 * static_cast<double>(height) / portable_tan(0.5 * fov_rad);
   require_number(focal_px <= kMaxFocalLength_px, "--fov", fov_deg,
                  "a field of view with a focal length of at most 1e9 pixels");
   return fov_rad;

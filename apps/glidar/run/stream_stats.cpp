@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/stream_stats.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +21,7 @@ constexpr double kWindow_s = 1.0;
 }  // namespace
 
 void DurationHistogram::add(double seconds) {
-  const double position = kBinsPerFactorE * std::log(std::max(seconds, kMin_s) / kMin_s);
+  const double position = kBinsPerFactorE * portable_log(std::max(seconds, kMin_s) / kMin_s);
   ++bins_.at(std::min(static_cast<std::size_t>(position), kBins - 1));
   ++count_;
   max_s_ = std::max(max_s_, seconds);
@@ -31,7 +33,7 @@ double DurationHistogram::quantile_s(double part) const {
   for (std::size_t i = 0; i < kBins && count_ > 0; ++i) {
     seen += static_cast<double>(bins_.at(i));
     if (seen < wanted || seen == 0.0) continue;
-    const double end_s = kMin_s * std::exp(static_cast<double>(i + 1) / kBinsPerFactorE);
+    const double end_s = kMin_s * portable_exp(static_cast<double>(i + 1) / kBinsPerFactorE);
     return std::min(end_s, max_s_);
   }
   return max_s_;

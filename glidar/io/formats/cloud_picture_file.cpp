@@ -8,6 +8,7 @@
 #include <glidar/io/pictures/png_image.hpp>
 #include <glidar/io/pictures/point_colours.hpp>
 #include <glidar/io/pictures/point_image.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 
@@ -190,7 +191,7 @@ GroundGrid grid_of(const CloudScene& scene, const Perspective& view) {
   for (const Eigen::Vector3d& point : scene.shown.points_m) heights_m.push_back(point.z());
   const ColourScale heights = make_colour_scale(heights_m);
   const double extent_m = (view.target_m - view.eye_m).norm();
-  const double power = std::pow(10.0, std::floor(std::log10(0.2 * extent_m)));
+  const double power = power_of_ten(decimal_exponent(0.2 * extent_m));
   const double digits = 0.2 * extent_m / power;
   const double factor = digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0;
   return {heights.low, factor * power, view.target_m.head<2>()};

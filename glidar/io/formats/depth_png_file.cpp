@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/pictures/png_image.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 
@@ -20,7 +21,7 @@ constexpr double kMaxDepthGrey = std::numeric_limits<std::uint16_t>::max();
 /// The maximum scale for this depth, rounded down to two digits.
 double fitting_scale(double depth_m) {
   const double exact = kMaxDepthGrey / depth_m;
-  const double unit = std::pow(10.0, std::floor(std::log10(exact)) - 1.0);
+  const double unit = power_of_ten(decimal_exponent(exact) - 1);
   return std::floor(exact / unit) * unit;
 }
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/kitti_labels.hpp>
 
+#include <glidar/core/axis_angle.hpp>
+#include <glidar/math/portable.hpp>
+
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
@@ -39,9 +42,9 @@ struct LevelBox {
 double heading(const Eigen::Matrix3d& camera_from_object) {
   constexpr double kUpright = 1e-6;
   const Eigen::Vector3d x = camera_from_object.col(0);
-  if (std::hypot(x.x(), x.z()) > kUpright) return std::atan2(-x.z(), x.x());
+  if (portable_hypot(x.x(), x.z()) > kUpright) return portable_atan2(-x.z(), x.x());
   const Eigen::Vector3d y = camera_from_object.col(1);
-  return std::atan2(-y.z(), y.x()) - std::numbers::pi / 2.0;
+  return portable_atan2(-y.z(), y.x()) - std::numbers::pi / 2.0;
 }
 
 /// The angle normalised to -pi to pi.
@@ -54,7 +57,7 @@ LevelBox level_box(const PlacedMesh& seen) {
   LevelBox box;
   box.rotation_y = wrapped_angle(heading(seen.camera_from_object.linear()));
   const Eigen::Matrix3d camera_from_box =
-      Eigen::AngleAxisd(box.rotation_y, Eigen::Vector3d::UnitY()).toRotationMatrix();
+      axis_angle(Eigen::Vector3d::UnitY(), box.rotation_y).toRotationMatrix();
   Eigen::AlignedBox3d extent;
   for (const Triangle& triangle : seen.mesh.triangles) {
     for (const std::uint32_t corner : triangle)
@@ -109,7 +112,8 @@ std::string object_line(const std::string& type, int occluded, const PlacedMesh&
                         const RectifiedCamera& camera) {
   const std::optional<ImageBox> image = image_box(seen, camera);
   const LevelBox box = level_box(seen);
-  const double alpha = wrapped_angle(box.rotation_y - std::atan2(box.bottom.x(), box.bottom.z()));
+  const double alpha =
+      wrapped_angle(box.rotation_y - portable_atan2(box.bottom.x(), box.bottom.z()));
   std::string line =
       fmt::format("{} {} {} {} {}", type, image ? decimal(image->truncated) : decimal(1.0),
                   occluded, decimal(alpha), box_text(image));

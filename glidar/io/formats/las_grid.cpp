@@ -3,6 +3,7 @@
 #include <glidar/io/formats/las_grid.hpp>
 
 #include <glidar/io/formats/point_rows.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 
@@ -19,13 +20,6 @@ using Coordinates = Eigen::Map<const Eigen::Matrix3Xd>;
 constexpr double kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr int kDefaultStep = -4;  // exponent of 0.1 mm
 constexpr double kStepsPerExtent = 1e6;
-
-/// 10^exponent: powers up to 10^22 are exact, and the others are rounded once.
-double power_of_ten(int exponent) {
-  double power = 1.0;
-  for (int i = 0; i < std::abs(exponent); ++i) power *= 10.0;
-  return exponent < 0 ? 1.0 / power : power;
-}
 
 struct Bounds {
   Eigen::Vector3d low;

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/pictures/png_image.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 
@@ -103,7 +104,7 @@ std::vector<std::uint8_t> rgb_pixels(const PointCloud& cloud) {
   const auto& incidences = field_values<float>(cloud, "incidence");
   std::vector<std::uint8_t> pixels(colours.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double light = std::cos(double{incidences[i / 3]});  // NaN for no surface
+    const double light = portable_cos(double{incidences[i / 3]});  // NaN for no surface
     pixels[i] = std::isnan(light) ? 0 : scaled<std::uint8_t>(colours[i] * light, 255.0);
   }
   return pixels;

@@ -4,6 +4,7 @@
 
 #include <glidar/io/model/corner_angle.hpp>
 #include <glidar/io/model/vertex_weld.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -83,8 +84,8 @@ class Smoother {
   Smoother(Mesh& mesh, double crease_angle_rad)
       : mesh_(mesh),
         faces_(faces_of(mesh)),
-        cos_crease_(static_cast<float>(std::cos(crease_angle_rad))),
-        cos_half_(static_cast<float>(std::cos(0.5 * crease_angle_rad))),
+        cos_crease_(static_cast<float>(portable_cos(crease_angle_rad))),
+        cos_half_(static_cast<float>(portable_cos(0.5 * crease_angle_rad))),
         assigned_(mesh.positions_m.size(), false) {
     mesh.normals.assign(mesh.positions_m.size(), Eigen::Vector3f::UnitZ());
   }

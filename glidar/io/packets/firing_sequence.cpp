@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -124,7 +125,7 @@ std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& 
     const Eigen::Vector3d& direction = beams.directions[entry];
     sequences[col].stamp_ns =
         frame.stamp_ns + beams.times_ns[entry] - std::llround(first.fire_time_ns);
-    sequences[col].azimuth_rad = std::atan2(direction.y(), direction.x()) -
+    sequences[col].azimuth_rad = portable_atan2(direction.y(), direction.x()) -
                                  first.azimuth_offset_rad -
                                  turn_rate_rad_per_ns(spinning) * first.fire_time_ns;
   }

@@ -3,6 +3,7 @@
 #include <glidar/io/packets/hdl64_status.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -92,8 +93,8 @@ void Hdl64Status::put_laser(std::size_t laser, const SpinningChannel& channel) {
   constexpr double kCentidegree_rad = 0.01 * kDegree;
   const std::size_t at = kFirstLaser + laser * kLaserValues;
   const double elevation = channel.elevation_rad;
-  const double height_m =
-      channel.origin_m.z() * std::cos(elevation) - channel.origin_m.x() * std::sin(elevation);
+  const double height_m = channel.origin_m.z() * portable_cos(elevation) -
+                          channel.origin_m.x() * portable_sin(elevation);
   values_[at] = static_cast<std::uint8_t>(laser);
   put_number(at + 1, elevation / kCentidegree_rad);
   put_number(at + 3, channel.azimuth_offset_rad / kCentidegree_rad);

@@ -3,6 +3,7 @@
 #include <glidar/io/pictures/chart.hpp>
 
 #include <glidar/io/pictures/font.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ double round_step(double min_step, bool in_degrees) {
     const auto* const part = std::lower_bound(kParts.begin(), kParts.end(), min_step);
     return part == kParts.end() ? 180.0 : *part;
   }
-  const double power = std::pow(10.0, std::floor(std::log10(min_step)));
+  const double power = power_of_ten(decimal_exponent(min_step));
   for (const double factor : {1.0, 2.0, 5.0}) {
     if (factor * power >= min_step) return factor * power;
   }
@@ -177,14 +178,14 @@ void draw_grid(Picture& picture, const Box& plot, const std::vector<AxisLabel>& 
 }
 
 void draw_sensor(Picture& picture, const Box& plot, const SensorMark& mark, double size_px) {
-  const double length = std::hypot(mark.dx, mark.dy);
+  const double length = portable_hypot(mark.dx, mark.dy);
   const bool is_disc = length < 0.1;
   const double ahead_x = is_disc ? 0.0 : mark.dx / length;
   const double ahead_y = is_disc ? 0.0 : mark.dy / length;
   const auto is_covered = [&](double x, double y, double size) {
     const double along = x * ahead_x + y * ahead_y;
     const double across = std::abs(x * ahead_y - y * ahead_x);
-    if (is_disc) return std::hypot(x, y) <= 0.6 * size;
+    if (is_disc) return portable_hypot(x, y) <= 0.6 * size;
     return along >= -0.6 * size && across <= 0.5 * (size - along) * 0.75;
   };
   const auto reach = static_cast<std::int64_t>(2.0 * size_px);

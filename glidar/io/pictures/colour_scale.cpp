@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/pictures/colour_scale.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +57,7 @@ ColourScale make_colour_scale(std::span<const double> values, ColourScale::Start
 
 std::string scale_number(double value, double span) {
   if (value == 0.0) return "0";
-  const double needed = span > 0.0 ? 2.0 - std::floor(std::log10(span)) : 3.0;
+  const double needed = span > 0.0 ? 2.0 - decimal_exponent(span) : 3.0;
   const int decimals = static_cast<int>(std::clamp(needed, 0.0, 9.0));
   constexpr double kMax = 1e5;
   constexpr std::size_t kLongest = 12;

@@ -3,6 +3,7 @@
 #include <glidar/io/pictures/point_image.hpp>
 
 #include <glidar/io/pictures/colour_scale.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <algorithm>
 #include <array>
@@ -200,9 +201,9 @@ std::vector<double> shade_edges(const PointImage& image) {
       if (x < 0 || y < 0 || x >= width || y >= height) continue;
       const double before = image.depths[static_cast<std::size_t>(y * width + x)];
       if (std::isinf(before)) continue;
-      sum += std::max(0.0, std::log2(image.depths[pixel] / before));
+      sum += std::max(0.0, portable_log2(image.depths[pixel] / before));
     }
-    const double shade = kDarkest + (1.0 - kDarkest) * std::exp(-kStrength * sum);
+    const double shade = kDarkest + (1.0 - kDarkest) * portable_exp(-kStrength * sum);
     shades[pixel] = std::round(kSteps * shade) / kSteps;
   }
   return shades;

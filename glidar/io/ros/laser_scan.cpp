@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 
@@ -76,7 +77,7 @@ float range_of(const CloudSource& source, std::size_t beam) {
       const SensorAxes axes = axes_of(beams);
       Eigen::Vector3d point = source.frame.range_m[beam] * beams.directions[beam];
       if (!beams.origins_m.empty()) point += beams.origins_m[beam];
-      return static_cast<float>(std::hypot(point.dot(axes.ahead), point.dot(axes.left)));
+      return static_cast<float>(portable_hypot(point.dot(axes.ahead), point.dot(axes.left)));
     }
     case Status::too_near:
       return -std::numeric_limits<float>::infinity();

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/ros/pose_message.hpp>
 
+#include <glidar/math/portable.hpp>
+#include <glidar/motion/rotation_vector.hpp>
+
 #include <cmath>
 
 namespace glidar::ros {
@@ -69,15 +72,15 @@ Clock to_clock(std::int64_t t_ns) {
 
 BodyTwist mean_twist(const Pose& before, const Pose& after, double seconds) {
   const Pose moved = before.inverse() * after;
-  const Eigen::AngleAxisd rotation(Eigen::Quaterniond(moved.linear()).normalized());
-  const double angle = rotation.angle();
-  const Eigen::Vector3d turned = angle * rotation.axis();
+  const Eigen::Vector3d turned = rotation_between(Eigen::Quaterniond::Identity(),
+                                                  Eigen::Quaterniond(moved.linear()).normalized());
+  const double angle = turned.norm();
   // The inverse of the left Jacobian; 1/12 is its limit for small angles.
   constexpr double kSmall = 1e-4;
   const double factor =
-      angle < kSmall
-          ? 1.0 / 12.0
-          : (1.0 - 0.5 * angle * std::sin(angle) / (1.0 - std::cos(angle))) / (angle * angle);
+      angle < kSmall ? 1.0 / 12.0
+                     : (1.0 - 0.5 * angle * portable_sin(angle) / (1.0 - portable_cos(angle))) /
+                           (angle * angle);
   const Eigen::Matrix3d cross = cross_matrix(turned);
   const Eigen::Vector3d moved_m = moved.translation() - 0.5 * cross * moved.translation() +
                                   factor * cross * cross * moved.translation();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/beam_angles.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/render/scan_raster/grid_view.hpp>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ void find_azimuths(const Beams& beams, std::uint32_t row, std::span<double> azim
     const double x = axes.ahead.dot(d);
     const double y = axes.left.dot(d);
     const double tangent = axes.up.dot(d) / std::sqrt(x * x + y * y);
-    azimuths[c] = std::atan2(y, x);
+    azimuths[c] = portable_atan2(y, x);
     if (std::isnan(azimuths[c])) continue;
     ++raw.beams;
     raw.is_steep = raw.is_steep || !(std::abs(tangent) <= kMaxTangent);

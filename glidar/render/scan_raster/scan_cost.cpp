@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/scan_cost.hpp>
 
+#include <glidar/math/portable.hpp>
+
 #include <algorithm>
 #include <bitset>
 #include <cmath>
@@ -34,7 +36,7 @@ class ScannerView {
     const double tangent = axes_.up.dot(point) / std::sqrt(x * x + y * y);
     const double columns_per_rotation = 2.0 * std::numbers::pi / std::abs(columns_.step_rad);
     const double column =
-        (std::atan2(y, x) - columns_.phase_rad) / columns_.step_rad - columns_.first;
+        (portable_atan2(y, x) - columns_.phase_rad) / columns_.step_rad - columns_.first;
     const double height = tangents_.high - tangents_.low;
     const bool is_level = !(height > 0.0) && tangent == tangents_.low;
     return {(column - columns_per_rotation * std::floor(column / columns_per_rotation)) /

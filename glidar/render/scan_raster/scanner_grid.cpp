@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/scanner_grid.hpp>
 
+#include <glidar/math/portable.hpp>
 #include <glidar/render/common/rounding.hpp>
 
 #include <algorithm>
@@ -38,9 +39,9 @@ double margin_of(const std::vector<RowAngles>& rows) {
 /// Forward at an azimuth, to the side of rising columns, up.
 Eigen::Matrix3d sector_frame(const SensorAxes& axes, double azimuth_rad, bool rises) {
   const Eigen::Vector3d forward =
-      std::cos(azimuth_rad) * axes.ahead + std::sin(azimuth_rad) * axes.left;
+      portable_cos(azimuth_rad) * axes.ahead + portable_sin(azimuth_rad) * axes.left;
   const Eigen::Vector3d left =
-      std::cos(azimuth_rad) * axes.left - std::sin(azimuth_rad) * axes.ahead;
+      portable_cos(azimuth_rad) * axes.left - portable_sin(azimuth_rad) * axes.ahead;
   Eigen::Matrix3d rows;
   rows.row(0) = forward;
   rows.row(1) = rises ? left : Eigen::Vector3d(-left);
@@ -171,8 +172,8 @@ GridView ScannerGrid::view() const {
   view.middle_column = 0.5F * static_cast<float>(shape_.columns) - 0.5F;
   view.column_margin = static_cast<float>(kCellMargin + kAzimuthMargin_rad / step_rad);
   const double half_rad = (0.5 * shape_.columns + margin_of(rows_)) * step_rad;
-  view.max_slope = next_above(std::tan(half_rad));
-  const double secant = 1.0001 / std::cos(half_rad);
+  view.max_slope = next_above(portable_tan(half_rad));
+  const double secant = 1.0001 / portable_cos(half_rad);
   view.lowest_slope = next_below(std::min(lowest_tangent_, lowest_tangent_ * secant));
   view.highest_slope = next_above(std::max(highest_tangent_, highest_tangent_ * secant));
   view.elevations = {

@@ -6,6 +6,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/unit_conversion.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 #include <glidar/math/simd.hpp>
 
 #include <algorithm>
@@ -27,8 +28,10 @@ struct Ring {
 };
 
 Ring ring_between(double from_u, double to_u) {
-  const auto first_moment = [](double u) { return std::isinf(u) ? 0.0 : (u + 1.0) * std::exp(-u); };
-  const double share = std::exp(-from_u) - std::exp(-to_u);
+  const auto first_moment = [](double u) {
+    return std::isinf(u) ? 0.0 : (u + 1.0) * portable_exp(-u);
+  };
+  const double share = portable_exp(-from_u) - portable_exp(-to_u);
   return {share, (first_moment(from_u) - first_moment(to_u)) / share};
 }
 
@@ -197,8 +200,8 @@ std::vector<SubRay> sample_footprint(const Footprint& f) {
     const double radius = std::sqrt(0.5 * scale * rings[k].mean_u);  // of w
     for (unsigned j = 0; j < count; ++j) {
       const double angle = 2.0 * std::numbers::pi * (j + k * kTwist) / count;
-      const double c = 0.5 * radius * std::cos(angle);
-      const double s = 0.5 * radius * std::sin(angle);
+      const double c = 0.5 * radius * portable_cos(angle);
+      const double s = 0.5 * radius * portable_sin(angle);
       const Eigen::Vector2d slope(-s * f.divergence_x_rad, c * f.divergence_y_rad);
       rays.push_back({.offset_m = {c * f.exit_x_m, s * f.exit_y_m},
                       .slope = slope,

@@ -4,8 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
-#include <glidar/math/elementary.hpp>
 #include <glidar/math/gaussian.hpp>
+#include <glidar/math/portable.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/lidar/surface_reflectance.hpp>
 
@@ -246,17 +246,17 @@ double with_noise(const LidarEquation& light, double signal, double normal) {
 double detection_probability(const LidarEquation& light, double signal) {
   if (is_lost_in_noise(light, signal)) return 0.0;
   if (light.noise_sigma == 0.0) return signal >= 1.0 ? 1.0 : 0.0;
-  return 0.5 * std::erfc((1.0 - signal) / (light.noise_sigma * std::numbers::sqrt2));
+  return 0.5 * portable_erfc((1.0 - signal) / (light.noise_sigma * std::numbers::sqrt2));
 }
 
 double noise_sigma_of(double range50_m, double range90_m, double exponent) {
   constexpr double kNormalQuantile90 = 1.2815515655446004;  // Phi of it is 0.9
-  return (std::pow(range50_m / range90_m, exponent) - 1.0) / kNormalQuantile90;
+  return (portable_pow(range50_m / range90_m, exponent) - 1.0) / kNormalQuantile90;
 }
 
 double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
                       double range_b_m) {
-  return std::log(reflectance_a / reflectance_b) / std::log(range_a_m / range_b_m);
+  return portable_log(reflectance_a / reflectance_b) / portable_log(range_a_m / range_b_m);
 }
 
 void shade_lidar(const LidarEquation& light, const Scene& scene, double wavelength_m,

@@ -3,6 +3,7 @@
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <cmath>
 #include <limits>
@@ -58,8 +59,9 @@ FiringRange firings_in(const FiringSchedule& schedule, const FrameInterval& inte
 }
 
 Eigen::Vector3d direction_at(double azimuth_rad, double elevation_rad) {
-  const double level = std::cos(elevation_rad);
-  return {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), std::sin(elevation_rad)};
+  const SineCosine up = portable_sincos(elevation_rad);
+  const SineCosine around = portable_sincos(azimuth_rad);
+  return {up.cosine * around.cosine, up.cosine * around.sine, up.sine};
 }
 
 }  // namespace glidar

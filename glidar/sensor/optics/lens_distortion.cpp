@@ -3,6 +3,7 @@
 #include <glidar/sensor/optics/lens_distortion.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -82,8 +83,8 @@ Eigen::Vector3d undistorted_ray(const Fisheye& k, const Eigen::Vector2d& plane) 
         1.0 + t2 * (3.0 * k.k1 + t2 * (5.0 * k.k2 + t2 * (7.0 * k.k3 + t2 * 9.0 * k.k4)));
     if (!(slope > 0.0) || !(theta >= 0.0) || theta > std::numbers::pi) break;
     if (std::abs(value - radius) <= kConverged * (1.0 + radius)) {
-      const Eigen::Vector2d side = plane / radius * std::sin(theta);
-      return Eigen::Vector3d(side.x(), side.y(), std::cos(theta)).normalized();
+      const Eigen::Vector2d side = plane / radius * portable_sin(theta);
+      return Eigen::Vector3d(side.x(), side.y(), portable_cos(theta)).normalized();
     }
     theta -= (value - radius) / slope;
   }

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 #include <glidar/sensor/optics/lens_distortion.hpp>
 
 #include <cmath>
@@ -89,7 +90,7 @@ void visit_focal_length(FieldVisitor& visitor, PinholeIntrinsics& k) {
 }  // namespace
 
 double focal_length_px(std::uint32_t pixels, double fov_rad) {
-  return static_cast<double>(pixels) / (2.0 * std::tan(fov_rad / 2.0));
+  return static_cast<double>(pixels) / (2.0 * portable_tan(fov_rad / 2.0));
 }
 
 Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y_rad) {

@@ -7,6 +7,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/portable.hpp>
 #include <glidar/sensor/optics/spinning_keys.hpp>
 #include <numeric>
 
@@ -192,8 +193,8 @@ FiringColumns columns_of(const Spinning& s, const std::vector<std::int64_t>& seq
 /// most of the time, so each is computed once.
 void set_beams(const Spinning& s, const SpinningChannel& channel, const FiringColumns& columns,
                const Heads& heads, std::size_t first, Beams& beams) {
-  const double level = std::cos(channel.elevation_rad);
-  const double height = std::sin(channel.elevation_rad);
+  const double level = portable_cos(channel.elevation_rad);
+  const double height = portable_sin(channel.elevation_rad);
   const Eigen::Vector3d& offset = channel.origin_m;
   for (std::size_t n = 0; n < heads.azimuths_rad.size(); ++n) {
     const std::size_t i = first + columns.indices[n];

@@ -14,6 +14,7 @@ import numpy as np
 from PIL import Image
 
 from glidar import Error
+from glidar._poses import inverse
 from glidar.campaign import bop_models
 
 FOLDER = "bop"
@@ -97,7 +98,7 @@ class BopOutput:
         except Error as error:
             raise TrialError(*error.args) from None
         image = trial - self._first
-        camera_from_world = np.linalg.inv(frame.world_from_sensor)
+        camera_from_world = inverse(frame.world_from_sensor)
         self._camera[image] = {"cam_K": intrinsics.ravel().tolist(),
                                "depth_scale": self._options.depth_scale_mm,
                                "cam_R_w2c": camera_from_world[:3, :3].ravel().tolist(),

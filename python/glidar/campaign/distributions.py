@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from glidar.campaign import yaml_file as yf
+from glidar.campaign.portable import exp, log, ndtr, ndtri
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class LogUniform:
     cells = 1
 
     def sample(self, u, cell):
-        return self.min * (self.max / self.min) ** u[:, 0]
+        return self.min * exp(log(self.max / self.min) * u[:, 0])
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,6 @@ class Normal:
     cells = 1
 
     def sample(self, u, cell):
-        from scipy.special import ndtr, ndtri  # imported here because it loads slowly
         # Probabilities near 1 have low resolution: above the mean, sample the mirrored lower tail.
         sigma = -self.sigma if self.min > self.mean else self.sigma
         begin, end = (ndtr((x - self.mean) / sigma) for x in (self.min, self.max))

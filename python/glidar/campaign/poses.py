@@ -13,6 +13,7 @@ import numpy as np
 from glidar import Error
 from glidar.campaign import rotations, yaml_file as yf
 from glidar.campaign.distributions import Constant, read_distribution
+from glidar.campaign.portable import cbrt, cos, length, sin
 
 POSITIONS = ["point", "box", "shell", "cone", "grid", "sphere_grid"]
 ORIENTATIONS = ["uniform", "look_at", "cone", "quaternion", "rotation_vector", "euler_deg"]
@@ -57,7 +58,7 @@ class Shell:
         # The volume grows with the cube of the radius, a cap with 1 - cos of its angle.
         cube = self.min_radius_m**3 + (self.max_radius_m**3 - self.min_radius_m**3) * u[:, 2]
         directions = rotations.directions_in_cone(self.axis, self.half_angle_rad, u[:, :2])
-        return np.array(self.centre) + np.cbrt(cube)[:, None] * directions
+        return np.array(self.centre) + cbrt(cube)[:, None] * directions
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ class SphereGrid:
         z = 1.0 - (2.0 * k + 1.0) / self.count
         azimuth = np.pi * (3.0 - np.sqrt(5.0)) * k  # the golden angle
         r = np.sqrt(1.0 - z * z)
-        unit = np.stack([r * np.cos(azimuth), r * np.sin(azimuth), z], axis=1)
+        unit = np.stack([r * cos(azimuth), r * sin(azimuth), z], axis=1)
         return np.array(self.centre) + self.radius_m * unit
 
 
@@ -265,7 +266,7 @@ def _quaternion(field):
     q = np.array([yf.number(yf.need(field, found, key)) for key in "wxyz"])
     if not q.any():
         yf.reject(field, "a quaternion of length 0", "a quaternion other than 0")
-    return tuple(q / np.linalg.norm(q))
+    return tuple(q / length(q))
 
 
 def _euler(field):

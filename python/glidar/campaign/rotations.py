@@ -4,6 +4,8 @@
 
 import numpy as np
 
+from glidar.campaign.portable import arcsin, cos, length, sin
+
 MIN_SINE = 1e-9  # below it the roll around a line of sight is undefined
 
 
@@ -12,7 +14,7 @@ def uniform_quaternions(u):
     rotations", Graphics Gems III, 1992)."""
     a, b = np.sqrt(1.0 - u[:, 0]), np.sqrt(u[:, 0])
     first, second = 2.0 * np.pi * u[:, 1], 2.0 * np.pi * u[:, 2]
-    return np.stack([b * np.cos(second), a * np.sin(first), a * np.cos(first), b * np.sin(second)],
+    return np.stack([b * cos(second), a * sin(first), a * cos(first), b * sin(second)],
                     axis=1)
 
 
@@ -44,11 +46,11 @@ def quaternions(m):
 
 def quaternion_of_vector(vector):
     """The quaternion of a rotation vector: axis times angle in radians."""
-    angle = float(np.linalg.norm(vector))
+    angle = float(length(vector))
     if angle == 0.0:
         return 1.0, 0.0, 0.0, 0.0
-    return (float(np.cos(angle / 2)),
-            *(float(x) for x in np.sin(angle / 2) / angle * np.asarray(vector, float)))
+    return (float(cos(angle / 2)),
+            *(float(x) for x in sin(angle / 2) / angle * np.asarray(vector, float)))
 
 
 def quaternion_of_euler(roll_rad, pitch_rad, yaw_rad):
@@ -64,7 +66,7 @@ def quaternion_of_euler(roll_rad, pitch_rad, yaw_rad):
 def product(p, q):
     """The product p q: rotates by q, then by p."""
     pw, pv, qw, qv = p[0], np.asarray(p[1:]), q[0], np.asarray(q[1:])
-    return np.array([pw * qw - pv @ qv, *(pw * qv + qw * pv + np.cross(pv, qv))])
+    return np.array([pw * qw - (pv * qv).sum(), *(pw * qv + qw * pv + np.cross(pv, qv))])
 
 
 def _perpendicular_pair(forward):
@@ -80,12 +82,12 @@ def perturbed_directions(forward, half_angle_rad, u):
     angle is uniform (Archimedes)."""
     forward = forward / np.linalg.norm(forward, axis=1, keepdims=True)
     # 1 - cos a = 2 sin^2(a / 2), which is precise for narrow cones
-    half_sine = np.sin(half_angle_rad / 2.0) * np.sqrt(u[:, 0])
-    angle = 2.0 * np.arcsin(half_sine)
+    half_sine = sin(half_angle_rad / 2.0) * np.sqrt(u[:, 0])
+    angle = 2.0 * arcsin(half_sine)
     azimuth = 2.0 * np.pi * u[:, 1]
     first, second = _perpendicular_pair(forward)
-    sideways = np.cos(azimuth)[:, None] * first + np.sin(azimuth)[:, None] * second
-    return np.cos(angle)[:, None] * forward + np.sin(angle)[:, None] * sideways
+    sideways = cos(azimuth)[:, None] * first + sin(azimuth)[:, None] * second
+    return cos(angle)[:, None] * forward + sin(angle)[:, None] * sideways
 
 
 def directions_in_cone(axis, half_angle_rad, u):
@@ -98,13 +100,13 @@ def look_rotations(forward, up, roll_rad, boresight):
     boresight, right-handed. Boresight "z": x right, y down, z forward; "x": x forward, y left, z up (REP-103). Where
     up is parallel to forward, another axis is used."""
     forward = forward / np.linalg.norm(forward, axis=1, keepdims=True)
-    up = np.asarray(up, float) / np.linalg.norm(up)
+    up = np.asarray(up, float) / length(up)
     right = np.cross(forward, up)
-    length = np.linalg.norm(right, axis=1, keepdims=True)
-    right = np.where(length > MIN_SINE, right / np.maximum(length, MIN_SINE),
+    sine = np.linalg.norm(right, axis=1, keepdims=True)
+    right = np.where(sine > MIN_SINE, right / np.maximum(sine, MIN_SINE),
                      _perpendicular_pair(forward)[0])
     down = np.cross(forward, right)
-    c, s = np.cos(roll_rad)[:, None], np.sin(roll_rad)[:, None]
+    c, s = cos(roll_rad)[:, None], sin(roll_rad)[:, None]
     right, down = c * right + s * down, c * down - s * right
     camera = np.stack([right, down, forward], axis=2)
     body = np.stack([forward, -right, -down], axis=2)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Distributions of numbers and poses against closed forms."""
 
+import hashlib
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -155,3 +157,16 @@ def test_sphere_grids_are_even_and_box_grids_vary_x_fastest():
     box = poses.BoxGrid((0, 0, 5), (1, 2, 5), (2, 3, 1))
     points = box.sample(np.empty((6, 0)), np.arange(6))
     assert points.tolist() == [[0, 0, 5], [1, 0, 5], [0, 1, 5], [1, 1, 5], [0, 2, 5], [1, 2, 5]]
+
+
+def test_samples_have_the_same_bytes_on_every_machine():
+    position = np.tile([0.0, -3.0, 0.0], (1000, 1))
+    cells, sensors = np.arange(1000), np.full(1000, "x")
+    found = hashlib.sha256()
+    for distribution in (d.Uniform(-2, 5), d.LogUniform(1e-3, 10), d.Normal(1.0, 2.0, 0.0, 4.0), d.Normal(0, 1, 5, 9),
+                         poses.Shell((1.0, 2.0, 3.0), (0, 0.6, 0.8), 0.7, 2.0, 5.0), poses.SphereGrid((0, 0, 0), 2.0, 1000)):
+        found.update(distribution.sample(uniforms(distribution.dims)[:1000], cells).tobytes())
+    for distribution in (poses.UniformRotation(), poses.FixedRotation(rotations.quaternion_of_euler(0.3, -0.2, 1.0)),
+                         poses.LookAt((0.5, 0, 0), None, (0, 0.1, 1), 0.35, d.Uniform(-180, 180))):
+        found.update(distribution.sample(position, uniforms(distribution.dims)[:1000], cells, sensors).tobytes())
+    assert found.hexdigest() == "5f254fc8e77b4ea02607959009e27aeb4e6127b310172f87ebc10705618b329d"

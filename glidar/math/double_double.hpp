@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/math/exact_product.hpp>
+
+#include <cmath>
+#include <compare>
+
+namespace glidar {
+
+/// A number of about 106 bits as the sum high + low, where high is the sum rounded to double.
+/// Unlike long double, it has the same bits on every machine. The relative error of a sum, product,
+/// quotient or square root is below 2^-102, unless parts overflow or underflow: T. J. Dekker,
+/// "A floating-point technique for extending the available precision", Numer. Math. 18 (1971).
+struct DoubleDouble {
+  double high = 0.0;
+  double low = 0.0;
+
+  constexpr DoubleDouble() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): every double is one
+  constexpr DoubleDouble(double value) : high(value) {}
+  constexpr DoubleDouble(double upper, double lower) : high(upper), low(lower) {}
+
+  /// The nearest double.
+  explicit constexpr operator double() const { return high; }
+
+  constexpr auto operator<=>(const DoubleDouble&) const = default;
+  constexpr DoubleDouble operator-() const { return {-high, -low}; }
+};
+
+/// a + b exactly: Knuth, "The Art of Computer Programming" 2, 4.2.2, theorem B.
+inline DoubleDouble exact_sum(double a, double b) {
+  const double sum = a + b;
+  const double part = sum - a;
+  return {sum, (a - (sum - part)) + (b - part)};
+}
+
+/// a b exactly.
+inline DoubleDouble exact_product(double a, double b) {
+  const double product = a * b;
+  return {product, ExactProduct::error(a, b, product)};
+}
+
+inline DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble high = exact_sum(a.high, b.high);
+  const DoubleDouble low = exact_sum(a.low, b.low);
+  const DoubleDouble sum = exact_sum(high.high, high.low + low.high);
+  return exact_sum(sum.high, sum.low + low.low);
+}
+
+inline DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) {
+  return a + -b;
+}
+
+inline DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble product = exact_product(a.high, b.high);
+  return exact_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
+}
+
+/// Long division: each quotient of the leading parts adds 52 bits.
+inline DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
+  const double first = a.high / b.high;
+  DoubleDouble rest = a - b * first;
+  const double second = rest.high / b.high;
+  rest = rest - b * second;
+  return exact_sum(first, second) + rest.high / b.high;
+}
+
+inline DoubleDouble& operator+=(DoubleDouble& a, const DoubleDouble& b) {
+  return a = a + b;
+}
+
+inline DoubleDouble& operator-=(DoubleDouble& a, const DoubleDouble& b) {
+  return a = a - b;
+}
+
+inline DoubleDouble& operator*=(DoubleDouble& a, const DoubleDouble& b) {
+  return a = a * b;
+}
+
+inline DoubleDouble& operator/=(DoubleDouble& a, const DoubleDouble& b) {
+  return a = a / b;
+}
+
+inline DoubleDouble abs(const DoubleDouble& a) {
+  return a.high < 0.0 ? -a : a;
+}
+
+/// One step of Newton's method from the root of the leading part.
+inline DoubleDouble sqrt(const DoubleDouble& a) {
+  const double root = std::sqrt(a.high);
+  if (!(root > 0.0)) return root;
+  return exact_sum(root, (a - exact_product(root, root)).high / (2.0 * root));
+}
+
+}  // namespace glidar
