@@ -51,20 +51,18 @@ def expected(name):
 LAYOUTS = {
     "minimal": "x <f4 0, y <f4 4, z <f4 8",
     "velodyne": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, ring <u2 16, time <f4 18",
-    "ouster": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, "
-    "ring <u2 22, ambient <u2 24, range <u4 26",
-    "ouster-2022": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, "
-    "ring |u1 22, noise <u2 23, range <u4 25",
-    "livox-custom": "offset_time <u4 0, x <f4 4, y <f4 8, z <f4 12, reflectivity |u1 16, tag |u1 17, "
-    "line |u1 18",
+    "ouster": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, ring <u2 22, ambient <u2 24, "
+    "range <u4 26",
+    "ouster-2022": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, ring |u1 22, noise <u2 23, "
+    "range <u4 25",
+    "livox-custom": "offset_time <u4 0, x <f4 4, y <f4 8, z <f4 12, reflectivity |u1 16, tag |u1 17, line |u1 18",
     "robosense": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, ring <u2 16, timestamp <f8 18",
     "hesai": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, ring <u2 16, timestamp <f8 18",
-    "livox": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, tag |u1 16, line |u1 17, "
-    "timestamp <f8 18",
-    "autoware": "x <f4 0, y <f4 4, z <f4 8, intensity |u1 12, return_type |u1 13, channel <u2 14, "
-    "azimuth <f4 16, elevation <f4 20, distance <f4 24, time_stamp <u4 28",
-    "ouster-fast-lio": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, "
-    "ring |u1 22, ambient <u2 23, range <u4 25",
+    "livox": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, tag |u1 16, line |u1 17, timestamp <f8 18",
+    "autoware": "x <f4 0, y <f4 4, z <f4 8, intensity |u1 12, return_type |u1 13, channel <u2 14, azimuth <f4 16, "
+    "elevation <f4 20, distance <f4 24, time_stamp <u4 28",
+    "ouster-fast-lio": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, ring |u1 22, "
+    "ambient <u2 23, range <u4 25",
     "robosense-xyzi": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12",
 }
 
@@ -98,25 +96,20 @@ def layout_values(c):
         "minimal": {},
         "velodyne": {"intensity": percent, "ring": c["ring"], "time": c["time"] * 1e-9},
         "ouster": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
-                   "ring": c["ring"], "ambient": zero,
-                   "range": np.floor(np.nan_to_num(c["range"]) * 1000 + 0.5)},
+                   "ring": c["ring"], "ambient": zero, "range": np.floor(np.nan_to_num(c["range"]) * 1000 + 0.5)},
         "livox": {"intensity": reflectivity_byte(c["intensity"], 150), "tag": zero,
                   "line": np.minimum(c["ring"], 255), "timestamp": c["stamp"].astype(np.float64)},
         "ouster-2022": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
                         "ring": np.minimum(c["ring"], 255), "noise": zero,
                         "range": np.floor(np.nan_to_num(c["range"]) * 1000 + 0.5)},
-        "livox-custom": {"offset_time": c["time"], "reflectivity": reflectivity_byte(c["intensity"], 150),
-                         "tag": zero, "line": np.minimum(c["ring"], 255)},
-        "robosense": {"intensity": percent, "ring": c["ring"],
-                      "timestamp": c["stamp"].astype(np.float64) * 1e-9},
+        "livox-custom": {"offset_time": c["time"], "reflectivity": reflectivity_byte(c["intensity"], 150), "tag": zero,
+                         "line": np.minimum(c["ring"], 255)},
+        "robosense": {"intensity": percent, "ring": c["ring"], "timestamp": c["stamp"].astype(np.float64) * 1e-9},
         "hesai": {"intensity": np.minimum(255, np.floor(100 * c["intensity"].astype(np.float64) + 0.5)), "ring": c["ring"],
                   "timestamp": c["stamp"].astype(np.float64) * 1e-9},
         "autoware": {"intensity": percent, "return_type": c["status"] == 0, "channel": c["ring"],
-                     "azimuth": turn, "elevation": c["elevation"], "distance": c["range"],
-                     "time_stamp": c["time"]},
-        "ouster-fast-lio": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
-                            "ring": np.minimum(c["ring"], 255), "ambient": zero,
-                            "range": np.floor(np.nan_to_num(c["range"]) * 1000 + 0.5)},
+                     "azimuth": turn, "elevation": c["elevation"], "distance": c["range"], "time_stamp": c["time"]},
+        "ouster-fast-lio": {"intensity": c["intensity"], "t": c["time"], "ring": np.minimum(c["ring"], 255), "ambient": zero},
         "robosense-xyzi": {"intensity": percent},
     }  # fmt: skip
 
