@@ -62,7 +62,7 @@ std::size_t channels_of(const RayTable& optics) {
 
 /// Stereo images are rectified.
 void check_pinhole(const ActiveStereo& camera, const Pinhole& pinhole) {
-  if (!std::holds_alternative<NoDistortion>(pinhole.distortion)) {
+  if (!is_perspective(pinhole)) {
     throw Error({.where = "depth_camera",
                  .found = "the optics have a lens distortion",
                  .allowed = "optics without distortion: stereo images are rectified",

@@ -51,6 +51,7 @@ struct Sensor {
   std::optional<DepthCamera> depth_camera;  ///< what DepthModel::physical simulates
   bool cull_back_faces = false;             ///< true: beams pass through the backs of triangles
   std::vector<std::string> files = {};      ///< the files that define it
+  std::vector<std::string> notes = {};      ///< defaults and numbers of its files to mention
   std::string variant = {};                 ///< of a family of sensors in a file; empty: none
   std::string mode = {};                    ///< of the file, such as "1024x10"; empty: none
 };

@@ -102,6 +102,7 @@ class Sensor(Immutable):
         rain_mm_per_h: float | None = None,
         snow_mm_per_h: float | None = None,
         depth_model: str | None = None,
+        calibration: str | os.PathLike[str] | Iterable[str | os.PathLike[str]] | None = None,
     ) -> Sensor:
         """The same sensor with other settings, like the command-line options of the same names.
 
@@ -114,13 +115,25 @@ class Sensor(Immutable):
             rain_mm_per_h: rain rate, 0 to 1000 mm/h. For pulsed sensors only.
             snow_mm_per_h: snowfall rate as melted water, 0 to 1000 mm/h. For pulsed sensors only.
             depth_model: "law" (noise steps) or "physical" (raw images). For sensors with a ``depth_camera`` only.
+            calibration: calibration file of one spinning LiDAR, or several: metadata of Ouster, YAML of
+                velodyne_pointcloud, angle correction and firing time CSV of Hesai. ``notes`` lists what of it is
+                not used.
 
         None keeps the sensor's setting.
 
         Raises:
             Error: a number is out of range, or the sensor has no such property.
         """
-        settings = (returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h, depth_model)
+        settings = (
+            returns,
+            rate_hz,
+            columns_per_turn,
+            visibility_m,
+            rain_mm_per_h,
+            snow_mm_per_h,
+            depth_model,
+            calibration,
+        )
         if all(setting is None for setting in settings):
             return self
         options = _core.SensorOptions()
@@ -137,6 +150,8 @@ class Sensor(Immutable):
             options.columns_per_turn = _columns(columns_per_turn)
         if depth_model is not None:
             options.set_depth_model(text_of(depth_model, "depth_model"))
+        if calibration is not None:
+            options.calibration_files = _calibration_files(calibration)
         if returns is not None:
             options.set_returns(_return_names(returns))
         return Sensor(self._core.changed(options))
@@ -204,6 +219,11 @@ class Sensor(Immutable):
     def mode(self) -> str | None:
         """Name of the mode in which it was loaded; None: its file has no modes."""
         return self._core.mode or None
+
+    @property
+    def notes(self) -> list[str]:
+        """Defaults that its files left open, and numbers of its files that have no effect."""
+        return list(self._core.notes)
 
     @property
     def frame_id(self) -> str:
@@ -299,6 +319,12 @@ def _return_names(returns: object) -> list[str]:
     return [str(whole(returns, "returns", MAX_UINT32))]
 
 
+def _calibration_files(files: object) -> list[str]:
+    """One path, or several."""
+    one = isinstance(files, (str, os.PathLike)) or not isinstance(files, Iterable)
+    return [path_of(file, "calibration") for file in ([files] if one else files)]
+
+
 def load_sensor(
     name_or_path: str | os.PathLike[str],
     *,
@@ -309,6 +335,7 @@ def load_sensor(
     visibility_m: float | None = None,
     rain_mm_per_h: float | None = None,
     snow_mm_per_h: float | None = None,
+    calibration: str | os.PathLike[str] | Iterable[str | os.PathLike[str]] | None = None,
 ) -> Sensor:
     """A sensor by the name of a preset (``sensor_names()``), or from a sensor file (YAML).
 
@@ -316,8 +343,8 @@ def load_sensor(
         name_or_path: name or alias of a preset, or path of a sensor file; ``FILE#VARIANT`` for a file with variants.
             Names are compared without case, "-", "_" and spaces.
         mode: mode of the sensor, such as "2048x10"; None: its default mode.
-        returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h: settings that replace
-            those of the preset or file, as for ``Sensor.replace``.
+        returns, rate_hz, columns_per_turn, visibility_m, rain_mm_per_h, snow_mm_per_h, calibration: settings that
+            replace those of the preset or file, as for ``Sensor.replace``.
 
     Raises:
         Error: there is no such sensor (with the nearest names) or mode (with those that exist), the file is malformed
@@ -331,6 +358,7 @@ def load_sensor(
         visibility_m=visibility_m,
         rain_mm_per_h=rain_mm_per_h,
         snow_mm_per_h=snow_mm_per_h,
+        calibration=calibration,
     )
 
 

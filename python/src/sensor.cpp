@@ -88,6 +88,7 @@ Shared parse(const std::string& text, const std::optional<nb::dict>& table,
 Shared changed(const SensorHandle& handle, const SensorOptions& options) {
   const SensorOptionNames names;
   Sensor sensor = handle.sensor();
+  apply_calibrations(options, sensor);
   apply_scan(options, names, sensor);
   apply_depth_model(options, names, sensor);
   apply_weather(options, names, sensor);
@@ -166,6 +167,7 @@ nb::tuple sensor_file(const std::string& name_or_path) {
 void bind_options(nb::module_& module) {
   nb::class_<SensorOptions>(module, "SensorOptions")
       .def(nb::init<>())
+      .def_rw("calibration_files", &SensorOptions::calibration_files)
       .def_rw("rate_hz", &SensorOptions::rate_hz)
       .def_rw("columns_per_turn", &SensorOptions::columns_per_turn)
       .def_rw("visibility_m", &SensorOptions::visibility_m)
@@ -201,6 +203,7 @@ void bind_sensor(nb::module_& module) {
       .def_prop_ro("directions", directions, nb::sig("def directions(self) -> numpy.ndarray"))
       .def_prop_ro("variant", [](const SensorHandle& self) { return self.sensor().variant; })
       .def_prop_ro("mode", [](const SensorHandle& self) { return self.sensor().mode; })
+      .def_prop_ro("notes", [](const SensorHandle& self) { return self.sensor().notes; })
       .def_prop_ro("files", [](const SensorHandle& self) { return self.sensor().files; })
       .def("description", description)
       .def("document", [](const SensorHandle& self) { return sensor_document(self.sensor()); })

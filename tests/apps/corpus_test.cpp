@@ -41,6 +41,7 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"beam_csv", {"plain", "livox"}},
       {"beam_npy", {"rays", "floats"}},
       {"ouster", {"plain", "window"}},
+      {"calibration", {"velodyne", "angles", "version", "times", "loops", "kalibr", "ros"}},
       {"trajectory", {"tum", "csv"}},
       {"png", {"RGB", "RGBA", "L", "LA", "P", "I16"}},
       {"grey_png", {"RGB", "RGBA", "L", "LA", "P", "I16"}},

@@ -12,10 +12,12 @@
 #include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/ray_file.hpp>
 #include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/config/sensor_calibration.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
+#include <glidar/io/formats/ouster_file.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/io/formats/tof_image_file.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
@@ -175,13 +177,26 @@ void read_rosbag2(const fs::path& file) {
   read_bag(file.parent_path());
 }
 
-constexpr std::array<FileDecoder, 24> kDecoders = {{
+/// A calibration of a LiDAR, or else of a camera.
+void read_calibration(const fs::path& file) {
+  Sensor lidar;
+  lidar.optics = Spinning{};
+  try {
+    return apply_calibration(file, lidar);
+  } catch (const Error&) {  // as below
+  }
+  Sensor camera;
+  apply_calibration(file, camera);
+}
+
+constexpr std::array<FileDecoder, 25> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
     {"beam_csv", "beams.csv", [](const fs::path& file) { load_scan_csv(file); }},
     {"beam_npy", "beams.npy", [](const fs::path& file) { load_ray_npy(file); }},
     {"ouster", "metadata.json", [](const fs::path& file) { load_ouster_metadata(file); }},
+    {"calibration", "calibration.yaml", read_calibration},
     {"trajectory", "poses.txt", [](const fs::path& file) { load_trajectory_file(file); }},
     {"png", "texture.png", [](const fs::path& file) { read_png_texture(file); }},
     {"grey_png", "image.png", [](const fs::path& file) { load_grey_image(file); }},

@@ -4,6 +4,8 @@
 
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/formats/npy_file.hpp>
+#include <glidar/io/formats/ouster_file.hpp>
+#include <glidar/io/packets/ouster_codec.hpp>
 #include <support/data.hpp>
 
 #include <array>
@@ -196,18 +198,142 @@ TEST(OusterFile, ReadsMetadataOfRealSensors) {
   EXPECT_DOUBLE_EQ(std::get<Spinning>(new_layout.optics).beam_origin_m, 0.027116);
 }
 
+/// Metadata of firmware 1: flat, without the numbers that later firmware states.
+std::string old_metadata(const std::string& rows, const std::string& more) {
+  return R"({"lidar_mode": "1024x10", "beam_altitude_angles": )" + rows +
+         R"(, "beam_azimuth_angles": )" + rows + more + "}";
+}
+
+TEST(OusterFile, FirmwareOneHasTheDefaultOriginsOfTheManufacturersLibrary) {
+  // ouster-sdk, metadata.cpp: default_lidar_origin_to_beam_origin()
+  for (const auto& [line, origin_mm] :
+       {std::pair("", 12.163), std::pair("OS-0-64", 27.67), std::pair("OS-1-64", 15.806),
+        std::pair("OS-2-64", 13.762), std::pair("OS1-64", 12.163)}) {
+    const std::string more = *line == '\0' ? "" : R"(, "prod_line": ")" + std::string(line) + "\"";
+    const OusterMetadata read = parse_ouster_metadata(old_metadata("[3, 1]", more), "m.json");
+    EXPECT_DOUBLE_EQ(read.spinning.beam_origin_m, origin_mm * 1e-3) << line;
+    ASSERT_EQ(read.notes.size(), 1U);
+    EXPECT_EQ(read.notes[0],
+              "m.json: no lidar_origin_to_beam_origin_mm: " + number_text(origin_mm) +
+                  " mm, the manufacturer's default for the product line");
+  }
+}
+
+TEST(OusterFile, SectionsAndOldNamesOfSectionsAreFlat) {
+  const std::string rows = R"("beam_altitude_angles": [3, 1], "beam_azimuth_angles": [3, 1])";
+  for (const std::string& text :
+       {R"({"lidar_mode": "512x20", "lidar_origin_to_beam_origin_mm": 15, )" + rows + "}",
+        R"({"config_params": {"lidar_mode": "512x20"}, "beam_intrinsics": )"
+        R"({"lidar_origin_to_beam_origin_mm": 15, )" +
+            rows + "}}",
+        R"({"config_txt": {"lidar_mode": "512x20"}, "beam_intrinsics": )"
+        R"({"lidar_origin_to_beam_origin_mm": 15, )" +
+            rows + "}}",
+        R"({"lidar_data_format": {"columns_per_frame": 512, "fps": 20}, "beam_intrinsics": )"
+        R"({"lidar_origin_to_beam_origin_mm": 15, )" +
+            rows + "}}"}) {
+    const OusterMetadata read = parse_ouster_metadata(text, "m.json");
+    EXPECT_EQ(read.spinning.columns_per_turn, 512U) << text;
+    EXPECT_EQ(read.spinning.rotation_hz, 20.0) << text;
+    EXPECT_DOUBLE_EQ(read.spinning.beam_origin_m, 0.015) << text;
+    EXPECT_DOUBLE_EQ(read.spinning.start_azimuth_rad, std::numbers::pi);
+    EXPECT_EQ(read.spinning.azimuth_width_rad, kTwoPi);
+    EXPECT_TRUE(read.notes.empty()) << read.notes.front();
+  }
+}
+
+TEST(OusterFile, SixteenUsedRowsOfSixtyFourKeepTheirSlots) {
+  std::string rows = "[";
+  for (int row = 0; row < 64; ++row)
+    rows += (row == 0 ? "" : ",") + std::string(row % 4 == 2 ? std::to_string(20 - row) : "0");
+  const OusterSource source = parse_ouster_source(old_metadata(rows + "]", ""), "m.json");
+  const auto& spinning = std::get<Spinning>(source.sensor.optics);
+  ASSERT_EQ(spinning.channels.size(), 16U);
+  EXPECT_DOUBLE_EQ(spinning.channels[15].elevation_rad, (20 - 62) * kDegree);
+  EXPECT_EQ(spinning.channels[15].ring, 15U);
+  EXPECT_EQ(source.format.rows, 64U);
+  EXPECT_EQ(source.format.slots[15], 62U);
+  EXPECT_EQ(source.sensor.notes.front(),
+            "m.json: 48 of 64 rows have no beam: both of their angles are 0");
+  // a packet with a distance of 1 m + 10 mm per slot
+  OusterPacket packet;
+  packet.columns.resize(16);
+  for (std::size_t i = 0; i < 16; ++i) {
+    OusterColumn& column = packet.columns[i];
+    column.measurement = static_cast<std::uint16_t>(i);
+    column.stamp_ns = 1'000'000 + 97'656 * i;
+    column.is_valid = true;
+    for (std::uint32_t slot = 0; slot < 64; ++slot)
+      column.pixels.push_back({.range_mm = 1000 + 10 * slot});
+  }
+  const UdpPacket sent{0, kOusterLidarPort, kOusterLidarPort, encode(packet, source.format, 1024)};
+  const auto decoder = make_ouster_decoder(source);
+  std::vector<DecodedFrame> frames;
+  decoder->decode(sent, frames);
+  decoder->finish(frames);
+  ASSERT_EQ(frames.size(), 1U);
+  const DecodedFrame& frame = frames.front();
+  ASSERT_EQ(frame.beams.rows, 16U);
+  for (std::size_t i = 0; i < frame.frame.range_m.size(); ++i) {
+    const std::size_t slot = 4U * frame.beams.rings[i] + 2;
+    EXPECT_NEAR(frame.frame.range_m[i] + 0.012163, 1.0 + 0.01 * static_cast<double>(slot), 1e-12);
+  }
+}
+
+TEST(OusterFile, BeamOriginsAboveThePlaneFollowTheFormulaOfTheManufacturersLibrary) {
+  const std::string more =
+      R"(, "beam_to_lidar_transform": [1,0,0,20, 0,1,0,0, 0,0,1,30, 0,0,0,1],
+          "lidar_to_sensor_transform": [0,-1,0,0, 1,0,0,0, 0,0,1,36.18, 0,0,0,1])";
+  const OusterMetadata read = parse_ouster_metadata(old_metadata("[3, 1]", more), "m.json");
+  const Beams beams = make_beams(read.spinning, {0, 100'000'000});
+  ASSERT_EQ(beams.size(), 2U * 1024U);
+  const double n_m = std::hypot(0.020, 0.030);
+  EXPECT_DOUBLE_EQ(beams.range_offset_m, n_m);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    // xyzlut.cpp: a point at the range r, in the lidar's frame, which is turned by 90 degrees here
+    const double encoder = kTwoPi * (1.0 - static_cast<double>(i % 1024) / 1024.0);
+    const double angle = (i < 1024 ? 3.0 : 1.0) * kDegree;
+    const double r = 7.0;
+    const Eigen::Vector3d lidar(
+        (r - n_m) * std::cos(encoder - angle) * std::cos(angle) + 0.020 * std::cos(encoder),
+        (r - n_m) * std::sin(encoder - angle) * std::cos(angle) + 0.020 * std::sin(encoder),
+        (r - n_m) * std::sin(angle) + 0.030);
+    const Eigen::Vector3d expected(-lidar.y(), lidar.x(), lidar.z());
+    const Eigen::Vector3d found = beams.origins_m[i] + (r - n_m) * beams.directions[i];
+    ASSERT_NEAR((found - expected).norm(), 0.0, 1e-13) << i;
+  }
+}
+
+TEST(OusterFile, NumbersWithoutEffectAreNoted) {
+  const std::string more = R"(, "prod_line": "OS-1-64", "lidar_origin_to_beam_origin_mm": 15.8,
+      "data_format": {"columns_per_frame": 512}, "azimuth_window": [0, 180000],
+      "ouster-sdk": {"extrinsic": [1,0,0,2, 0,1,0,0, 0,0,1,0, 0,0,0,1]})";
+  const OusterMetadata read = parse_ouster_metadata(old_metadata("[3, 1]", more), "m.json");
+  EXPECT_EQ(read.notes, (std::vector<std::string>{
+                            "m.json: columns_per_frame, 512, is not used: lidar_mode states 1024",
+                            "m.json: extrinsic is not used: clouds are in the sensor's frame",
+                            "m.json: azimuth_window is not used without column_window"}));
+}
+
 TEST(OusterFile, MaliciousMetadataIsRejected) {
   const TestFolder folder;
   const auto file = folder.write("s.yaml", "optics: {type: ouster, file: m.json}\n");
   const std::string rest =
       R"("beam_azimuth_angles": [0], "lidar_origin_to_beam_origin_mm": 1, "lidar_mode": )";
-  for (const std::string& text :
-       {std::string("[[[["), std::string("{}"), std::string(R"({"beam_altitude_angles": 3})"),
-        R"({"beam_altitude_angles": [1, 2], )" + rest + R"("1024x10"})",
-        R"({"beam_altitude_angles": ["x"], )" + rest + R"("1024x10"})",
-        R"({"beam_altitude_angles": [1], )" + rest + R"("99999999999x10"})",
-        R"({"beam_altitude_angles": [1], )" + rest + R"("1024x10", "data_format": )" +
-            R"({"column_window": [0, 4096]}})"}) {
+  for (
+      const std::string& text :
+      {std::string("[[[["), std::string("{}"), std::string(R"({"beam_altitude_angles": 3})"),
+       R"({"beam_altitude_angles": [1, 2], )" + rest + R"("1024x10"})",
+       R"({"beam_altitude_angles": ["x"], )" + rest + R"("1024x10"})",
+       R"({"beam_altitude_angles": [1], )" + rest + R"("99999999999x10"})",
+       R"({"beam_altitude_angles": [0], )" + rest + R"("1024x10", "pixels_per_column": 64})",
+       std::string(
+           R"({"beam_altitude_angles": [0, 0], "beam_azimuth_angles": [0, 0], "lidar_mode": "1024x10"})"),
+       R"({"beam_altitude_angles": [1], )" + rest + R"("1024x10", "beam_to_lidar_transform": [1]})",
+       R"({"beam_altitude_angles": [1], )" + rest + R"("1024x10", "lidar_to_sensor_transform": )" +
+           "[1,0,0,0,0,0,1,0,0,1,0,0,0,0,0,1]}",
+       R"({"beam_altitude_angles": [1], )" + rest + R"("1024x10", "data_format": )" +
+           R"({"column_window": [0, 4096]}})"}) {
     (void)folder.write("m.json", text);
     EXPECT_NE(error_of(folder, [&] { load_sensor_file(file); }).find("m.json"), std::string::npos)
         << text;

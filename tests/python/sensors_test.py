@@ -210,3 +210,54 @@ def test_descriptions_contain_the_exact_numbers_of_preset_files():
         _compare(given, glidar.load_sensor(name).describe(), counted)
         assert len(counted) > before, name
     assert len(counted) > 500
+
+
+HESAI_ANGLES = "Channel,Elevation,Azimuth\n" + "".join(f"{i},{15.2 - i},{0.1 * i}\n" for i in range(1, 33))
+HESAI_TIMES = "Channel,fire time(us)\n" + "".join(f"{i},{2 * i}\n" for i in range(1, 33))
+
+
+def test_calibrations_replace_the_numbers_of_a_preset_and_survive_round_trips(tmp_path):
+    (tmp_path / "angles.csv").write_text(HESAI_ANGLES)
+    (tmp_path / "times.csv").write_text(HESAI_TIMES)
+    sensor = glidar.load_sensor("XT32", calibration=[tmp_path / "angles.csv", str(tmp_path / "times.csv")])
+    optics = sensor.to_dict()["optics"]
+    np.testing.assert_allclose(optics["elevation_deg"], [15.2 - i for i in range(1, 33)])
+    np.testing.assert_allclose(optics["fire_time_us"], [2 * i for i in range(1, 33)])
+    assert sensor.notes == []
+    assert glidar.Sensor.from_dict(sensor.to_dict()) == sensor
+    assert pickle.loads(pickle.dumps(sensor)) == sensor
+    assert glidar.load_sensor("XT32").replace(calibration=tmp_path / "angles.csv") != sensor
+    with pytest.raises(glidar.Error, match="32 channels; allowed: 16, as the sensor"):
+        glidar.load_sensor("VLP-16", calibration=tmp_path / "angles.csv")
+    with pytest.raises(glidar.Error, match="no such file"):
+        glidar.load_sensor("XT32", calibration=tmp_path / "none.csv")
+
+
+def test_metadata_without_an_origin_have_a_note(tmp_path):
+    (tmp_path / "m.json").write_text(
+        json.dumps({"lidar_mode": "512x10", "beam_altitude_angles": [1, 2], "beam_azimuth_angles": [1, 2]})
+    )
+    sensor = glidar.Sensor.from_dict({"optics": {"type": "ouster", "file": str(tmp_path / "m.json")}})
+    assert [note.split(": ", 1)[1] for note in sensor.notes] == [
+        "no lidar_origin_to_beam_origin_mm: 12.163 mm, the manufacturer's default for the product line"
+    ]
+
+
+@pytest.mark.parametrize(
+    "distortion",
+    [
+        {"model": "omni", "xi": 1.1, "k1": -0.1},
+        {"model": "double_sphere", "xi": -0.2, "alpha": 0.6},
+        {"model": "eucm", "alpha": 0.6, "beta": 1.1},
+        {"model": "fov", "w": 0.9},
+        {"model": "equirectangular"},
+        {"model": "radial_tangential", "s1": 0.01, "tau_x": 0.02},
+    ],
+)
+def test_camera_models_round_trip(distortion):
+    optics = {"type": "pinhole", "width": 16, "height": 12, "fx": 10, "fy": 11, "skew": 0.5, "distortion": distortion}
+    sensor = glidar.Sensor.from_dict({"optics": optics})
+    again = glidar.Sensor.from_dict(sensor.to_dict())
+    assert again == sensor
+    np.testing.assert_array_equal(again.ray_directions, sensor.ray_directions)
+    assert sensor.K[0, 1] == 0.5

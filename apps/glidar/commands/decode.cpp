@@ -4,6 +4,7 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/options/output_options.hpp>
+#include <apps/glidar/options/sensor_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/outputs.hpp>
@@ -39,10 +40,11 @@ Examples:
 
 struct DecodeFlags {
   std::string input;
-  std::string sensor;    ///< that sent the packets
-  std::string mode;      ///< of this sensor; empty: its default mode
-  std::string metadata;  ///< of an Ouster sensor; empty: FILE.json
-  std::string topic;     ///< of a bag; empty: the first that fits
+  std::string sensor;     ///< that sent the packets
+  std::string mode;       ///< of this sensor; empty: its default mode
+  SensorOptions options;  ///< its calibration
+  std::string metadata;   ///< of an Ouster sensor; empty: FILE.json
+  std::string topic;      ///< of a bag; empty: the first that fits
   std::optional<std::uint64_t> frames;
   OutputFlags output;
   bool quiet = false;
@@ -84,6 +86,7 @@ Sender sender_of(const DecodeFlags& flags) {
          "add --sensor VLP-16, for example"});
   }
   Sender sender{load_sensor(flags.sensor, flags.mode), nullptr};
+  apply_calibrations(flags.options, sender.sensor);
   if (flags.output.ouster_profile && !is_ouster(sender.sensor)) {
     throw Error({"--ouster-profile", "the packets of " + sender.sensor.name, "an Ouster sensor",
                  "leave it out"});
@@ -141,6 +144,7 @@ void decode_packets(const DecodeFlags& flags, Console& console, Written& written
   // before the sensor is sought, so that a missing file is reported as such
   auto packets = open_packets(flags.input, flags.topic);
   Sender sender = sender_of(flags);
+  for (const std::string& note : sender.sensor.notes) console.info(note);
   PacketFrames frames(std::move(packets), std::move(sender.decoder));
   if (flags.output.frame == "world" || flags.output.deskew) {
     throw Error({"--frame world and --deskew", "given for packets", "the axes of the sensor",
@@ -251,6 +255,7 @@ Command add_decode(CLI::App& program) {
             flags->sensor);
   input.add("--mode", "NAME", "Mode of the sensor, for example 2048x10 [its default mode]",
             flags->mode);
+  add_calibration_option(input, flags->options.calibration_files);
   input.add("--metadata", "FILE", "Metadata of an Ouster sensor [FILE.json, or of the bag]",
             flags->metadata);
   input.add("--topic", "NAME", "Topic of a bag [the first one with clouds or packets]",
@@ -258,7 +263,7 @@ Command add_decode(CLI::App& program) {
   input.add("--frames", "N", "End after N frames [all]", flags->frames,
             whole<std::uint64_t>(1, std::numeric_limits<std::uint32_t>::max()));
   forbid_together(command, {"--sensor"}, {"--metadata"});
-  require_option(command, {"--mode"}, "--sensor");
+  require_option(command, {"--mode", "--calibration"}, "--sensor");
   add_output_options(command, flags->output);
   hide_standard_output(command);
   command.remove_option(command.get_option("--no-sidecar"));

@@ -73,18 +73,25 @@ void add_light_options(const OptionGroup& group, SensorFlags& flags) {
 
 }  // namespace
 
+void add_calibration_option(const OptionGroup& group, std::vector<std::string>& files) {
+  group.add_repeatable("--calibration", "FILE",
+                       "Calibration of one LiDAR: Ouster, Velodyne, Hesai; repeatable [none]",
+                       [&files](const std::string& file) { files.push_back(file); });
+}
+
 void add_sensor_options(CLI::App& command, SensorFlags& flags) {
   const OptionGroup group(command, "Sensor");
   group.add("--sensor", "NAME|FILE", "Sensor preset (see glidar sensors) or sensor file (YAML)",
             flags.file);
   group.add("--mode", "NAME", "Mode of the sensor, for example 2048x10 [its default mode]",
             flags.mode);
+  add_calibration_option(group, flags.calibration_files);
   add_camera_options(group, flags);
   add_scan_options(group, flags);
   add_light_options(group, flags);
   const OptionNames camera = {"--width", "--height", "--fov", "--fx", "--fy", "--cx", "--cy"};
   forbid_together(command, {"--sensor"}, camera);
-  require_option(command, {"--mode"}, "--sensor");
+  require_option(command, {"--mode", "--calibration"}, "--sensor");
   forbid_together(command, {"--fov"}, {"--fx", "--fy"});
 }
 

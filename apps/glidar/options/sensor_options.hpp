@@ -44,6 +44,10 @@ void with_mode_option(const Work& work) {
   }
 }
 
+class OptionGroup;
+
+/// --calibration, see apply_calibration().
+void add_calibration_option(const OptionGroup& group, std::vector<std::string>& files);
 void add_sensor_options(CLI::App& command, SensorFlags& flags);
 
 }  // namespace glidar::app

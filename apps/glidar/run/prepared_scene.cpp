@@ -307,6 +307,8 @@ void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loa
   if (!is_scene_file(flags.input)) prepared.sensors = make_active_sensors(flags, {});
   SceneFile loaded = load(flags, console);
   prepared.sensors = make_active_sensors(flags, loaded.sensors);
+  for (const ActiveSensor& active : prepared.sensors)
+    for (const std::string& note : active.sensor.notes) console.info(note);
   prepared.files = files_read(flags, loaded, prepared.sensors);
   set_imus(flags, loaded, prepared);
   if (on_loaded) on_loaded();

@@ -136,6 +136,7 @@ Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file) {
   if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {
     require_memory(pinhole->intrinsics.width, pinhole->intrinsics.height);
   }
+  apply_calibrations(flags, sensor);
   apply_scan(flags, option_names(), sensor);
   apply_limits(flags, sensor.limits);
   apply_depth_model(flags, option_names(), sensor);

@@ -4,6 +4,8 @@
 
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/io/config/ray_file.hpp>
+#include <glidar/io/config/sensor_calibration.hpp>
+#include <glidar/io/formats/ouster_file.hpp>
 
 #include <filesystem>
 #include <type_traits>
@@ -35,6 +37,28 @@ RayTable load_rays(const FieldVisitor& visitor, const std::filesystem::path& pat
   visitor.reject("file", "{}", "a .csv of times, azimuths and zenith angles, or an .npy of rays");
 }
 
+/// The calibration is applied before the keys, unless they have `main_key`, because they may need
+/// what it contains, and after them, whose numbers it replaces. `second`: a further file, if any.
+template <class Struct>
+void describe_calibrated(CalibratedKeys<Struct>& keys, FieldVisitor& visitor, const char* main_key,
+                         const char* text, const FieldInfo& second) {
+  if (visitor.is_writing()) return describe(keys.optics, visitor);
+  std::vector<std::string> files(2);
+  visitor.path({"calibration_file", text, kNoUnit, false, "none"}, files[0]);
+  if (second.key != nullptr) visitor.path(second, files[1]);
+  const auto apply = [&] {
+    Sensor sensor;
+    sensor.optics = keys.optics;
+    for (const std::string& file : files)
+      if (!file.empty()) apply_calibration(file, sensor);
+    keys.optics = std::get<Struct>(sensor.optics);
+    keys.sources = {sensor.files, sensor.notes};
+  };
+  if (visitor.is_reading() && !visitor.has(main_key)) apply();
+  describe(keys.optics, visitor);
+  if (visitor.is_reading()) apply();
+}
+
 /// The beams themselves are too many for a sidecar; clouds contain what was measured on them.
 void report_table(RayTableKeys& keys, FieldVisitor& visitor) {
   visitor.whole_number({"rows", ""}, {}, keys.table.rows);
@@ -58,7 +82,7 @@ OpticsKeys optics_keys(const Optics& optics) {
           keys.has_origins = !alternative.origins_m.empty();
           return keys;
         } else {
-          return alternative;
+          return typename FileForm<std::decay_t<decltype(alternative)>>::type{alternative};
         }
       },
       optics);
@@ -72,6 +96,9 @@ Optics optics_of(OpticsKeys keys) {
           return std::move(alternative.table);
         } else if constexpr (std::is_same_v<Keys, OusterKeys>) {
           return std::move(alternative.spinning);
+        } else if constexpr (std::is_same_v<Keys, SpinningKeys> ||
+                             std::is_same_v<Keys, PinholeKeys>) {
+          return std::move(alternative.optics);
         } else {
           return std::move(alternative);
         }
@@ -79,10 +106,12 @@ Optics optics_of(OpticsKeys keys) {
       keys);
 }
 
-std::string file_of(const OpticsKeys& keys) {
-  if (const auto* table = std::get_if<RayTableKeys>(&keys)) return table->file;
-  if (const auto* ouster = std::get_if<OusterKeys>(&keys)) return ouster->file;
-  return "";
+OpticsSources sources_of(const OpticsKeys& keys) {
+  if (const auto* table = std::get_if<RayTableKeys>(&keys)) return {{table->file}, {}};
+  if (const auto* ouster = std::get_if<OusterKeys>(&keys)) return {{ouster->file}, ouster->notes};
+  if (const auto* spinning = std::get_if<SpinningKeys>(&keys)) return spinning->sources;
+  if (const auto* pinhole = std::get_if<PinholeKeys>(&keys)) return pinhole->sources;
+  return {};
 }
 
 void describe(RayTableKeys& keys, FieldVisitor& visitor) {
@@ -109,7 +138,26 @@ void describe(RayTableKeys& keys, FieldVisitor& visitor) {
 
 void describe(OusterKeys& keys, FieldVisitor& visitor) {
   visitor.path({"file", "the metadata JSON of the sensor", kNoUnit, kRequired}, keys.file);
-  if (visitor.is_reading()) keys.spinning = load_ouster_metadata(keys.file);
+  if (!visitor.is_reading()) return;
+  OusterMetadata metadata = load_ouster_metadata(keys.file);
+  keys.spinning = std::move(metadata.spinning);
+  keys.notes = std::move(metadata.notes);
+}
+
+void describe(SpinningKeys& keys, FieldVisitor& visitor) {
+  describe_calibrated(
+      keys, visitor, "elevation_deg",
+      "[calibration](spinning.md#calibrations) of one sensor, in a format of its "
+      "manufacturer; replaces the numbers that it contains",
+      {"fire_time_file", "a second such file: firing times of Hesai", kNoUnit, false, "none"});
+}
+
+void describe(PinholeKeys& keys, FieldVisitor& visitor) {
+  describe_calibrated(
+      keys, visitor, "width",
+      "[calibration](optics.md#camera-calibrations) by Kalibr or ROS, in place of the "
+      "size, focal lengths, principal point, skew and distortion",
+      {});
 }
 
 void describe(OpticsKeys& keys, FieldVisitor& visitor) {

@@ -9,8 +9,15 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace glidar {
+
+/// The files that the optics were read from, and notes about these.
+struct OpticsSources {
+  std::vector<std::string> files;
+  std::vector<std::string> notes;
+};
 
 /// Rays from a file.
 struct RayTableKeys {
@@ -26,7 +33,18 @@ struct OusterKeys {
   static constexpr TypeInfo kType = {"ouster", "an Ouster LiDAR, from its metadata file"};
   std::string file;
   Spinning spinning;
+  std::vector<std::string> notes;  ///< once read
 };
+
+/// Optics that a calibration file may describe in part: a camera or a spinning sensor.
+template <class Struct>
+struct CalibratedKeys {
+  static constexpr TypeInfo kType = Struct::kType;
+  Struct optics;
+  OpticsSources sources = {};  ///< once read
+};
+using SpinningKeys = CalibratedKeys<Spinning>;
+using PinholeKeys = CalibratedKeys<Pinhole>;
 
 /// The form of an alternative of Optics in files.
 template <class Struct>
@@ -36,6 +54,14 @@ struct FileForm {
 template <>
 struct FileForm<RayTable> {
   using type = RayTableKeys;
+};
+template <>
+struct FileForm<Spinning> {
+  using type = SpinningKeys;
+};
+template <>
+struct FileForm<Pinhole> {
+  using type = PinholeKeys;
 };
 template <class... Types>
 std::variant<typename FileForm<Types>::type..., OusterKeys> file_form(std::variant<Types...>);
@@ -47,11 +73,12 @@ OpticsKeys optics_keys(const Optics& optics);
 
 Optics optics_of(OpticsKeys keys);
 
-/// The file that the optics were read from; empty: none.
-std::string file_of(const OpticsKeys& keys);
+OpticsSources sources_of(const OpticsKeys& keys);
 
 void describe(OpticsKeys& keys, FieldVisitor& visitor);
 void describe(RayTableKeys& keys, FieldVisitor& visitor);
 void describe(OusterKeys& keys, FieldVisitor& visitor);
+void describe(SpinningKeys& keys, FieldVisitor& visitor);
+void describe(PinholeKeys& keys, FieldVisitor& visitor);
 
 }  // namespace glidar

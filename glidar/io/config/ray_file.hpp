@@ -5,7 +5,6 @@
 // Private to glidar/io: files that list beams.
 
 #include <glidar/sensor/optics/ray_table.hpp>
-#include <glidar/sensor/optics/spinning.hpp>
 
 #include <filesystem>
 
@@ -18,9 +17,5 @@ RayTable load_scan_csv(const std::filesystem::path& path);
 /// An array of doubles or floats, N x 3 (directions) or N x 6 (origins in metres, directions), or
 /// rows x cols x 3 or 6. Without times. Throws Error.
 RayTable load_ray_npy(const std::filesystem::path& path);
-
-/// The JSON that an Ouster sensor gives of itself (old flat and new nested layout). The rotation
-/// rate is that of its mode. Throws Error.
-Spinning load_ouster_metadata(const std::filesystem::path& path);
 
 }  // namespace glidar

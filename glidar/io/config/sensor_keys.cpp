@@ -28,7 +28,9 @@ void visit_optics(SensorKeys& keys, FieldVisitor& visitor) {
   visitor.object({"optics", "the rays, see [optics](optics.md)", kNoUnit, is_required}, is_present,
                  FieldVisitor::Describe(optics));
   if (!visitor.is_reading()) return;
-  if (std::string file = file_of(keys.optics); !file.empty()) keys.sensor.files = {std::move(file)};
+  OpticsSources sources = sources_of(keys.optics);
+  keys.sensor.files = std::move(sources.files);
+  keys.sensor.notes = std::move(sources.notes);
   keys.sensor.optics = optics_of(std::move(keys.optics));
 }
 

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/io/config/sensor_calibration.hpp>
 #include <glidar/sensor/lidar/return_names.hpp>
 
 #include <fmt/format.h>
@@ -73,6 +74,10 @@ DepthModel depth_model_named(const std::string& option, const std::string& name)
                .found = "'" + excerpt(name) + "'",
                .allowed = "law, physical",
                .remedy = ""});
+}
+
+void apply_calibrations(const SensorOptions& options, Sensor& sensor) {
+  for (const std::string& file : options.calibration_files) apply_calibration(file, sensor);
 }
 
 void apply_scan(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor) {

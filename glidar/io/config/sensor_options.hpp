@@ -13,6 +13,7 @@ namespace glidar {
 
 /// Changes to a sensor that users request by option. An empty value keeps what the sensor has.
 struct SensorOptions {
+  std::vector<std::string> calibration_files;    ///< of a spinning sensor, see apply_calibration()
   std::optional<double> rate_hz;                 ///< see set_rate()
   std::optional<std::int64_t> columns_per_turn;  ///< of a spinning sensor, 1 to 1048576
   std::optional<DepthModel> depth_model;         ///< of a sensor with a depth_camera
@@ -42,6 +43,7 @@ DepthModel depth_model_named(const std::string& option, const std::string& name)
 
 /// Each throws Error naming the option when a value is out of range or the sensor has no such
 /// property.
+void apply_calibrations(const SensorOptions& options, Sensor& sensor);
 void apply_scan(const SensorOptions& options, const SensorOptionNames& names, Sensor& sensor);
 void apply_depth_model(const SensorOptions& options, const SensorOptionNames& names,
                        Sensor& sensor);

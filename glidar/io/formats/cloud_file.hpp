@@ -23,4 +23,10 @@ struct CloudFile {
   std::string pixels = {};             ///< meaning of an image's pixels; empty: not an image
 };
 
+/// The distances of an image: the column depth, or range in the images of cameras that look back.
+inline const Column& distance_column(const PointCloud& cloud) {
+  const Column* depth = find_column(cloud, "depth");
+  return depth != nullptr ? *depth : *find_column(cloud, "range");
+}
+
 }  // namespace glidar

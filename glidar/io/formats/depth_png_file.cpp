@@ -54,7 +54,8 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
 /// within the sensor's limits, at least 1; 0: no return. Throws Error when a depth is behind the
 /// sensor or above 65535 units.
 void write_depth_png(const CloudFile& job, AtomicFile& file) {
-  const auto& depths_m = std::get<std::vector<double>>(find_column(job.cloud, "depth")->values);
+  const Column& column = distance_column(job.cloud);
+  const auto& depths_m = std::get<std::vector<double>>(column.values);
   const double units_per_m = job.options.depth_png_units_per_m;
   const Limits& limits = job.context.sensor.limits;
   check_depths(depths_m, units_per_m, file);
@@ -66,7 +67,7 @@ void write_depth_png(const CloudFile& job, AtomicFile& file) {
         std::max(1.0, to_whole_units(limits, Limits::Along::depth, depth_m, 1.0 / units_per_m)));
   });
   write_png({PngKind::grey16, job.cloud.cols, job.cloud.rows, std::as_bytes(std::span(grey)),
-             fmt::format("depth, {:.17g} units per metre, 0: no return", units_per_m)},
+             fmt::format("{}, {:.17g} units per metre, 0: no return", column.name, units_per_m)},
             file);
 }
 

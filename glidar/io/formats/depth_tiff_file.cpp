@@ -103,7 +103,7 @@ bool set_tags(TIFF* tiff, const CloudFile& job) {
 
 /// Writes depth in metres as TIFF with one 32-bit float per pixel, NaN for no return.
 void write_depth_tiff(const CloudFile& job, AtomicFile& file) {
-  const auto& depths_m = std::get<std::vector<double>>(find_column(job.cloud, "depth")->values);
+  const auto& depths_m = std::get<std::vector<double>>(distance_column(job.cloud).values);
   std::vector<float> pixels(depths_m.size());
   std::transform(depths_m.begin(), depths_m.end(), pixels.begin(),
                  [](double depth_m) { return static_cast<float>(depth_m); });

@@ -3,6 +3,7 @@
 #include <glidar/io/formats/file_sink.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/format_table.hpp>
@@ -16,8 +17,10 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -140,7 +143,11 @@ class FormatSink : public FileSink {
     check_column_types(cloud, target_.path);
     check_needed_columns(format_.info, cloud, target_.path);
     try {
-      stage_points(cloud, frame);
+      if (const auto ranges = range_image(cloud, frame)) {
+        stage_points(*ranges, frame);
+      } else {
+        stage_points(cloud, frame);
+      }
     } catch (...) {
       staged_.clear();
       throw;
@@ -161,6 +168,35 @@ class FormatSink : public FileSink {
     return format_.fields != nullptr ? format_.fields(cloud) : std::vector<PointField>();
   }
 
+  /// The cloud of an image with ranges in place of depths; empty: its depths are right.
+  [[nodiscard]] std::optional<PointCloud> range_image(const PointCloud& cloud,
+                                                      const Frame& frame) const {
+    const bool has_depths =
+        format_.content == Content::image && find_column(cloud, "depth") != nullptr;
+    if (!has_depths || !images_have_range(context_.sensor, context_.beams)) return std::nullopt;
+    PointCloud made = cloud;
+    const auto is_named = [](const char* name) {
+      return [name](const Column& column) { return column.name == name; };
+    };
+    if (std::ranges::any_of(made.columns, is_named("range"))) {
+      std::erase_if(made.columns, is_named("depth"));
+      return made;
+    }
+    std::vector<double> ranges_m = frame.range_m;
+    for (double& range_m : ranges_m) range_m += context_.beams.range_offset_m;
+    *std::ranges::find_if(made.columns, is_named("depth")) = {
+        "range", {"range"}, std::move(ranges_m)};
+    return made;
+  }
+
+  /// The meaning of an image's pixels: "depth ..." unless they are ranges.
+  [[nodiscard]] std::string pixels_of(const PointCloud& cloud) const {
+    std::string text = format_.pixels;
+    if (text.starts_with("depth") && find_column(cloud, "depth") == nullptr)
+      text.replace(0, 5, "range along the beam");
+    return text;
+  }
+
   void stage_points(const PointCloud& cloud, const Frame& frame) {
     const bool drops_invalid = format_.content == Content::kitti ||
                                format_.content == Content::hits ||
@@ -178,7 +214,7 @@ class FormatSink : public FileSink {
     // formats of hits have point records of their own
     if (options_.layout.empty() || !format_.info.takes_more || format_.content != Content::points) {
       const std::vector<PointField> fields = fields_of(cloud);
-      store({cloud, frame, options_, context_, fields, {}, format_.pixels});
+      store({cloud, frame, options_, context_, fields, {}, pixels_of(cloud)});
       warn_rounding(
           format_.rounding_warning != nullptr
               ? format_.rounding_warning(cloud)

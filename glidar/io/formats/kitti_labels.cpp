@@ -160,7 +160,7 @@ KittiCamera kitti_camera(const Sensor& sensor) {
 
 std::optional<KittiCamera> kitti_camera(const Sensor& camera, const Pose& camera_from_velodyne) {
   const auto* pinhole = std::get_if<Pinhole>(&camera.optics);
-  if (pinhole == nullptr || !std::holds_alternative<NoDistortion>(pinhole->distortion)) return {};
+  if (pinhole == nullptr || !is_perspective(*pinhole)) return {};
   return KittiCamera{intrinsics_of(*pinhole), camera_from_velodyne};
 }
 

@@ -29,7 +29,8 @@ std::string npy_header(std::string_view type, std::span<const std::size_t> shape
 }
 
 std::vector<PointField> depth_fields(const PointCloud& cloud) {
-  return {{"depth", find_column(cloud, "depth"), 0, Stored::f32}};
+  const Column& column = distance_column(cloud);
+  return {{column.name, &column, 0, Stored::f32}};
 }
 
 void write_depth_npy(const CloudFile& job, AtomicFile& file) {

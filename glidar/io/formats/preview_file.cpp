@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/formats/preview_file.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
 #include <glidar/io/pictures/chart.hpp>
@@ -150,9 +151,10 @@ Measured measured_of(const CloudFile& job) {
   Measured measured;
   // points behind a scanner would have a negative depth
   const bool is_camera = looks_along_z(beams);
-  measured.distance_title = is_camera ? "depth" : "range";
+  const bool has_depths = is_camera && !images_have_range(job.context.sensor, beams);
+  measured.distance_title = has_depths ? "depth" : "range";
   const std::vector<double>& range_m = job.frame.range_m;
-  if (is_camera) {
+  if (has_depths) {
     measured.distance_m = std::get<std::vector<double>>(find_column(cloud, "depth")->values);
   } else {
     measured.distance_m = range_m;

@@ -102,12 +102,18 @@ std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& 
   const std::vector<float> unit = reflectivity_bytes(sensor, frame, beams);
   for (FiringSequence& sequence : sequences) sequence.returns.resize(beams.rows);
   for (std::size_t row = 0; row < beams.rows; ++row) {
-    const std::size_t at = row / lasers * lasers + laser_of_row[row % lasers];
+    const std::size_t laser = laser_of_row[row % lasers];
+    const std::size_t at = row / lasers * lasers + laser;
+    const double correction_m = spinning.channels[laser].distance_correction_m;
+    const double added_m = beams.range_offset_m - correction_m;
+    Limits limits = sensor.limits;  // of what is sent
+    limits.near_m -= correction_m;
+    limits.far_m -= correction_m;
     for (std::size_t col = 0; col < beams.cols; ++col) {
       const std::size_t entry = row * beams.cols + col;
       if (!(frame.range_m[entry] > 0.0)) continue;
-      const double units = to_whole_units(sensor.limits, Limits::Along::range,
-                                          frame.range_m[entry] + beams.range_offset_m, unit_m);
+      const double units =
+          to_whole_units(limits, Limits::Along::range, frame.range_m[entry] + added_m, unit_m);
       sequences[col].returns[at] = {units * unit_m, frame.intensity[entry], byte_of(unit[entry])};
     }
   }
@@ -193,9 +199,10 @@ void RevolutionAssembler::fill_column(std::size_t col, DecodedFrame& made) const
     const Eigen::Vector3d out = direction_at(azimuth_rad, 0.0);
     const Eigen::Vector3d left(-out.y(), out.x(), 0.0);
     made.beams.directions[entry] = direction_at(azimuth_rad, channel.elevation_rad);
-    made.beams.origins_m[entry] = spinning_.beam_origin_m * direction_at(head_rad, 0.0) +
-                                  channel.origin_m.x() * out + channel.origin_m.y() * left +
-                                  channel.origin_m.z() * Eigen::Vector3d::UnitZ();
+    made.beams.origins_m[entry] =
+        spinning_.beam_origin_m * direction_at(head_rad, 0.0) + channel.origin_m.x() * out +
+        channel.origin_m.y() * left +
+        (spinning_.beam_origin_height_m + channel.origin_m.z()) * Eigen::Vector3d::UnitZ();
     made.beams.rings[entry] = channel.ring;
     const std::int64_t time_ns =
         sequence.stamp_ns + std::llround(channel.fire_time_ns) - made.frame.stamp_ns;
@@ -203,7 +210,8 @@ void RevolutionAssembler::fill_column(std::size_t col, DecodedFrame& made) const
         static_cast<std::uint32_t>(std::clamp<std::int64_t>(time_ns, 0, UINT32_MAX));
     const PacketReturn& found = sequence.returns[row / lasers * lasers + laser];
     if (found.range_m > 0.0) {
-      made.frame.range_m[entry] = found.range_m - made.beams.range_offset_m;
+      made.frame.range_m[entry] =
+          found.range_m + channel.distance_correction_m - made.beams.range_offset_m;
       made.frame.intensity[entry] = found.intensity;
       made.frame.status[entry] = Status::hit;
     } else {
@@ -223,7 +231,7 @@ void RevolutionAssembler::emit(std::vector<DecodedFrame>& frames) {
   made.beams.returns = static_cast<std::uint32_t>(returns);
   made.beams.frame_id = "lidar_frame";
   made.beams.boresight = Eigen::Vector3d::UnitX();
-  made.beams.range_offset_m = spinning_.beam_origin_m;
+  made.beams.range_offset_m = range_offset_m(spinning_);
   const std::size_t size = std::size_t{made.beams.rows} * made.beams.cols;
   made.beams.directions.resize(size);
   made.beams.origins_m.resize(size);

@@ -17,7 +17,8 @@ namespace glidar {
 
 /// One return as packets have it.
 struct PacketReturn {
-  double range_m = 0.0;  ///< as reported, see Beams::range_offset_m; 0: none
+  /// As reported, see Beams::range_offset_m and SpinningChannel::distance_correction_m; 0: none.
+  double range_m = 0.0;
   float intensity = 0.0F;
   std::uint8_t reflectivity = 0;  ///< 0 to 100 % diffuse, above: retro-reflective
 };

@@ -88,7 +88,8 @@ void Hdl64Status::put_number(std::size_t at, double number, int bytes) {
 }
 
 /// Angles, and the offsets across the beam that move its origin: the height turns with the beam.
-/// Distances need no correction, and intensities have the whole range of a byte.
+/// The correction of distances is the same near and far, and intensities have the whole range of a
+/// byte.
 void Hdl64Status::put_laser(std::size_t laser, const SpinningChannel& channel) {
   constexpr double kCentidegree_rad = 0.01 * kDegree;
   const std::size_t at = kFirstLaser + laser * kLaserValues;
@@ -98,6 +99,8 @@ void Hdl64Status::put_laser(std::size_t laser, const SpinningChannel& channel) {
   values_[at] = static_cast<std::uint8_t>(laser);
   put_number(at + 1, elevation / kCentidegree_rad);
   put_number(at + 3, channel.azimuth_offset_rad / kCentidegree_rad);
+  for (const std::size_t correction : {at + 5, at + 7, at + 9})
+    put_number(correction, channel.distance_correction_m / kMillimetre_m);
   put_number(at + 11, height_m / kMillimetre_m);
   put_number(at + 13, channel.origin_m.y() / kMillimetre_m);
   put_number(at + 20, 255.0, 1);

@@ -142,11 +142,15 @@ class OusterDecoder final : public PacketDecoder {
     sequence.azimuth_rad =
         azimuth_at_start_rad(spinning) - kTwoPi * column.measurement / spinning.columns_per_turn;
     const bool has_signal = source_.format.profile != OusterProfile::rng15_rfl8_nir8;
-    for (const OusterPixel& pixel : column.pixels) {
+    const auto add = [&](const OusterPixel& pixel) {
       const double value = has_signal ? pixel.signal : pixel.reflectivity;
       sequence.returns.push_back(
           {pixel.range_mm * kMillimetre_m, static_cast<float>(value), pixel.reflectivity});
-    }
+    };
+    const OusterFormat& format = source_.format;
+    if (format.slots.empty()) std::for_each(column.pixels.begin(), column.pixels.end(), add);
+    for (std::size_t first = 0; first < column.pixels.size(); first += format.rows)
+      for (const std::size_t slot : format.slots) add(column.pixels[first + slot]);
     return sequence;
   }
 

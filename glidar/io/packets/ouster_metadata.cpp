@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glidar {
@@ -57,10 +58,12 @@ std::vector<double> degrees_of(const Spinning& spinning, double SpinningChannel:
 
 Json beam_intrinsics(const Spinning& spinning) {
   const double origin_mm = std::round(spinning.beam_origin_m * 1e9) * 1e-6;
+  const double height_mm = std::round(spinning.beam_origin_height_m * 1e9) * 1e-6;
   return {{"beam_altitude_angles", degrees_of(spinning, &SpinningChannel::elevation_rad, 1.0)},
           {"beam_azimuth_angles", degrees_of(spinning, &SpinningChannel::azimuth_offset_rad, -1.0)},
           {"beam_to_lidar_transform",
-           {1.0, 0.0, 0.0, origin_mm, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}},
+           {1.0, 0.0, 0.0, origin_mm, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, height_mm, 0.0, 0.0, 0.0,
+            1.0}},
           {"lidar_origin_to_beam_origin_mm", origin_mm}};
 }
 
@@ -139,28 +142,18 @@ std::vector<double> matrix_mm(const Pose& pose) {
   return numbers;
 }
 
-/// A value at the top (old layout) or in one of the sections; null if there is none.
-Json find_value(const Json& all, std::initializer_list<const char*> sections, const char* key) {
-  if (all.contains(key)) return all[key];
-  for (const char* section : sections) {
-    if (all.contains(section) && all[section].is_object() && all[section].contains(key))
-      return all[section][key];
-  }
-  return nullptr;
-}
-
-std::uint64_t whole_number(const Json& value, std::uint64_t otherwise, std::uint64_t max,
+std::uint64_t whole_number(const nlohmann::json* value, std::uint64_t otherwise, std::uint64_t max,
                            const std::string& where) {
-  if (value.is_null()) return otherwise;
-  if (value.is_number_integer() && value.is_number_unsigned() && value.get<std::uint64_t>() <= max)
-    return value.get<std::uint64_t>();
+  if (value == nullptr || value->is_null()) return otherwise;
+  if (value->is_number_unsigned() && value->get<std::uint64_t>() <= max)
+    return value->get<std::uint64_t>();
   throw Error({where, "no whole number", "0 to " + std::to_string(max),
                "use the sensor's own metadata JSON"});
 }
 
-OusterProfile profile_of(const Json& value, const std::string& where) {
-  if (value.is_null()) return OusterProfile::legacy;
-  const std::string word = value.is_string() ? value.get<std::string>() : "";
+OusterProfile profile_of(const nlohmann::json* value, const std::string& where) {
+  if (value == nullptr || value->is_null()) return OusterProfile::legacy;
+  const std::string word = value->is_string() ? value->get<std::string>() : "";
   const auto names = ouster_profile_names();
   const auto at = std::find(names.begin(), names.end(), word);
   if (at != names.end()) return static_cast<OusterProfile>(at - names.begin());
@@ -219,15 +212,13 @@ OusterSource load_ouster_source(const std::filesystem::path& metadata) {
 
 OusterSource parse_ouster_source(const std::string& text, const std::string& file) {
   OusterSource source;
-  source.sensor.optics = parse_ouster_metadata(text, file);
-  auto& spinning = std::get<Spinning>(source.sensor.optics);
-  const Json all = parse_json<Json>(file, text);
-  const auto value = [&](const char* key) {
-    return find_value(all, {"lidar_data_format", "data_format", "config_params", "sensor_info"},
-                      key);
-  };
+  OusterMetadata metadata = parse_ouster_metadata(text, file);
+  const Spinning& spinning = metadata.spinning;
+  const auto all = parse_json<nlohmann::json>(file, text);
+  const auto value = [&](const char* key) { return find_ouster_value(all, key); };
   source.format.profile = profile_of(value("udp_profile_lidar"), file + ": udp_profile_lidar");
-  source.format.rows = spinning.channels.size();
+  source.format.rows = metadata.slot_count;
+  source.format.slots = std::move(metadata.slots);
   source.format.columns_per_packet = whole_number(value("columns_per_packet"), kColumnsPerPacket,
                                                   64, file + ": columns_per_packet");
   if (source.format.columns_per_packet == 0)
@@ -238,9 +229,12 @@ OusterSource parse_ouster_source(const std::string& text, const std::string& fil
       whole_number(value("udp_port_lidar"), kOusterLidarPort, 65'535, file + ": udp_port_lidar"));
   source.identity.imu_port = static_cast<std::uint16_t>(
       whole_number(value("udp_port_imu"), kOusterImuPort, 65'535, file + ": udp_port_imu"));
-  const Json line = value("prod_line");
-  source.sensor.name = "Ouster " + (line.is_string() ? shown(line.get<std::string>()) : "sensor");
+  const nlohmann::json* line = value("prod_line");
+  const bool has_line = line != nullptr && line->is_string();
+  source.sensor.name = "Ouster " + (has_line ? shown(line->get<std::string>()) : "sensor");
   source.sensor.rate_hz = spinning.rotation_hz;
+  source.sensor.notes = std::move(metadata.notes);
+  source.sensor.optics = std::move(metadata.spinning);
   source.sensor.receiver.returns.resize(ouster_returns(source.format.profile));
   return source;
 }

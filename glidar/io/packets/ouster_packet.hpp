@@ -32,6 +32,7 @@ struct OusterFormat {
   OusterProfile profile = OusterProfile::rng19_rfl8_sig16_nir16;
   std::size_t rows = 128;
   std::size_t columns_per_packet = 16;
+  std::vector<std::size_t> slots = {};  ///< row of each channel; empty: all rows in order
 };
 
 /// Bytes of a lidar packet.

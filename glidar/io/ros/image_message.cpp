@@ -42,9 +42,10 @@ Image image_of(const CloudSource& source, const std::string& encoding, const std
   return image;
 }
 
-double measured_depth_m(const CloudSource& source, std::size_t beam) {
+double measured_depth_m(const CloudSource& source, bool has_ranges, std::size_t beam) {
   const double range_m = source.frame.range_m[beam];
   if (source.frame.status[beam] != Status::hit || std::isnan(range_m)) return kNaN;
+  if (has_ranges) return range_m + source.beams.range_offset_m;
   const double depth = depth_m(source.beams, beam, range_m);
   if (depth >= 0.0) return depth;
   throw Error({"depth image", fmt::format("a depth of {:.9g} m, behind the sensor", depth),
@@ -140,7 +141,8 @@ Image depth_image(const CloudSource& source, DepthEncoding encoding, const std::
     throw Error({"depth image", fmt::format("{} returns of each beam", source.beams.returns),
                  "one return", "use --returns strongest"});
   }
-  const auto depth = [&](std::size_t beam) { return measured_depth_m(source, beam); };
+  const bool has_ranges = images_have_range(source.sensor, source.beams);
+  const auto depth = [&](std::size_t beam) { return measured_depth_m(source, has_ranges, beam); };
   const auto in_mm = [&](std::size_t beam) {
     return millimetres_of(source.sensor.limits, depth(beam));
   };

@@ -14,8 +14,9 @@ namespace glidar::ros {
 /// and NaN without one.
 enum class DepthEncoding : std::uint8_t { millimetres_16uc1, metres_32fc1 };
 
-/// The depth along the boresight. `frame_id` empty: that of the sensor. Depths above 65.535 m are 0
-/// in 16UC1. Throws Error for sensors that report several returns or depths behind them.
+/// The depth along the boresight; of a camera that looks back, the range along the beams.
+/// `frame_id` empty: that of the sensor. Depths above 65.535 m are 0 in 16UC1. Throws Error for
+/// sensors that report several returns or depths behind them.
 Image depth_image(const CloudSource& source, DepthEncoding encoding,
                   const std::string& frame_id = {});
 

@@ -64,7 +64,7 @@ double ray_depth_m(const Ray& ray, const Pinhole& projector, double coordinate_p
   const double start_m =
       plane_depth_m(ray, plane_of(projector.intrinsics, ray.axis, coordinate_px));
   if (!(start_m > 0.0) || std::isinf(start_m)) return kNaN;
-  if (!std::holds_alternative<NoDistortion>(projector.distortion)) {
+  if (!is_perspective(projector)) {
     return distorted_depth_m(ray, start_m, coordinate_px);
   }
   const bool is_in_front = ray.origin.z() + start_m * ray.direction.z() > 0.0;

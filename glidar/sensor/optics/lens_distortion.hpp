@@ -6,18 +6,28 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+
 namespace glidar {
 
-/// The unit ray through a distorted point of the plane z = 1; NaN if there is none.
-Eigen::Vector3d undistorted_ray(const NoDistortion& none, const Eigen::Vector2d& plane);
-Eigen::Vector3d undistorted_ray(const RadialTangential& k, const Eigen::Vector2d& plane);
-Eigen::Vector3d undistorted_ray(const Fisheye& k, const Eigen::Vector2d& plane);
+/// Derivative of a place of the image by the point that is imaged there.
+using ImageDerivative = Eigen::Matrix<double, 2, 3>;
 
-/// OpenCV's forward model: where a point of the plane z = 1 is imaged on it.
-Eigen::Vector2d distorted(const RadialTangential& k, const Eigen::Vector2d& plane);
+/// How far from the axis a model is followed: a radius of the plane z = 1 (radial_tangential, fov),
+/// an angle (fisheye), or a radius of the undistorted image (omni). Beyond it, the model has folded
+/// over.
+double distortion_limit(const Distortion& model);
 
-/// The determinant of the derivative of distorted(): where it is not positive, the model has folded
-/// over and is not valid.
-double fold_determinant(const RadialTangential& k, const Eigen::Vector2d& plane);
+/// The unit ray through a place of the image; NaN if there is none. Places count in focal lengths
+/// from the principal point; of equirectangular images they are longitude and latitude.
+Eigen::Vector3d undistorted_ray(const Distortion& model, const Eigen::Vector2d& place);
+
+/// The inverse: where a point of the optical frame is imaged. Empty if it is not seen, also where
+/// the model has folded over. `limit` is distortion_limit(model).
+std::optional<Eigen::Vector2d> imaged(const Distortion& model, double limit,
+                                      const Eigen::Vector3d& point);
+
+/// Derivative of imaged(), where there is an image.
+ImageDerivative imaged_derivative(const Distortion& model, const Eigen::Vector3d& point);
 
 }  // namespace glidar

@@ -30,19 +30,29 @@ void validate(const PinholeIntrinsics& k) {
 }
 
 /// The unit direction of every pixel, row-major.
-template <class Model>
-void fill_directions(const PinholeIntrinsics& k, const Model& distortion,
-                     std::vector<Eigen::Vector3d>& directions) {
+void fill_directions(const Pinhole& pinhole, std::vector<Eigen::Vector3d>& directions) {
+  const PinholeIntrinsics& k = pinhole.intrinsics;
   std::size_t i = 0;
   for (std::uint32_t v = 0; v < k.height; ++v) {
-    for (std::uint32_t u = 0; u < k.width; ++u) {
-      const Eigen::Vector2d plane(plane_x(k, u), plane_y(k, v));
-      directions[i++] = undistorted_ray(distortion, plane);
-    }
+    const double y = plane_y(k, v);
+    const double shift = pinhole.skew_px * y / k.fx;
+    for (std::uint32_t u = 0; u < k.width; ++u)
+      directions[i++] = undistorted_ray(pinhole.distortion, {plane_x(k, u) - shift, y});
   }
 }
 
 constexpr const char* kCoefficient = "coefficient";
+constexpr const char* kCalibrationFile = "calibration_file";  // read by glidar/io
+constexpr const char* kInstead = "this or `calibration_file`";
+
+void visit_side(FieldVisitor& visitor, const FieldInfo& field, std::uint32_t& side) {
+  const bool is_schema = visitor.mode() == FieldVisitor::Mode::schema;
+  visitor.at_most_one({{field.key, kCalibrationFile},
+                       "one of the two",
+                       is_schema ? "the size of the image is missing" : nullptr});
+  visitor.whole_number(field, {1, kMaxImageSide}, side);
+}
+
 constexpr const char* kFocalLengths = "one of fov_deg, fov_x_deg, or fx with fy";
 
 /// fy, cx and cy belong to fx: with a field of view the pixels are square and the principal point
@@ -68,11 +78,22 @@ void visit_field_of_view(FieldVisitor& visitor, const FieldInfo& field, std::uin
                  "a field of view that gives pixels above 0 and below 1e9");
 }
 
-void visit_focal_length(FieldVisitor& visitor, PinholeIntrinsics& k) {
+/// Without any, equirectangular images have the whole sphere.
+void visit_focal_length(FieldVisitor& visitor, Pinhole& pinhole) {
   constexpr NumberRule kFocalLength = {0.0, kFarthestPixel, true, "pixels above 0 and below 1e9"};
-  visitor.at_most_one({{"fov_deg", "fov_x_deg", "fx"},
+  PinholeIntrinsics& k = pinhole.intrinsics;
+  if (visitor.is_reading() && std::holds_alternative<Equirectangular>(pinhole.distortion)) {
+    for (const char* key : {"fov_deg", "fov_x_deg"})
+      if (visitor.has(key))
+        visitor.reject(key, "given for an equirectangular image", "fx and fy, pixels per radian",
+                       "leave it out: the image has the whole sphere");
+    k.fx = k.width / kTwoPi;
+    k.fy = k.height / std::numbers::pi;
+  }
+  const bool is_known = visitor.is_reading() && k.fx > 0.0;
+  visitor.at_most_one({{"fov_deg", "fov_x_deg", "fx", kCalibrationFile},
                        kFocalLengths,
-                       "the focal length is missing",
+                       is_known ? nullptr : "the focal length is missing",
                        "add 'fov_deg: ...'"});
   if (!visitor.is_writing()) {
     visit_field_of_view(visitor, {"fov_deg", "vertical field of view", kUnitDegree, false, ""},
@@ -117,9 +138,10 @@ Beams make_beams(const Pinhole& pinhole, const FrameInterval& /*interval*/) {
   beams.cols = k.width;
   beams.frame_id = "camera_optical_frame";
   beams.directions.resize(std::size_t{k.height} * k.width);
-  std::visit([&](const auto& distortion) { fill_directions(k, distortion, beams.directions); },
-             pinhole.distortion);
-  if (std::holds_alternative<NoDistortion>(pinhole.distortion)) beams.pinhole = k;
+  require_number(std::abs(pinhole.skew_px) <= kFarthestPixel, "pinhole, skew", pinhole.skew_px,
+                 "-1e9 to 1e9 pixels");
+  fill_directions(pinhole, beams.directions);
+  if (is_perspective(pinhole)) beams.pinhole = k;
   return beams;
 }
 
@@ -133,9 +155,16 @@ void describe(RadialTangential& k, FieldVisitor& visitor) {
                              {"k3", k.k3},
                              {"k4", k.k4},
                              {"k5", k.k5},
-                             {"k6", k.k6}}) {
+                             {"k6", k.k6},
+                             {"s1", k.s1},
+                             {"s2", k.s2},
+                             {"s3", k.s3},
+                             {"s4", k.s4}}) {
     visitor.number({key, kCoefficient}, kFinite, value);
   }
+  constexpr NumberRule kTilt = {-1.5, 1.5, false, "radians from -1.5 to 1.5"};
+  visitor.number({"tau_x", "tilt of the image sensor, radians"}, kTilt, k.tau_x);
+  visitor.number({"tau_y", "tilt of the image sensor, radians"}, kTilt, k.tau_y);
   if (visitor.is_report() && std::isinf(k.max_radius)) return;
   visitor.number({"max_radius",
                   "largest distance from the axis that the lens images, on the plane z = 1; pixels "
@@ -151,20 +180,57 @@ void describe(Fisheye& k, FieldVisitor& visitor) {
   }
 }
 
+void describe(FieldOfView& k, FieldVisitor& visitor) {
+  visitor.number({"w", "field of view of the ideal lens, radians", kNoUnit, kRequired},
+                 {0.0, std::numbers::pi, true, "radians above 0, below pi"}, k.w);
+}
+
+void describe(Omni& k, FieldVisitor& visitor) {
+  visitor.number(
+      {"xi", "distance of the centre of projection from that of the sphere", kNoUnit, kRequired},
+      {0.0, 1e3, false, "a number from 0 to 1000"}, k.xi);
+  for (auto& [key, value] : {std::pair<const char*, double&>{"k1", k.lens.k1},
+                             {"k2", k.lens.k2},
+                             {"p1", k.lens.p1},
+                             {"p2", k.lens.p2}}) {
+    visitor.number({key, kCoefficient}, kFinite, value);
+  }
+}
+
+void describe(DoubleSphere& k, FieldVisitor& visitor) {
+  visitor.number({"xi", "distance between the centres of the spheres", kNoUnit, kRequired},
+                 {-1.0, 1.0, true, "a number above -1, below 1"}, k.xi);
+  visitor.number({"alpha", "place of the centre of projection", kNoUnit, kRequired}, kZeroToOne,
+                 k.alpha);
+}
+
+void describe(ExtendedUnified& k, FieldVisitor& visitor) {
+  visitor.number({"alpha", "place of the centre of projection", kNoUnit, kRequired}, kZeroToOne,
+                 k.alpha);
+  visitor.number({"beta", "shape of the ellipsoid", kNoUnit, kRequired},
+                 {0.0, 1e3, true, "a number above 0, below 1000"}, k.beta);
+}
+
+void describe(Equirectangular& /*k*/, FieldVisitor& /*visitor*/) {}
+
 void describe(Distortion& distortion, FieldVisitor& visitor) {
   visit_variant(visitor, {"model", "the distortion model", kNoUnit, kRequired}, distortion);
 }
 
 void describe(Pinhole& pinhole, FieldVisitor& visitor) {
-  constexpr WholeRule kSide = {1, kMaxImageSide};
   constexpr NumberRule kPixelCentre = {0.0, 1.0 - std::numeric_limits<double>::epsilon(), false,
                                        "a number from 0 to below 1; 0.5 and 0 are usual"};
   constexpr NumberRule kPrincipalPoint = {-kFarthestPixel, kFarthestPixel, false,
                                           "pixels from -1e9 to 1e9"};
   PinholeIntrinsics& k = pinhole.intrinsics;
-  visitor.whole_number({"width", "columns of the image", kUnitPixel, kRequired}, kSide, k.width);
-  visitor.whole_number({"height", "rows of the image", kUnitPixel, kRequired}, kSide, k.height);
-  visit_focal_length(visitor, k);
+  const bool is_required = visitor.is_reading() && k.width == 0;  // not after a calibration
+  visit_side(visitor, {"width", "columns of the image", kUnitPixel, is_required, kInstead},
+             k.width);
+  visit_side(visitor, {"height", "rows of the image", kUnitPixel, is_required, kInstead}, k.height);
+  const FieldInfo distortion = {"distortion", "lens distortion, or projection of wide lenses",
+                                kNoUnit, false, "none"};
+  if (visitor.is_reading()) visit_object(visitor, distortion, pinhole.distortion);
+  visit_focal_length(visitor, pinhole);
   // The middle of the image: half its width from the left edge of pixel 0, whose centre has the
   // coordinate pixel_centre.
   const FieldInfo centre = {
@@ -183,8 +249,9 @@ void describe(Pinhole& pinhole, FieldVisitor& visitor) {
       {"cy", "principal point; only with `fx` and `fy`", kUnitPixel, false, "image centre"},
       kPrincipalPoint, k.cy);
   visitor.number(centre, kPixelCentre, k.pixel_centre);
-  visit_object(visitor, {"distortion", "lens distortion", kNoUnit, false, "none"},
-               pinhole.distortion);
+  visitor.number({"skew", "shift of a column per focal length of rows: K[0][1]", kUnitPixel},
+                 kPrincipalPoint, pinhole.skew_px);
+  visit_object(visitor, distortion, pinhole.distortion);
 }
 
 }  // namespace glidar

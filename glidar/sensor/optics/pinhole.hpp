@@ -19,10 +19,12 @@ struct NoDistortion {
 };
 
 /// OpenCV's rational radial-tangential model (calib3d documentation, "Detailed Description"):
-/// x'' = x' (1+k1 r2+k2 r4+k3 r6)/(1+k4 r2+k5 r4+k6 r6) + 2 p1 x'y' + p2 (r2 + 2 x'2), and
-/// y'' = y' (...)/(...) + p1 (r2 + 2 y'2) + 2 p2 x'y'.
+/// x'' = x' (1+k1 r2+k2 r4+k3 r6)/(1+k4 r2+k5 r4+k6 r6) + 2 p1 x'y' + p2 (r2 + 2 x'2) + s1 r2 +
+/// s2 r4, and y'' = y' (...)/(...) + p1 (r2 + 2 y'2) + 2 p2 x'y' + s3 r2 + s4 r4, then the tilt of
+/// the image sensor by tau_x and tau_y.
 struct RadialTangential {
-  static constexpr TypeInfo kType = {"radial_tangential", "rational model", "OpenCV, calib3d"};
+  static constexpr TypeInfo kType = {
+      "radial_tangential", "rational model, thin prism and tilted sensor", "OpenCV, calib3d"};
   double k1 = 0.0;
   double k2 = 0.0;
   double p1 = 0.0;
@@ -31,6 +33,12 @@ struct RadialTangential {
   double k4 = 0.0;
   double k5 = 0.0;
   double k6 = 0.0;
+  double s1 = 0.0;
+  double s2 = 0.0;
+  double s3 = 0.0;
+  double s4 = 0.0;
+  double tau_x = 0.0;  ///< radians
+  double tau_y = 0.0;
   /// Maximum distance from the axis, on the plane z = 1, that the lens images ("metric radius" in
   /// calibrations of the Azure Kinect). Pixels farther out have no beam.
   double max_radius = std::numeric_limits<double>::infinity();
@@ -46,14 +54,58 @@ struct Fisheye {
   double k4 = 0.0;
 };
 
-using Distortion = std::variant<NoDistortion, RadialTangential, Fisheye>;
+/// The FOV model of Devernay and Faugeras (2001), as in Kalibr: r_d = atan(2 r tan(w / 2)) / w.
+struct FieldOfView {
+  static constexpr TypeInfo kType = {"fov", "field-of-view model", "Devernay and Faugeras 2001"};
+  double w = 1.0;  ///< radians, above 0 and below pi
+};
+
+/// The unified model of Mei and Rives (2007), as OpenCV's omnidir and Kalibr have it: the point
+/// (x, y, z) / d is projected from (0, 0, -xi), then distorted by k1, k2, p1 and p2 as by
+/// RadialTangential.
+struct Omni {
+  static constexpr TypeInfo kType = {"omni", "unified model of mirrors and wide lenses",
+                                     "Mei and Rives 2007; OpenCV, omnidir"};
+  double xi = 0.0;  ///< from 0
+  RadialTangential lens;
+};
+
+/// The double sphere model of Usenko, Demmel and Cremers (2018); `ds` in Kalibr.
+struct DoubleSphere {
+  static constexpr TypeInfo kType = {"double_sphere", "wide lens, `ds` in Kalibr",
+                                     "Usenko et al. 2018"};
+  double xi = 0.0;     ///< above -1, below 1
+  double alpha = 0.5;  ///< 0 to 1
+};
+
+/// The extended unified model of Khomutenko, Garcia and Martinet (2016).
+struct ExtendedUnified {
+  static constexpr TypeInfo kType = {"eucm", "wide lens, extended unified model",
+                                     "Khomutenko et al. 2016"};
+  double alpha = 0.5;  ///< 0 to 1
+  double beta = 1.0;   ///< above 0
+};
+
+/// A panorama: columns are longitudes (from z towards x), rows latitudes (from the horizon down).
+struct Equirectangular {
+  static constexpr TypeInfo kType = {"equirectangular", "panorama of equal angles"};
+};
+
+using Distortion = std::variant<NoDistortion, RadialTangential, Fisheye, FieldOfView, Omni,
+                                DoubleSphere, ExtendedUnified, Equirectangular>;
 
 /// A camera: one ray per pixel, in the optical frame (x right, y down, z forward).
 struct Pinhole {
   static constexpr TypeInfo kType = {"pinhole", "a camera, with or without lens distortion"};
   PinholeIntrinsics intrinsics;
   Distortion distortion;
+  double skew_px = 0.0;  ///< column += skew y: axes of the image that are not perpendicular
 };
+
+/// Whether rays are those of a perspective projection with perpendicular axes.
+inline bool is_perspective(const Pinhole& pinhole) {
+  return std::holds_alternative<NoDistortion>(pinhole.distortion) && pinhole.skew_px == 0.0;
+}
 
 /// Keys of `optics` in sensor files.
 void describe(Pinhole& pinhole, FieldVisitor& visitor);
@@ -61,6 +113,11 @@ void describe(Distortion& distortion, FieldVisitor& visitor);
 void describe(NoDistortion& none, FieldVisitor& visitor);
 void describe(RadialTangential& k, FieldVisitor& visitor);
 void describe(Fisheye& k, FieldVisitor& visitor);
+void describe(FieldOfView& k, FieldVisitor& visitor);
+void describe(Omni& k, FieldVisitor& visitor);
+void describe(DoubleSphere& k, FieldVisitor& visitor);
+void describe(ExtendedUnified& k, FieldVisitor& visitor);
+void describe(Equirectangular& k, FieldVisitor& visitor);
 
 /// Maximum width and height of an image, in pixels.
 inline constexpr std::uint32_t kMaxImageSide = 65536;

@@ -55,6 +55,8 @@ void validate(const Spinning& s) {
   require_number(std::isfinite(s.azimuth_start_rad) && s.azimuth_width_rad > 0.0,
                  "optics, azimuth_range", s.azimuth_width_rad,
                  "a finite start and a width above 0");
+  require_number(std::abs(s.beam_origin_height_m) <= 1e3, "optics, beam origin height",
+                 s.beam_origin_height_m, "-1000 to 1000 m");
   for (const SpinningChannel& channel : s.channels) validate(channel);
   require_number(s.firing_loops.size() <= kMaxFiringLoops, "optics, number of firing loops",
                  static_cast<double>(s.firing_loops.size()), "up to 64");
@@ -125,7 +127,7 @@ std::vector<std::int64_t> sequences_in(const Spinning& s, const FrameInterval& i
 }
 
 bool has_origins(const Spinning& s) {
-  return s.beam_origin_m != 0.0 ||
+  return s.beam_origin_m != 0.0 || s.beam_origin_height_m != 0.0 ||
          std::any_of(s.channels.begin(), s.channels.end(),
                      [](const SpinningChannel& channel) { return !channel.origin_m.isZero(0.0); });
 }
@@ -137,7 +139,7 @@ Beams make_grid(const Spinning& s, std::size_t sequences) {
   beams.cols = static_cast<std::uint32_t>(sequences);
   beams.frame_id = "lidar_frame";
   beams.boresight = Eigen::Vector3d::UnitX();
-  beams.range_offset_m = s.beam_origin_m;
+  beams.range_offset_m = range_offset_m(s);
   const std::size_t size = s.channels.size() * sequences;
   beams.directions.resize(size);
   beams.times_ns.resize(size);
@@ -204,7 +206,8 @@ void set_beams(const Spinning& s, const SpinningChannel& channel, const FiringCo
     if (beams.origins_m.empty()) continue;
     const Eigen::Vector3d left(-out.y(), out.x(), 0.0);
     beams.origins_m[i] = s.beam_origin_m * heads.directions[n] + offset.x() * out +
-                         offset.y() * left + offset.z() * Eigen::Vector3d::UnitZ();
+                         offset.y() * left +
+                         (s.beam_origin_height_m + offset.z()) * Eigen::Vector3d::UnitZ();
   }
 }
 
@@ -278,9 +281,10 @@ void visit_start_azimuth(FieldVisitor& visitor, Spinning& s) {
 
 /// What starts a firing sequence: the encoder or a clock.
 void visit_column_timing(FieldVisitor& visitor, Spinning& s) {
+  const bool is_known = visitor.is_reading() && s.columns_per_turn > 0;  // by a calibration
   visitor.at_most_one({{"columns_per_turn", "firing_period_us"},
                        "one of columns_per_turn and firing_period_us",
-                       "the time between columns is missing",
+                       is_known ? nullptr : "the time between columns is missing",
                        "add 'columns_per_turn: ...'"});
   visitor.whole_number(
       {"columns_per_turn", "columns at equal angles", kNoUnit, false, "this or `firing_period_us`"},
@@ -294,6 +298,12 @@ void visit_column_timing(FieldVisitor& visitor, Spinning& s) {
 }
 
 }  // namespace
+
+double range_offset_m(const Spinning& s) {
+  const double height_m = s.beam_origin_height_m;
+  if (height_m == 0.0) return s.beam_origin_m;
+  return std::sqrt(s.beam_origin_m * s.beam_origin_m + height_m * height_m);
+}
 
 double sequence_period_ns(const Spinning& s) {
   return s.columns_per_turn > 0 ? kSecond_ns / (s.rotation_hz * s.columns_per_turn)
@@ -369,6 +379,10 @@ void describe(Spinning& s, FieldVisitor& visitor) {
        "distance from the axis to the origin of all beams; ranges are measured from the axis",
        kUnitMillimetre},
       kOffset, s.beam_origin_m);
+  visitor.number({"beam_origin_height_mm",
+                  "height of the origin of all beams; ranges are measured from the sensor's origin",
+                  kUnitMillimetre},
+                 kOffset, s.beam_origin_height_m);
   visit_azimuth_range(visitor, s);
   visit_channels(visitor, s.channels);
   if (visitor.is_document() && s.firing_loops.empty()) return;

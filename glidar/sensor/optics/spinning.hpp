@@ -21,6 +21,8 @@ struct SpinningChannel {
   double fire_time_ns = 0.0;        ///< since the start of the firing sequence; may be negative
   /// Origin of the beam: outwards along the beam's azimuth, to its left, up.
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  /// What drivers add to the distances of packets: these are the range minus this correction.
+  double distance_correction_m = 0.0;
   std::uint16_t ring = 0;  ///< channel number in clouds
 };
 
@@ -47,6 +49,8 @@ struct Spinning {
   /// Distance of the beam origins from the axis along the head's azimuth; ranges are measured from
   /// the axis (Ouster: lidar_origin_to_beam_origin).
   double beam_origin_m = 0.0;
+  /// Height of these origins; ranges are then longer by their distance from the sensor's origin.
+  double beam_origin_height_m = 0.0;
   /// Sequences fire only while the head's azimuth is in this sector: from its first azimuth, its
   /// width to the left. Both ends belong to it, also when they are rounded by up to a thousandth of
   /// the angle between sequences.
@@ -71,6 +75,10 @@ void describe(FiringLoop& loop, FieldVisitor& visitor);
 /// A channel that does not fire in a sequence has no beam there (NaN).
 /// Throws Error when a number is out of range.
 Beams make_beams(const Spinning& spinning, const FrameInterval& interval);
+
+/// What a reported range is longer than the beam: the distance of the beam origins from the
+/// sensor's origin (ouster-sdk, xyzlut.cpp).
+double range_offset_m(const Spinning& spinning);
 
 /// Period of the firing sequences, nanoseconds.
 double sequence_period_ns(const Spinning& spinning);

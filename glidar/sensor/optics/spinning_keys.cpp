@@ -14,34 +14,12 @@ namespace {
 constexpr NumberRule kTurn = {-360.0, 360.0, false, "degrees from -360 to 360"};
 constexpr NumberRule kOffset = {-1e4, 1e4, false, "millimetres from -1e4 to 1e4"};
 
-enum class ChannelOrder : std::uint8_t { as_listed, rising_elevation };
-
 /// How many channels are below this one.
 std::size_t channels_below(const std::vector<SpinningChannel>& channels,
                            const SpinningChannel& channel) {
   return static_cast<std::size_t>(std::count_if(
       channels.begin(), channels.end(),
       [&](const SpinningChannel& other) { return other.elevation_rad < channel.elevation_rad; }));
-}
-
-void number_rings(ChannelOrder order, std::vector<SpinningChannel>& channels) {
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    const bool is_listed = order == ChannelOrder::as_listed;
-    channels[i].ring =
-        static_cast<std::uint16_t>(is_listed ? i : channels_below(channels, channels[i]));
-  }
-}
-
-/// Throws Error where the channels have another order.
-ChannelOrder order_of(const std::vector<SpinningChannel>& channels, const FieldVisitor& visitor) {
-  for (const ChannelOrder order : {ChannelOrder::as_listed, ChannelOrder::rising_elevation}) {
-    std::vector<SpinningChannel> numbered = channels;
-    number_rings(order, numbered);
-    const auto same = [](const auto& a, const auto& b) { return a.ring == b.ring; };
-    if (std::equal(channels.begin(), channels.end(), numbered.begin(), same)) return order;
-  }
-  visitor.reject("optics.channel_order", "channels numbered in an order of their own",
-                 "as_listed, rising_elevation");
 }
 
 void visit_order(FieldVisitor& visitor, std::vector<SpinningChannel>& channels) {
@@ -53,8 +31,11 @@ void visit_order(FieldVisitor& visitor, std::vector<SpinningChannel>& channels) 
     for (const SpinningChannel& channel : channels) rings.push_back(channel.ring);
     return visitor.whole_numbers({"ring", "number of each channel"}, rings);
   }
-  ChannelOrder order =
-      visitor.is_document() ? order_of(channels, visitor) : ChannelOrder::as_listed;
+  const auto found = channel_order_of(channels);
+  if (visitor.is_document() && !found)
+    visitor.reject("optics.channel_order", "channels numbered in an order of their own",
+                   "as_listed, rising_elevation");
+  ChannelOrder order = visitor.is_document() ? *found : ChannelOrder::as_listed;
   visit_choice(visitor, {"channel_order", "numbering of the channels"}, kNames, order);
   if (visitor.is_reading()) number_rings(order, channels);
 }
@@ -80,12 +61,14 @@ void visit_per_channel(FieldVisitor& visitor, const FieldInfo& field, const Numb
 }
 
 void visit_elevations(FieldVisitor& visitor, std::vector<SpinningChannel>& channels) {
-  const FieldInfo field = {"elevation_deg", "elevation of each channel", kUnitDegree, kRequired};
+  const bool is_required = visitor.is_reading() && channels.empty();  // not after a calibration
+  const FieldInfo field = {"elevation_deg", "elevation of each channel", kUnitDegree, is_required,
+                           "this or `calibration_file`"};
   const NumberRule rule = {-90.0, 90.0, false, "degrees from -90 to 90"};
   std::vector<double> values;
   for (const SpinningChannel& channel : channels) values.push_back(channel.elevation_rad);
   visitor.numbers(field, {.number = rule, .max_size = kMaxChannels}, values);
-  if (!visitor.is_reading()) return;
+  if (!visitor.is_reading() || !visitor.has(field.key)) return;
   channels.assign(values.size(), {});
   for (std::size_t i = 0; i < values.size(); ++i) channels[i].elevation_rad = values[i];
 }
@@ -173,6 +156,24 @@ void visit_sector(FieldVisitor& visitor, Spinning& s) {
 
 }  // namespace
 
+std::optional<ChannelOrder> channel_order_of(const std::vector<SpinningChannel>& channels) {
+  for (const ChannelOrder order : {ChannelOrder::as_listed, ChannelOrder::rising_elevation}) {
+    std::vector<SpinningChannel> numbered = channels;
+    number_rings(order, numbered);
+    const auto same = [](const auto& a, const auto& b) { return a.ring == b.ring; };
+    if (std::equal(channels.begin(), channels.end(), numbered.begin(), same)) return order;
+  }
+  return std::nullopt;
+}
+
+void number_rings(ChannelOrder order, std::vector<SpinningChannel>& channels) {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const bool is_listed = order == ChannelOrder::as_listed;
+    channels[i].ring =
+        static_cast<std::uint16_t>(is_listed ? i : channels_below(channels, channels[i]));
+  }
+}
+
 void visit_channels(FieldVisitor& visitor, std::vector<SpinningChannel>& channels) {
   using Channel = SpinningChannel;
   visit_elevations(visitor, channels);
@@ -193,6 +194,12 @@ void visit_channels(FieldVisitor& visitor, std::vector<SpinningChannel>& channel
   visit_per_channel(
       visitor, {"beam_origin_axial_mm", "start of the beam upwards", kUnitMillimetre, false, "0"},
       kOffset, channels, [](Channel& c) -> double& { return c.origin_m.z(); });
+  visit_per_channel(visitor,
+                    {"distance_correction_mm",
+                     "what drivers add to distances of packets; these have the range minus it",
+                     kUnitMillimetre, false, "0"},
+                    kOffset, channels,
+                    [](Channel& c) -> double& { return c.distance_correction_m; });
   visit_order(visitor, channels);
 }
 

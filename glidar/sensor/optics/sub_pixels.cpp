@@ -19,7 +19,8 @@ Pinhole divide_pixels(const Pinhole& camera, std::uint32_t sub_rays) {
            .cx = (pixel.cx - pixel.pixel_centre + 0.5) * n,
            .cy = (pixel.cy - pixel.pixel_centre + 0.5) * n,
            .pixel_centre = 0.5},
-          camera.distortion};
+          camera.distortion,
+          camera.skew_px * n};
 }
 
 void check_sub_rays(const PinholeIntrinsics& image, std::uint32_t sub_rays) {

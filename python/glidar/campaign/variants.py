@@ -21,7 +21,8 @@ STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([^\[\]]+)\]")
 ANCHOR = re.compile(r"(?:[&!]\S*\s+)*")
 MAX_DIGITS = 9  # of an element's index
 # keys whose values may be paths
-FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "noise_texture", "picture"}
+FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "noise_texture", "picture", "calibration_file",
+             "fire_time_file"}
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,17 @@ TEST(Hdl64Status, LasersHave28ValuesAndAWarning) {
   EXPECT_EQ(status.at(16 + 10, 0).value + 256 * status.at(16 + 11, 0).value, 65'536 - 629);
 }
 
+TEST(Hdl64Status, CorrectsDistancesByTheSameFarAndNear) {
+  Sensor sensor = packet_sensor("HDL-64E-S3", false);
+  std::get<Spinning>(sensor.optics).channels[0].distance_correction_m = 0.3;
+  const Hdl64Status status(std::get<Spinning>(sensor.optics), PacketReturnMode::strongest, true);
+  // values of the laser: seven per group, from the second group on
+  const auto value = [&](std::uint64_t i) {
+    return int{status.at(16 * (1 + i / 7) + 9 + i % 7, 0).value};
+  };
+  for (const std::uint64_t at : {5, 7, 9}) EXPECT_EQ(value(at) + 256 * value(at + 1), 300) << at;
+}
+
 TEST(Hdl64Status, StatesTheReturnsAndRepeats) {
   for (const auto& [mode, code] :
        {std::pair{PacketReturnMode::strongest, 0}, std::pair{PacketReturnMode::last, 1},

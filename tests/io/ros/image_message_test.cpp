@@ -92,6 +92,20 @@ TEST(DepthImage, DepthsBeyond16BitsAreUnknown) {
   EXPECT_EQ(depths[1], 1);  // 0 would mean no return
 }
 
+TEST(DepthImage, OfACameraThatLooksBackHasRanges) {
+  Pinhole panorama = pinhole_from_fov(8, 4, 1.0);
+  panorama.intrinsics.fx = panorama.intrinsics.fy = 8 / kTwoPi;
+  panorama.distortion = Equirectangular{};
+  Measured made = measured(panorama);
+  invalidate(made, 3, Status::miss);
+  const Image in_mm = depth_image(made.source(), DepthEncoding::millimetres_16uc1);
+  const Image in_m = depth_image(made.source(), DepthEncoding::metres_32fc1);
+  for (std::size_t i = 0; i < 32; ++i) {
+    EXPECT_EQ(pixels<std::uint16_t>(in_mm)[i], i == 3 ? 0 : 2000) << i;
+    if (i != 3) EXPECT_EQ(pixels<float>(in_m)[i], 2.0F) << i;
+  }
+}
+
 TEST(IntensityImage, IsBytesOrTheIntensityItself) {
   const Measured made = camera();
   EXPECT_THAT(pixels<std::uint8_t>(intensity_image(made.source(), IntensityEncoding::mono8)),
@@ -176,6 +190,16 @@ TEST(CameraInfoMessage, HasTheModelsOfRos) {
   pinhole.distortion = Fisheye{.k1 = 0.1};
   EXPECT_EQ(camera_info(made.source()).distortion_model, "equidistant");
   EXPECT_EQ(camera_info(made.source()).d.size(), 4U);
+  pinhole.distortion = RadialTangential{.k1 = 0.1, .s1 = 0.01};
+  EXPECT_EQ(camera_info(made.source()).d.size(), 12U);
+  pinhole.distortion = RadialTangential{.k1 = 0.1, .tau_y = 0.01};
+  EXPECT_EQ(camera_info(made.source()).distortion_model, "rational_polynomial");
+  EXPECT_EQ(camera_info(made.source()).d.size(), 14U);
+  pinhole.distortion = DoubleSphere{-0.2, 0.6};
+  pinhole.skew_px = 1.5;
+  EXPECT_EQ(camera_info(made.source()).distortion_model, "double_sphere");
+  EXPECT_THAT(camera_info(made.source()).d, ElementsAre(-0.2, 0.6));
+  EXPECT_EQ(camera_info(made.source()).k[1], 1.5);
   made.sensor.optics = Spinning{};
   EXPECT_THAT(error_text([&] { camera_info(made.source()); }), HasSubstr("no camera"));
 }
