@@ -95,7 +95,8 @@ class Sandbox : public ::testing::Test {
 TEST_F(Sandbox, ACompromisedImportProcessHasNoAccess) {
   GLIDAR_SKIP_SANITIZED();
   std::map<std::string, std::string> results = attempt();
-  if (results.contains("note")) GTEST_SKIP() << "no sandbox; use Linux 5.13 or later with Landlock: " << results["note"];
+  if (results.contains("note"))
+    GTEST_SKIP() << "no sandbox; use Linux 5.13 or later with Landlock: " << results["note"];
   constexpr std::size_t kAttempts = 64;  // so that none is lost
   EXPECT_EQ(results.size(), kAttempts);
   EXPECT_EQ(results["read the model again"], kSuccess);  // what it is for
@@ -112,7 +113,8 @@ TEST_F(Sandbox, ACompromisedImportProcessHasNoAccess) {
 TEST_F(Sandbox, NothingOutsideTheImportProcessChanges) {
   GLIDAR_SKIP_SANITIZED();
   const std::string before = testing::read_file(model_);
-  if (attempt().contains("note")) GTEST_SKIP() << "no sandbox; use Linux 5.13 or later with Landlock";
+  if (attempt().contains("note"))
+    GTEST_SKIP() << "no sandbox; use Linux 5.13 or later with Landlock";
   EXPECT_EQ(testing::read_file(model_), before);
   EXPECT_EQ(testing::read_file(outside_), "a secret");
   EXPECT_THAT(folder_.names(), ::testing::ElementsAre("a.obj", "link"));

@@ -182,7 +182,8 @@ TEST_F(OpenglContext, AContextThatCannotBeCurrentIsAnError) {
 TEST_F(OpenglContext, ReportsDeviceResetsIfTheDriverDoes) {
   const opengl::ScopedContext use(*window_);
   opengl::check_not_lost();
-  if (epoxy_gl_version() < 45) GTEST_SKIP() << "this driver need not report resets; use one of OpenGL 4.5";
+  if (epoxy_gl_version() < 45)
+    GTEST_SKIP() << "this driver need not report resets; use one of OpenGL 4.5";
   GLint strategy = 0;
   glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
   EXPECT_EQ(strategy, GL_LOSE_CONTEXT_ON_RESET);
