@@ -17,7 +17,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <string_view>
+#include <map>
+#include <regex>
 #include <utility>
 
 namespace glidar::app {
@@ -70,26 +71,50 @@ std::string explain_extra(const CLI::App& program, const Commands& commands, std
              : fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
 }
 
-/// CLI11's "--fov: 1 required DEG missing" and "--fov: At Most 1 required but received 2" in words.
-std::string explain_mismatch(const std::string& text) {
-  const std::string option = text.substr(0, text.find(':'));
-  if (text.find("received") != std::string::npos) {
-    return fmt::format("{}: given more than once; allowed: once", option);
+/// The options that a message of CLI11 names, in their order there. Its other words depend on its
+/// version.
+std::vector<const CLI::Option*> options_in(const CLI::App& command, const std::string& message) {
+  std::map<std::size_t, const CLI::Option*> found;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::regex name(option->get_name() + "(?![-A-Za-z0-9])");
+    std::smatch match;
+    if (std::regex_search(message, match, name)) found.emplace(match.position(), option);
   }
-  return fmt::format("{}: there is no value after it; see --help for what it takes", option);
+  std::vector<const CLI::Option*> options;
+  for (const auto& [place, option] : found) options.push_back(option);
+  return options;
 }
 
-/// CLI11's "--fov excludes --fx" and "--durable requires --record" in words.
-std::string explain_conflict(const std::string& text) {
-  constexpr std::string_view kExcludes = " excludes ";
-  constexpr std::string_view kRequires = " requires ";
-  if (const std::size_t found = text.find(kExcludes); found != std::string::npos) {
-    return fmt::format("{} and {}: both are given; give one of them", text.substr(0, found),
-                       text.substr(found + kExcludes.size()));
+/// The error for an option with too few or too many values.
+std::string explain_mismatch(const CLI::App& command, const std::string& message) {
+  const std::vector<const CLI::Option*> options = options_in(command, message);
+  if (options.empty()) return message + "; see --help";
+  const CLI::Option& option = *options.front();
+  if (option.count() > 1) {
+    return fmt::format("{}: given more than once; allowed: once", option.get_name());
   }
-  const std::size_t found = text.find(kRequires);
-  return fmt::format("{0}: there is no {1}; give {1} too", text.substr(0, found),
-                     text.substr(found + kRequires.size()));
+  return fmt::format("{}: there is no value after it; see --help for what it takes",
+                     option.get_name());
+}
+
+/// The error for two options that exclude each other, or of which the first needs the second.
+std::string explain_conflict(const CLI::App& command, const std::string& message) {
+  const std::vector<const CLI::Option*> options = options_in(command, message);
+  if (options.size() < 2) return message + "; see --help";
+  const std::string first = options[0]->get_name();
+  const std::string second = options[1]->get_name();
+  if (options[1]->count() > 0) {
+    return fmt::format("{} and {}: both are given; give one of them", first, second);
+  }
+  return fmt::format("{0}: there is no {1}; give {1} too", first, second);
+}
+
+/// The error for a missing option or subcommand.
+std::string explain_missing(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_required() && option->count() == 0) return option->get_name() + " is required";
+  }
+  return "a subcommand is required";
 }
 
 /// The most helpful word that CLI11 did not parse: within a subcommand an option, else the word in
@@ -110,20 +135,21 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
   } catch (const CLI::Success& help_or_version) {
     return program.exit(help_or_version);
   } catch (const CLI::ArgumentMismatch& error) {
-    return report_error(explain_mismatch(error.what()));
+    return report_error(explain_mismatch(chosen(program), error.what()));
   } catch (const CLI::ExcludesError& error) {
-    return report_error(explain_conflict(error.what()));
+    return report_error(explain_conflict(chosen(program), error.what()));
   } catch (const CLI::RequiresError& error) {
-    return report_error(explain_conflict(error.what()));
+    return report_error(explain_conflict(chosen(program), error.what()));
   } catch (const CLI::ConversionError& error) {
     return report_error(std::string(error.what()) + "; see --help for what it takes");
   } catch (const CLI::ParseError& error) {
     const std::string extra = first_extra(program);
     if (!extra.empty()) return report_error(explain_extra(program, commands, extra));
-    return report_error(fmt::format("{}; see {}--help", error.what(),
-                                    &chosen(program) == &program
-                                        ? "glidar "
-                                        : fmt::format("glidar {} ", chosen(program).get_name())));
+    const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    return report_error(fmt::format(
+        "{}; see {}--help", is_missing ? explain_missing(chosen(program)) : error.what(),
+        &chosen(program) == &program ? "glidar "
+                                     : fmt::format("glidar {} ", chosen(program).get_name())));
   }
   for (const auto& [name, run] : commands) {
     if (program.got_subcommand(name)) return run();

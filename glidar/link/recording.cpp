@@ -3,14 +3,12 @@
 #include <glidar/link/recording.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/config/json_error.hpp>
+#include <glidar/io/config/json_value.hpp>
 #include <glidar/io/files/recorded_path.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 
-#include <limits>
-#define JSON_DIAGNOSTICS 1  // error messages contain the key
-#include <glidar/io/config/json_text.hpp>
 #include <utility>
+#include <vector>
 
 namespace glidar::link {
 namespace {
@@ -45,25 +43,17 @@ Json json_of(const lockstep::Body& body) {
   return numbers;
 }
 
-/// Throws an exception that names the key of the value.
-[[noreturn]] void refuse_value(const Json& json, const std::string& found) {
-  throw Json::other_error::create(502, found, &json);
-}
-
-lockstep::Body body_of(const Json& json) {
-  const auto numbers = json.get<std::vector<double>>();
+lockstep::Body body_of(const JsonValue& json) {
+  const std::vector<double> numbers = json.numbers();
   if (numbers.size() != kPoseNumbers && numbers.size() != kBodyNumbers) {
-    refuse_value(json,
-                 "a body of " + std::to_string(numbers.size()) + " numbers, instead of 12 or 18");
+    json.refuse("a body of " + std::to_string(numbers.size()) + " numbers, instead of 12 or 18");
   }
   lockstep::Body body;
   for (std::size_t i = 0; i < kPoseNumbers; ++i) {
     body.world_from_body(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) =
         numbers[i];
   }
-  if (!is_rigid(body.world_from_body)) {
-    refuse_value(json, "a body whose matrix is not a rigid transform");
-  }
+  if (!is_rigid(body.world_from_body)) json.refuse("a body whose matrix is not a rigid transform");
   if (numbers.size() == kBodyNumbers) {
     body.rate_rad_s = Eigen::Map<const Eigen::Vector3d>(numbers.data() + kPoseNumbers);
     body.velocity_m_s = Eigen::Map<const Eigen::Vector3d>(numbers.data() + kPoseNumbers + 3);
@@ -71,55 +61,44 @@ lockstep::Body body_of(const Json& json) {
   return body;
 }
 
-/// A count that is an integer and fits its type.
-template <class Count>
-Count count_of(const Json& json, const char* key) {
-  const Json& value = json.at(key);
-  const bool fits =
-      value.is_number_unsigned() && value.get<std::uint64_t>() <= std::numeric_limits<Count>::max();
-  if (fits) return value.get<Count>();
-  refuse_value(json, std::string(key) + ": " + shown_json(value) + " is not a count");
-}
-
-RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
-  if (count_of<std::uint64_t>(json, "recording") != kFormat) {
-    refuse_value(json, "a recording of format " + shown_json(json.at("recording")) +
-                           ", this program reads format 1");
+RecordingHead head_of(const JsonValue& json, const std::filesystem::path& path) {
+  const JsonValue format = json.at("recording");
+  if (format.count<std::uint64_t>() != kFormat) {
+    format.refuse("format " + format.shown() + ", this program reads format 1");
   }
   RecordingHead head;
-  head.version = json.at("glidar").get<std::string>();
-  const Json& command = json.at("command");
-  check_recorded_path(path.string() + ":1", "folder", command.at("folder").get<std::string>());
-  head.command = {.arguments = command.at("arguments").get<std::vector<std::string>>(),
-                  .folder = resolve_folder(path, command.at("folder").get<std::string>())};
+  head.version = json.at("glidar").text();
+  const JsonValue command = json.at("command");
+  const std::string folder = command.at("folder").text();
+  check_recorded_path(path.string() + ":1", "folder", folder);
+  head.command = {.arguments = command.at("arguments").texts(),
+                  .folder = resolve_folder(path, folder)};
   for (const std::string& argument : head.command.arguments) {
     check_recorded_argument(path.string() + ":1", argument);
   }
-  for (const Json& file : json.at("files")) {
-    head.files.push_back({file.at("path").get<std::string>(), file.at("hash").get<std::string>()});
+  for (const JsonValue& file : json.at("files").items()) {
+    head.files.push_back({file.at("path").text(), file.at("hash").text()});
     check_recorded_path(path.string() + ":1", "files, path", head.files.back().path);
   }
   return head;
 }
 
-RecordedFrame frame_of(const Json& json) {
+RecordedFrame frame_of(const JsonValue& json) {
   RecordedFrame frame;
   constexpr std::size_t kHashDigits = 32;
-  frame.sensor = count_of<std::uint32_t>(json, "sensor");
-  frame.moment.number = count_of<std::uint32_t>(json, "number");
-  frame.moment.seed = count_of<std::uint64_t>(json, "seed");
-  if (!json.at("stamp_ns").is_number_integer()) {
-    refuse_value(json, "stamp_ns: not a whole number");
-  }
-  frame.moment.t_ns = json.at("stamp_ns").get<std::int64_t>();
-  frame.frame_hash = json.at("frame_hash").get<std::string>();
-  if (frame.frame_hash.size() != kHashDigits) {
-    refuse_value(json, "frame_hash: not 32 digits");
-  }
+  frame.sensor = json.at("sensor").count<std::uint32_t>();
+  frame.moment.number = json.at("number").count<std::uint32_t>();
+  frame.moment.seed = json.at("seed").count<std::uint64_t>();
+  frame.moment.t_ns = json.at("stamp_ns").integer();
+  const JsonValue hash = json.at("frame_hash");
+  frame.frame_hash = hash.text();
+  if (frame.frame_hash.size() != kHashDigits) hash.refuse("not 32 digits");
   frame.is_placed = json.contains("rig");
   if (!frame.is_placed) return frame;
   frame.moment.sensor = body_of(json.at("rig"));
-  for (const Json& object : json.at("objects")) frame.moment.objects.push_back(body_of(object));
+  for (const JsonValue& object : json.at("objects").items()) {
+    frame.moment.objects.push_back(body_of(object));
+  }
   return frame;
 }
 
@@ -172,11 +151,9 @@ RecordingReader::RecordingReader(const std::filesystem::path& path)
     : path_(path), file_(path, kRecording, kMaxLine_bytes) {
   std::string line;
   if (!read_line(line)) refuse(path.string(), "it is empty or cannot be read");
-  try {
-    head_ = head_of(parse_json<Json>(where(), line), path);
-  } catch (const Json::exception& error) {
-    refuse(where(), json_error_text(error.id, error.what()));
-  }
+  const RefuseJson refuse_here = [&](const std::string& found) { refuse(where(), found); };
+  const nlohmann::json json = parse_own_json(where(), line, refuse_here);
+  head_ = head_of(JsonValue(json, refuse_here), path);
 }
 
 std::string RecordingReader::where() const {
@@ -195,18 +172,16 @@ bool RecordingReader::read_line(std::string& line) {
 std::optional<RecordedFrame> RecordingReader::next() {
   std::string line;
   if (!read_line(line)) refuse(where(), "it ends before its last line, which contains \"frames\"");
-  try {
-    const Json json = parse_json<Json>(where(), line);
-    if (!json.contains("frames")) {
-      ++frames_;
-      return frame_of(json);
-    }
-    if (count_of<std::uint64_t>(json, "frames") == frames_) return std::nullopt;
-    refuse(where(), std::to_string(frames_) + " frames, but its last line states " +
-                        shown_json(json["frames"]));
-  } catch (const Json::exception& error) {
-    refuse(where(), json_error_text(error.id, error.what()));
+  const RefuseJson refuse_here = [&](const std::string& found) { refuse(where(), found); };
+  const nlohmann::json parsed = parse_own_json(where(), line, refuse_here);
+  const JsonValue json(parsed, refuse_here);
+  if (!json.contains("frames")) {
+    ++frames_;
+    return frame_of(json);
   }
+  const JsonValue count = json.at("frames");
+  if (count.count<std::uint64_t>() == frames_) return std::nullopt;
+  refuse(where(), std::to_string(frames_) + " frames, but its last line states " + count.shown());
 }
 
 }  // namespace glidar::link

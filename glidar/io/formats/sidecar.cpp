@@ -3,14 +3,12 @@
 #include <glidar/io/formats/sidecar.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/config/json_error.hpp>
-#include <glidar/io/config/json_text.hpp>
+#include <glidar/io/config/json_value.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/files/recorded_path.hpp>
 #include <glidar/io/files/text_file.hpp>
 
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace glidar {
@@ -18,37 +16,29 @@ namespace {
 
 const TextFileKind kSidecar = {"the JSON file that glidar writes for a cloud", 512, ""};
 
-/// A count of 32 bits.
-std::uint64_t whole(const nlohmann::json& json) {
-  constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
-  if (json.is_number_unsigned() && json.get<std::uint64_t>() <= kMax) {
-    return json.get<std::uint64_t>();
-  }
-  throw nlohmann::json::type_error::create(302, shown_json(json) + " is not a count", &json);
-}
-
-CommandRecord read_command(const nlohmann::json& json, const std::filesystem::path& sidecar) {
+CommandRecord read_command(const JsonValue& json, const std::filesystem::path& sidecar) {
   if (json.is_null()) return {};
-  const auto arguments = json.at("arguments").get<std::vector<std::string>>();
-  const auto folder = json.at("folder").get<std::string>();
+  const std::vector<std::string> arguments = json.at("arguments").texts();
+  const std::string folder = json.at("folder").text();
   for (const std::string& argument : arguments) check_recorded_argument(sidecar, argument);
   check_recorded_path(sidecar, "folder", folder);
   return {.arguments = arguments, .folder = resolve_folder(sidecar, folder)};
 }
 
-Sidecar read(const nlohmann::json& json, const std::filesystem::path& path) {
+Sidecar read(const JsonValue& json, const std::filesystem::path& path) {
   Sidecar sidecar;
   sidecar.path = path;
-  sidecar.version = json.at("glidar").get<std::string>();
+  sidecar.version = json.at("glidar").text();
   sidecar.command = read_command(json.at("command"), path);
-  sidecar.frame = static_cast<std::uint32_t>(whole(json.at("frame")));
-  sidecar.frame_hash = json.at("frame_hash").get<std::string>();
-  const nlohmann::json& cloud = json.at("cloud");
-  sidecar.points = whole(cloud.at("rows")) * whole(cloud.at("cols"));
-  sidecar.hits = whole(json.at("beams_by_status").at("hit"));
-  for (const nlohmann::json& instance : json.at("instances")) {
-    const nlohmann::json& hash = instance.at("model_hash");
-    sidecar.model_hashes.push_back(hash.is_null() ? "" : hash.get<std::string>());
+  sidecar.frame = json.at("frame").count<std::uint32_t>();
+  sidecar.frame_hash = json.at("frame_hash").text();
+  const JsonValue cloud = json.at("cloud");
+  sidecar.points = std::uint64_t{cloud.at("rows").count<std::uint32_t>()} *
+                   cloud.at("cols").count<std::uint32_t>();
+  sidecar.hits = json.at("beams_by_status").at("hit").count<std::uint32_t>();
+  for (const JsonValue& instance : json.at("instances").items()) {
+    const JsonValue hash = instance.at("model_hash");
+    sidecar.model_hashes.push_back(hash.is_null() ? "" : hash.text());
   }
   return sidecar;
 }
@@ -93,17 +83,17 @@ Sidecar read_sidecar(const std::filesystem::path& cloud) {
                  .allowed = "a cloud with its sidecar in the same folder",
                  .remedy = "write the cloud again, with -o and without --no-sidecar"});
   }
-  try {
-    return read(parse_json<nlohmann::json>(path.string(), read_text_file(path, kSidecar)), path);
-  } catch (const nlohmann::json::exception& error) {
-    const bool is_damaged = is_json_syntax_error(error.id);
-    throw Error({.where = path.string(),
-                 .found = (is_damaged ? "a damaged file: " : "not a sidecar of this version: ") +
-                          json_error_text(error.id, error.what()),
-                 .allowed = "the file that glidar wrote for the cloud",
-                 .remedy = is_damaged ? "copy the file again, or write the cloud again"
-                                      : "write the cloud again"});
-  }
+  const auto refuse = [&](const std::string& found, const char* remedy) {
+    throw Error({path.string(), found, "the file that glidar wrote for the cloud", remedy});
+  };
+  const std::string text = read_text_file(path, kSidecar);
+  const nlohmann::json json = parse_own_json(path.string(), text, [&](const std::string& found) {
+    refuse("a damaged file: " + found, "copy the file again, or write the cloud again");
+  });
+  const RefuseJson refuse_value = [&](const std::string& found) {
+    refuse("not a sidecar of this version: " + found, "write the cloud again");
+  };
+  return read(JsonValue(json, refuse_value), path);
 }
 
 }  // namespace glidar

@@ -15,6 +15,10 @@
 namespace glidar {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::StartsWith;
+
 Sensor load(const std::string& content) {
   const TestFolder folder;
   return load_sensor_file(folder.write("s.yaml", content));
@@ -279,16 +283,9 @@ const BadFile kBadFiles[] = {
      "s.yaml: the file is empty; allowed: a YAML map (key: value); see docs/files.md"},
     {"AList", "- a\n", "s.yaml:1:1: a list of 1; allowed: a map (key: value); see docs/files.md"},
     {"AWord", "\n hello\n", "s.yaml:2:2: 'hello'; allowed: a map (key: value); see docs/files.md"},
-    {"BrokenSyntax", "optics:\n  width: [1, 2\nheight: 3\n",
-     "s.yaml:3:7: not YAML: end of sequence flow not found"},
     {"UnknownAnchor", "name: *nobody\n",
      "s.yaml:1:7: the alias '*nobody' has no anchor; write '&nobody' before the value that it "
      "repeats"},
-    {"TabInIndentation", "optics:\n\twidth: 4\n",
-     "s.yaml:2:7: not YAML: illegal map value; indent with spaces, not with tabs"},
-    {"TabAfterSpaces", "optics:\n  width: 4\n\theight: 4\n",
-     "s.yaml:3:1: not YAML: illegal tab when looking for indentation; indent with spaces, not with "
-     "tabs"},
     {"TwoDocuments", "name: a\n---\nname: b\n",
      "s.yaml:3:1: a second document; allowed: one document in a file; remove the line '---' "
      "before it"},
@@ -307,6 +304,22 @@ const BadFile kBadFiles[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SensorFileError, ::testing::ValuesIn(kBadFiles), bad_file_name);
+
+// The words between are those of yaml-cpp, which depend on its version.
+TEST(SensorFile, BrokenSyntaxHasAPlaceAndACure) {
+  const TestFolder folder;
+  const auto error = [&](const std::string& content) {
+    const auto file = folder.write("s.yaml", content);
+    return error_of(folder, [&] { load_sensor_file(file); });
+  };
+  const std::string cure = "; indent with spaces, not with tabs";
+  EXPECT_THAT(error("optics:\n  width: [1, 2\nheight: 3\n"), StartsWith("s.yaml:3:7: not YAML: "));
+  for (const auto& [content, place] :
+       {std::pair("optics:\n\twidth: 4\n", "s.yaml:2:7: not YAML: "),
+        std::pair("optics:\n  width: 4\n\theight: 4\n", "s.yaml:3:1: not YAML: ")}) {
+    EXPECT_THAT(error(content), AllOf(StartsWith(place), EndsWith(cure)));
+  }
+}
 
 TEST(SensorFile, LongWordsAreCutInErrors) {
   const TestFolder folder;
