@@ -52,6 +52,9 @@ struct ViewFlags {
   WindowSize size;
 };
 
+/// Panels may need two more frames after an event to update their layout.
+constexpr int kSettleFrames = 3;
+
 /// Frames per second, averaged over about the last second of activity.
 class FrameRateMeter {
  public:
@@ -74,10 +77,13 @@ class FrameRateMeter {
 /// The viewer in its window.
 class ViewerWindow {
  public:
-  ViewerWindow(const ViewFlags& flags, Viewer& viewer, Console& console)
-      : flags_(flags), viewer_(viewer), console_(console) {
-    open_window();
-  }
+  /// Opens the window first, so that loading begins with standard error as it was.
+  ViewerWindow(const ViewFlags& flags, MeasurementThread& measurements, Console& console)
+      : flags_(flags),
+        console_(console),
+        window_(first_window()),
+        screen_(std::make_unique<Screen>()),
+        viewer_(flags.render, measurements) {}
 
   /// Draws and displays; stores the image of the window if `picture` is given.
   void draw(Picture* picture = nullptr);
@@ -85,9 +91,12 @@ class ViewerWindow {
   /// Measures and draws frames, one after the other.
   void run_frames(std::uint32_t count);
   [[nodiscard]] std::uint64_t drawn() const { return drawn_; }
+  [[nodiscard]] const Viewer& viewer() const { return viewer_; }
 
  private:
-  void open_window();
+  [[nodiscard]] std::unique_ptr<Window> make_window();
+  [[nodiscard]] std::unique_ptr<Window> first_window();
+  void reopen_window();
   [[nodiscard]] WindowEvents events();
   void wait();
   bool take_results();
@@ -95,26 +104,32 @@ class ViewerWindow {
   void print_state(bool is_hidden);
 
   const ViewFlags& flags_;
-  Viewer& viewer_;
   Console& console_;
   FrameRateMeter frame_rate_;
   std::unique_ptr<Window> window_;
   std::unique_ptr<Screen> screen_;  ///< destroyed before the window, whose context it needs
+  Viewer viewer_;
   bool is_quitting_ = false;
-  int redraws_left_ = 0;  ///< frames to draw until panels are up to date
+  int redraws_left_ = kSettleFrames;  ///< frames to draw until panels are up to date
   std::uint64_t drawn_ = 0;
   std::uint64_t keys_ = 0;  ///< letters typed
   bool was_hidden_ = false;
   bool is_moving_ = false;  ///< at the last wait
 };
 
-/// Panels may need two more frames after an event to update their layout.
-constexpr int kSettleFrames = 3;
+std::unique_ptr<Window> ViewerWindow::make_window() {
+  return std::make_unique<Window>("GLIDAR: " + flags_.render.input, flags_.size, events());
+}
 
-void ViewerWindow::open_window() {
+std::unique_ptr<Window> ViewerWindow::first_window() {
+  const SilencedLibraries silenced;
+  return make_window();
+}
+
+void ViewerWindow::reopen_window() {
   screen_.reset();
   window_.reset();
-  window_ = std::make_unique<Window>("GLIDAR: " + flags_.render.input, flags_.size, events());
+  window_ = make_window();
   screen_ = std::make_unique<Screen>();
   redraws_left_ = kSettleFrames;
 }
@@ -137,7 +152,7 @@ WindowEvents ViewerWindow::events() {
 void ViewerWindow::draw(Picture* picture) {
   if (window_->is_lost()) {
     viewer_.errors.emplace_back("the graphics device was reset; the window was opened again");
-    open_window();
+    reopen_window();
   }
   window_->begin();
   screen_->show(viewer_, window_->size(), frame_rate_.rate());
@@ -157,7 +172,8 @@ void ViewerWindow::wait() {
     return;
   }
   WindowSystem::wait(due_s);
-  if (!due_s) redraws_left_ = kSettleFrames;
+  const bool is_input = !WindowSystem::wakes_without_input() || Window::has_pending_input();
+  if (!due_s && is_input) redraws_left_ = kSettleFrames;
 }
 
 /// Prints errors in the terminal too.
@@ -199,6 +215,7 @@ void ViewerWindow::run() {
     }
     if (redraws_left_ == 0) continue;
     draw();
+    if (Window::has_pending_input()) redraws_left_ = std::max(redraws_left_, kSettleFrames);
     if (--redraws_left_ == 0) print_state(false);
   }
 }
@@ -241,8 +258,7 @@ int run(ViewFlags& flags) {
   Console console(flags.render.quiet);
   const WindowSystem windows;
   MeasurementThread measurements(console, WindowSystem::wake);
-  Viewer viewer(flags.render, measurements);
-  ViewerWindow window(flags, viewer, console);
+  ViewerWindow window(flags, measurements, console);
   if (!flags.frames) {
     window.run();
   } else {
@@ -257,7 +273,7 @@ int run(ViewFlags& flags) {
   if (screenshot) {
     Picture picture;
     for (int i = 0; i < kSettleFrames; ++i) window.draw(&picture);
-    refuse_overwrite_of_inputs(viewer.snapshot()->prepared->files, flags.screenshot);
+    refuse_overwrite_of_inputs(window.viewer().snapshot()->prepared->files, flags.screenshot);
     write_png(picture, "the window of glidar view", *screenshot);
     screenshot->commit();
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/window.hpp>
 
+#include <apps/glidar/run/console.hpp>
+#include <apps/viewer/wayland_display.hpp>
 #include <glidar/core/error.hpp>
 
 #include <epoxy/gl.h>
@@ -12,9 +14,11 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 namespace glidar::app {
@@ -25,6 +29,51 @@ std::string glfw_error() {
   const char* text = nullptr;
   const int code = glfwGetError(&text);
   return code == GLFW_NO_ERROR || text == nullptr ? "no reason given" : text;
+}
+
+// Hints of GLFW 3.4; earlier versions refuse them without effect.
+constexpr int kPlatform = 0x00050003;
+constexpr int kWayland = 0x00060003;
+constexpr int kX11 = 0x00060004;
+constexpr int kScaleFramebuffer = 0x0002200D;
+constexpr int kLibdecor = 0x00053001;
+constexpr int kDisableLibdecor = 0x00038002;
+
+/// Whether this GLFW has the platform, "X11" or "Wayland": before 3.4, each library has one.
+bool is_supported(std::string_view platform) {
+  return std::string_view(glfwGetVersionString()).find(platform) != std::string_view::npos;
+}
+
+/// A platform of GLFW, and the variable that names its display.
+struct Platform {
+  std::string_view name;
+  int hint;
+  const char* variable;
+  const char* package;  ///< of GLFW 3.3 for it, in Debian 12
+  std::string missing;  ///< why it has no display; empty: it may have one
+};
+
+/// Connects to the display; returns why it failed, empty if it did not.
+std::string connect(const Platform& platform) {
+  const std::string display = variable_text(platform.variable);
+  if (!is_supported(platform.name)) {
+    if (variable(platform.variable).empty()) return display;
+    return display + ", but GLFW " + glfwGetVersionString() + " has no support for " +
+           std::string(platform.name) + " (Debian 12: install " + platform.package + ")";
+  }
+  if (!platform.missing.empty()) return platform.missing;
+  glfwInitHint(kPlatform, platform.hint);
+  glfwInitHint(kLibdecor, kDisableLibdecor);  // libwayland crashes after it is unloaded
+  return glfwInit() == GLFW_TRUE ? "" : display + ": " + glfw_error();
+}
+
+/// Whether windows are on a Wayland display.
+bool is_wayland() {
+#if GLFW_VERSION_MAJOR == 3 && GLFW_VERSION_MINOR < 4
+  return is_supported("Wayland");
+#else
+  return glfwGetPlatform() == kWayland;
+#endif
 }
 
 /// The callbacks of a window.
@@ -56,6 +105,7 @@ GLFWwindow* open_window(const std::string& title, const WindowSize& size, int ap
   glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
   glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
   glfwWindowHint(GLFW_SAMPLES, 0);
+  glfwWindowHint(kScaleFramebuffer, GLFW_FALSE);  // pictures of the window have its size
   return glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
 }
 
@@ -78,9 +128,16 @@ GLFWwindow* open_any_window(const std::string& title, const WindowSize& size) {
 }  // namespace
 
 WindowSystem::WindowSystem() {
-  if (glfwInit() == GLFW_TRUE) return;
+  const SilencedLibraries silenced;
+  // X11 first, also below a desktop with Wayland: that is the display of xvfb-run.
+  const std::string no_x11 = variable("DISPLAY").empty() ? variable_text("DISPLAY") : "";
+  const std::string x11 = connect({"X11", kX11, "DISPLAY", "libglfw3", no_x11});
+  if (x11.empty()) return;
+  const std::string wayland =
+      connect({"Wayland", kWayland, "WAYLAND_DISPLAY", "libglfw3-wayland", missing_wayland()});
+  if (wayland.empty()) return;
   throw Error({.where = "glidar view",
-               .found = "there is no display to open a window on: " + glfw_error(),
+               .found = "there is no display to open a window on: " + x11 + "; " + wayland,
                .remedy =
                    "run it in a desktop session or with 'xvfb-run -a glidar view ...', or write "
                    "a picture without a window: glidar render MODEL -o picture.png"});
@@ -104,6 +161,11 @@ void WindowSystem::wait(std::optional<double> seconds) {
   glfwPollEvents();
 }
 
+bool WindowSystem::wakes_without_input() {
+  constexpr int kKnowsInput = 18700;  // see Window::has_pending_input()
+  return IMGUI_VERSION_NUM >= kKnowsInput && is_wayland();
+}
+
 void Window::WindowDeleter::operator()(GLFWwindow* window) const {
   glfwDestroyWindow(window);
 }
@@ -112,7 +174,8 @@ Window::Window(const std::string& title, const WindowSize& size, WindowEvents ev
     : events_(std::move(events)), window_(open_any_window(title, size)) {
   GLFWwindow* window = window_.get();
   glfwMakeContextCurrent(window);
-  glfwSwapInterval(1);
+  // A Wayland compositor lets the buffers of a hidden window wait for ever.
+  glfwSwapInterval(is_wayland() ? 0 : 1);
   glfwSetWindowUserPointer(window, &events_);
   glfwSetKeyCallback(window, on_key);
   glfwSetCharCallback(window, on_character);
@@ -124,6 +187,8 @@ Window::Window(const std::string& title, const WindowSize& size, WindowEvents ev
   ImGui::StyleColorsDark();
   float scale = 1.0F;
   glfwGetWindowContentScale(window, &scale, nullptr);
+  scale *=
+      static_cast<float>(this->size().width) / static_cast<float>(std::max(1, drawn_size().width));
   ImGui::GetIO().FontGlobalScale = scale;
   ImGui::GetStyle().ScaleAllSizes(scale);
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // also calls the callbacks set above
@@ -152,7 +217,21 @@ bool Window::is_lost() const {
   return can_tell && glGetGraphicsResetStatus() != GL_NO_ERROR;
 }
 
+bool Window::has_pending_input() {
+#if IMGUI_VERSION_NUM >= 18700
+  return !ImGui::GetCurrentContext()->InputEventsQueue.empty();
+#else
+  return false;  // all input takes effect in one frame
+#endif
+}
+
 WindowSize Window::size() const {
+  WindowSize now;
+  glfwGetWindowSize(window_.get(), &now.width, &now.height);
+  return now;
+}
+
+WindowSize Window::drawn_size() const {
   WindowSize now;
   glfwGetFramebufferSize(window_.get(), &now.width, &now.height);
   return now;
@@ -176,7 +255,7 @@ void Window::begin() {
 
 void Window::end() {
   ImGui::Render();
-  const WindowSize now = size();
+  const WindowSize now = drawn_size();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, now.width, now.height);
   glDisable(GL_SCISSOR_TEST);
@@ -190,7 +269,7 @@ void Window::show() {
 }
 
 Picture Window::picture() const {
-  const WindowSize now = size();
+  const WindowSize now = drawn_size();
   const auto width = static_cast<std::size_t>(now.width);
   const auto height = static_cast<std::size_t>(now.height);
   Picture picture = make_picture(width, height, {});

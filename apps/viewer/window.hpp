@@ -39,7 +39,8 @@ struct WindowSize {
 /// RAII: the window library; one at a time, in the main thread.
 class WindowSystem {
  public:
-  /// Throws Error if there is no display.
+  /// Connects to the X11 display of DISPLAY, else to the Wayland display of WAYLAND_DISPLAY. Throws
+  /// Error if there is neither.
   WindowSystem();
   ~WindowSystem();
   WindowSystem(const WindowSystem&) = delete;
@@ -51,6 +52,8 @@ class WindowSystem {
   static void poll();
   /// Waits for an event, at most so many seconds; empty: without limit.
   static void wait(std::optional<double> seconds);
+  /// Whether wait() also ends without input: a Wayland compositor answers every picture.
+  static bool wakes_without_input();
 };
 
 /// A window with a context of OpenGL 3.3, current in the main thread while it lives, and panels by
@@ -68,8 +71,11 @@ class Window {
   [[nodiscard]] bool is_hidden() const;
   /// Whether the graphics device lost the context and all its objects.
   [[nodiscard]] bool is_lost() const;
+  /// The size in which mouse and panels count; with Wayland, the drawn image may have more pixels.
   [[nodiscard]] WindowSize size() const;
   [[nodiscard]] const MouseInput& mouse() const { return mouse_; }
+  /// Whether input waits for the next frame: a key and a motion of the mouse take one each.
+  [[nodiscard]] static bool has_pending_input();
 
   /// Panels are added between these two; end() draws them.
   void begin();
@@ -80,6 +86,8 @@ class Window {
   void show();
 
  private:
+  [[nodiscard]] WindowSize drawn_size() const;
+
   struct WindowDeleter {
     void operator()(GLFWwindow* window) const;
   };

@@ -3,6 +3,8 @@
 """A virtual display, with its keyboard and mouse."""
 
 import os
+import re
+import select
 import shutil
 import subprocess
 from urllib.parse import quote
@@ -13,41 +15,88 @@ from Xlib import X, Xutil
 from Xlib.protocol import event
 from waiting import MAX_WAIT_S, wait_until
 
-NEEDED = ("Xvfb", "xdotool")
+NEEDED = ("Xvfb", "xdotool", "weston")
+WINDOW_WAIT_S = 60  # for the effect of a key, or a window
 
 
 def missing_programs():
     return [program for program in NEEDED if shutil.which(program) is None]
 
 
+def end(server):
+    """Ends a display server, which takes its clients with it."""
+    server.terminate()
+    try:
+        server.wait(timeout=WINDOW_WAIT_S)
+    except subprocess.TimeoutExpired:
+        server.kill()
+        server.wait()
+
+
+class WaylandDisplay:
+    """A context manager for weston, in a runtime folder of its own: in a window on an X11 display, else without a screen,
+    and then also without a keyboard and a mouse."""
+
+    def __init__(self, folder, x11=None):
+        self.environment = {"XDG_RUNTIME_DIR": str(folder), "WAYLAND_DISPLAY": "wayland-test"}
+        self._x11 = x11
+
+    def __enter__(self):
+        folder = self.environment["XDG_RUNTIME_DIR"]
+        os.makedirs(folder, mode=0o700)
+        environment = os.environ | {"XDG_RUNTIME_DIR": folder, "DISPLAY": self._x11.name if self._x11 else ""}
+        environment.pop("WAYLAND_DISPLAY", None)
+        backend = ("x11" if self._x11 else "headless") + ("-backend.so" if weston_version() < 12 else "")
+        self._server = subprocess.Popen(
+            ["weston", f"--backend={backend}", "--use-pixman", "--socket=wayland-test", "--idle-time=0", "--no-config",
+             "--width=1400", "--height=900", f"--log={folder}/weston.log"],
+            env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            wait_until(lambda: os.path.exists(f"{folder}/wayland-test"), "the socket of weston", self._server,
+                       max_s=WINDOW_WAIT_S)
+        except AssertionError:
+            end(self._server)
+            raise
+        return self
+
+    def __exit__(self, *error):
+        end(self._server)
+
+
+def weston_version():
+    done = subprocess.run(["weston", "--version"], capture_output=True, text=True, timeout=WINDOW_WAIT_S, check=True)
+    return int(re.search(r"weston (\d+)", done.stdout)[1])
+
+
 class Display:
-    """A context manager for Xvfb."""
+    """A context manager for Xvfb; further options are its own."""
+
+    def __init__(self, *options):
+        self._options = options
 
     def __enter__(self):
         read, write = os.pipe()
         self._server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp",
-             "-noreset"],  # no reset when its last window is closed
+             "-noreset", *self._options],  # no reset when its last window is closed
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
+        if not select.select([read], [], [], MAX_WAIT_S)[0]:
+            raise AssertionError(f"Xvfb did not start in {MAX_WAIT_S} s")
         with os.fdopen(read) as number:
             self.name = ":" + number.readline().strip()
+        if self.name == ":":
+            raise AssertionError("Xvfb ended before its display was ready")
         self.environment = dict(os.environ, DISPLAY=self.name, HOME="/nonexistent")
         return self
 
     def __exit__(self, *error):
-        self._server.terminate()
-        self._server.wait()
+        end(self._server)
 
     def xdotool(self, *arguments):
         done = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment,
-                              capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
+                              capture_output=True, text=True, timeout=WINDOW_WAIT_S, check=False)
         return done.stdout.split()
-
-    def window(self, title):
-        """The id of the window whose title contains this, once it exists."""
-        return wait_until(lambda: self.xdotool("search", "--onlyvisible", "--name", title),
-                          f"a window '{title}'")[0]
 
     def grab(self):
         return ImageGrab.grab(xdisplay=self.name).convert("RGB")
@@ -80,7 +129,7 @@ class Display:
         send("XdndPosition", [0, (300 << 16) | 300, X.CurrentTime, atom("XdndActionCopy")])
         is_finished = False
         while not is_finished:
-            wait_until(display.pending_events, "the window to take what was dropped")
+            wait_until(display.pending_events, "the window to take what was dropped", max_s=WINDOW_WAIT_S)
             got = display.next_event()
             if got.type == X.ClientMessage and got.client_type == atom("XdndStatus"):
                 send("XdndDrop", [0, X.CurrentTime, 0, 0])

@@ -6,8 +6,8 @@ import os
 import subprocess
 import threading
 
-from cli_support import MAX_WAIT_S, CliTest
-from display import Display
+from cli_support import CliTest
+from display import WINDOW_WAIT_S, Display
 from PIL import ImageChops, ImageStat
 from waiting import wait_until
 
@@ -26,8 +26,9 @@ def difference(a, b):
 class Window:
     """A context manager for a running glidar view, whose state is read from the lines of --print-state."""
 
-    def __init__(self, test, *arguments):
+    def __init__(self, test, *arguments, is_on_x11=True):
         self._test = test
+        self._is_on_x11 = is_on_x11
         self._display = test.display
         self.program = subprocess.Popen(
             ["glidar", "view", "--print-state", *arguments], cwd=test.folder, env=test.environment,
@@ -44,8 +45,14 @@ class Window:
             lines.append(line)
 
     def __enter__(self):
-        self.number = self._display.window("GLIDAR")
-        self.wait_for("its first picture")
+        try:
+            if self._is_on_x11:
+                search = ("search", "--onlyvisible", "--name", "GLIDAR")
+                self.number = self._wait(lambda: self._display.xdotool(*search), "a window")[0]
+            self.wait_for("its first picture")
+        except BaseException:
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *error):
@@ -56,6 +63,13 @@ class Window:
             reader.join()
         for stream in (self.program.stdout, self.program.stderr):
             stream.close()
+
+    def _wait(self, condition, what):
+        """wait_until() with what the window reported."""
+        try:
+            return wait_until(condition, what, self.program, max_s=WINDOW_WAIT_S)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; the last state: {self.state()}; its errors: {''.join(self._err)}") from None
 
     def state(self):
         """The last printed state, as numbers and text by name; empty without one."""
@@ -70,7 +84,7 @@ class Window:
             fits = all(value(state[name]) if callable(value) else state[name] == value
                        for name, value in wanted.items()) if state else False
             return state if fits else None
-        return wait_until(is_there, what, self.program)
+        return self._wait(is_there, what)
 
     def key(self, *keys):
         """Types characters and waits for their effect in the window."""
@@ -110,17 +124,19 @@ class Window:
 
     def shows(self, condition, what):
         """Waits until a screenshot fulfils the condition."""
-        wait_until(lambda: condition(self._display.grab()), what, self.program)
+        self._wait(lambda: condition(self._display.grab()), what)
 
     def quit(self):
         """Closes it by Esc, repeated if the window was not ready for it; returns its output."""
-        for _ in range(MAX_WAIT_S // 5):
+        for _ in range(WINDOW_WAIT_S // 5):
             self._display.xdotool("key", "Escape")
             try:
                 self.program.wait(timeout=5)
                 break
             except subprocess.TimeoutExpired:
                 pass
+        else:
+            self._test.fail(f"waited {WINDOW_WAIT_S} s in vain for the end after Esc; the last state: {self.state()}")
         for reader in self._readers:
             reader.join()
         self._test.assertEqual(self.program.returncode, 0, self._err)
@@ -131,7 +147,7 @@ class Window:
         self._display.xdotool("key", "s")
         self._keys += 1
         path = os.path.join(self._test.folder, name + ".transform")
-        wait_until(lambda: os.path.exists(path), path, self.program)
+        self._wait(lambda: os.path.exists(path), path)
         with open(path, encoding="utf-8") as text:
             return [[float(x) for x in line.split()] for line in text]
 
@@ -155,4 +171,6 @@ class DisplayTest(CliTest):
 
     def setUp(self):
         super().setUp()
+        for name in ("WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_RUNTIME_DIR"):  # those of a desktop
+            self.environment.pop(name, None)
         self.environment["DISPLAY"] = self.display.name

@@ -6,10 +6,12 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace glidar::app {
@@ -124,6 +126,23 @@ void Console::end() {
 void Console::erase() {
   if (drawn_) print("\r\033[K");
   drawn_ = false;
+}
+
+SilencedLibraries::SilencedLibraries() {
+  for (const char* variable : {"EGL_LOG_LEVEL", "LIBGL_DEBUG", "WAYLAND_DEBUG"}) {
+    if (std::getenv(variable) != nullptr) return;
+  }
+  const int discarded = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (discarded < 0) return;
+  stderr_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (stderr_ >= 0) dup2(discarded, STDERR_FILENO);
+  close(discarded);
+}
+
+SilencedLibraries::~SilencedLibraries() {
+  if (stderr_ < 0) return;
+  dup2(stderr_, STDERR_FILENO);
+  close(stderr_);
 }
 
 ProgressScope::ProgressScope(Console& console, std::string_view task) : console_(console) {

@@ -61,6 +61,20 @@ class Console {
   Clock::time_point task_started_;
 };
 
+/// RAII: discards what libraries of the system (drivers, windows) print on standard error
+/// meanwhile, unless a variable of theirs requests it: EGL_LOG_LEVEL, LIBGL_DEBUG, WAYLAND_DEBUG.
+/// One at a time.
+class SilencedLibraries {
+ public:
+  SilencedLibraries();
+  SilencedLibraries(const SilencedLibraries&) = delete;
+  SilencedLibraries& operator=(const SilencedLibraries&) = delete;
+  ~SilencedLibraries();
+
+ private:
+  int stderr_ = -1;  ///< a copy of its descriptor; negative: not silenced
+};
+
 /// RAII: shows the progress of this work on a terminal after two seconds. One at a time.
 class ProgressScope {
  public:

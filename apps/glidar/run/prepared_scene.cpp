@@ -294,6 +294,16 @@ void set_imus(const RenderFlags& flags, const SceneFile& loaded, PreparedScene& 
   prepared.files.push_back(file.string());
 }
 
+/// Drivers print messages of their own before the error that none of them gives a context.
+void make_renderers(const RenderFlags& flags, PreparedScene& prepared) {
+  std::optional<SilencedLibraries> silenced;
+  if (flags.renderer.kind == "opengl") silenced.emplace();
+  prepared.renderer = make_renderer(prepared.scene, flags.renderer);
+  if (flags.quantized_framebuffer) {
+    prepared.woods2016_camera = make_woods2016_camera(prepared.scene, flags.renderer);
+  }
+}
+
 }  // namespace
 
 void print_advice(const std::vector<std::string>& advice, Console& console) {
@@ -319,10 +329,7 @@ void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loa
                console);
   place_sensors(flags, loaded, console, prepared);
   const ProgressScope progress(console, "preparing the scene");
-  prepared.renderer = make_renderer(prepared.scene, flags.renderer);
-  if (flags.quantized_framebuffer) {
-    prepared.woods2016_camera = make_woods2016_camera(prepared.scene, flags.renderer);
-  }
+  make_renderers(flags, prepared);
   for (ActiveSensor& active : prepared.sensors) {
     active.simulator =
         make_simulator(prepared, std::make_shared<const BeamCache>(active.sensor, active.beams));
