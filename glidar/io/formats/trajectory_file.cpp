@@ -78,7 +78,7 @@ std::optional<std::size_t> name_of_column(std::string_view text) {
   };
   if (const std::size_t at = find(name); at < kTum) return at;
   if (name == "timestamp") return 0;
-  const bool has_axis = name.size() > 3 && name[name.size() - 2] == '_' && name[1] == '_';
+  const bool has_axis = name.size() >= 3 && name[name.size() - 2] == '_' && name[1] == '_';
   if (!has_axis) return std::nullopt;
   if (name[0] == 'p') return find(name.substr(name.size() - 1));
   if (name[0] == 'q') return find("q" + std::string(name.substr(name.size() - 1)));
