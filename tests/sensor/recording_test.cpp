@@ -67,7 +67,8 @@ double turned_deg(double from_deg, double to_deg) {
 
 TEST(Recording, OfAVlp16HasTheSimulatedTimesAndAzimuths) {
   const char* folder = std::getenv("GLIDAR_DATA");
-  if (folder == nullptr) GTEST_SKIP() << "GLIDAR_DATA is not set; set it to a folder with real data";
+  if (folder == nullptr)
+    GTEST_SKIP() << "GLIDAR_DATA is not set; set it to a folder with real data";
   const std::vector<Packet> packets = read_capture(
       std::filesystem::path(folder) / "recordings/velodyne/sample_velodyne_vlp16_gps.pcap");
   ASSERT_GT(packets.size(), 100U);

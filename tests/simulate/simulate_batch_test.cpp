@@ -78,7 +78,8 @@ TEST_P(SimulateBatch, FramesAreIdenticalToSimulate) {
 }
 
 TEST_P(SimulateBatch, PointingErrorsOfAFrameDoNotAffectAnother) {
-  if (GetParam() == "opengl" || GetParam() == "raster") GTEST_SKIP() << "casts pinhole beams only; nothing to do";
+  if (GetParam() == "opengl" || GetParam() == "raster")
+    GTEST_SKIP() << "casts pinhole beams only; nothing to do";
   sensor_.noise.push_back(PointingJitter{.sigma_azimuth_rad = 1e-3, .sigma_elevation_rad = 1e-3});
   expect_as_one_by_one(sensor_);
 }

@@ -21,8 +21,8 @@ inline std::filesystem::path data_folder() {
   return folder == nullptr ? std::filesystem::path() : std::filesystem::path(folder);
 }
 
-#define GLIDAR_NEEDS_DATA()                                              \
-  if (::glidar::testing::data_folder().empty()) {                        \
+#define GLIDAR_NEEDS_DATA()                                                      \
+  if (::glidar::testing::data_folder().empty()) {                                \
     GTEST_SKIP() << "GLIDAR_DATA is not set; set it to a folder with real data"; \
   }
 
