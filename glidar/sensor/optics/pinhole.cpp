@@ -47,7 +47,7 @@ constexpr const char* kInstead = "this or `calibration_file`";
 
 void visit_side(FieldVisitor& visitor, const FieldInfo& field, std::uint32_t& side) {
   const bool is_schema = visitor.mode() == FieldVisitor::Mode::schema;
-  visitor.at_most_one({{field.key, kCalibrationFile},
+  visitor.at_most_one({{kCalibrationFile, field.key},
                        "one of the two",
                        is_schema ? "the size of the image is missing" : nullptr});
   visitor.whole_number(field, {1, kMaxImageSide}, side);
@@ -82,7 +82,14 @@ void visit_field_of_view(FieldVisitor& visitor, const FieldInfo& field, std::uin
 void visit_focal_length(FieldVisitor& visitor, Pinhole& pinhole) {
   constexpr NumberRule kFocalLength = {0.0, kFarthestPixel, true, "pixels above 0 and below 1e9"};
   PinholeIntrinsics& k = pinhole.intrinsics;
-  if (visitor.is_reading() && std::holds_alternative<Equirectangular>(pinhole.distortion)) {
+  const bool is_panorama =
+      visitor.is_reading() && std::holds_alternative<Equirectangular>(pinhole.distortion);
+  const bool is_known = is_panorama || (visitor.is_reading() && k.fx > 0.0);
+  visitor.at_most_one({{kCalibrationFile, "fov_deg", "fov_x_deg", "fx"},
+                       kFocalLengths,
+                       is_known ? nullptr : "the focal length is missing",
+                       "add 'fov_deg: ...'"});
+  if (is_panorama) {
     for (const char* key : {"fov_deg", "fov_x_deg"})
       if (visitor.has(key))
         visitor.reject(key, "given for an equirectangular image", "fx and fy, pixels per radian",
@@ -90,11 +97,6 @@ void visit_focal_length(FieldVisitor& visitor, Pinhole& pinhole) {
     k.fx = k.width / kTwoPi;
     k.fy = k.height / std::numbers::pi;
   }
-  const bool is_known = visitor.is_reading() && k.fx > 0.0;
-  visitor.at_most_one({{"fov_deg", "fov_x_deg", "fx", kCalibrationFile},
-                       kFocalLengths,
-                       is_known ? nullptr : "the focal length is missing",
-                       "add 'fov_deg: ...'"});
   if (!visitor.is_writing()) {
     visit_field_of_view(visitor, {"fov_deg", "vertical field of view", kUnitDegree, false, ""},
                         k.height, k);
@@ -251,7 +253,7 @@ void describe(Pinhole& pinhole, FieldVisitor& visitor) {
   visitor.number(centre, kPixelCentre, k.pixel_centre);
   visitor.number({"skew", "shift of a column per focal length of rows: K[0][1]", kUnitPixel},
                  kPrincipalPoint, pinhole.skew_px);
-  visit_object(visitor, distortion, pinhole.distortion);
+  if (!visitor.is_reading()) visit_object(visitor, distortion, pinhole.distortion);
 }
 
 }  // namespace glidar

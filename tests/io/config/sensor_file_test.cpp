@@ -168,8 +168,9 @@ const std::string kSide = "a whole number from 1 to 65536";
 
 const BadFile kBadFiles[] = {
     {"UnknownKey", "optics:\n  widht: 4\n",
-     "s.yaml:2:3: optics.widht: unknown key 'widht'; allowed: type, width, height, fov_deg, "
-     "fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
+     "s.yaml:2:3: optics.widht: unknown key 'widht'; allowed: type, calibration_file, width, "
+     "height, fov_deg, "
+     "fov_x_deg, fx, fy, cx, cy, pixel_centre, skew, distortion; did you mean 'width'?"},
     {"UnknownKeyFarFromAny", with_good_optics("zzzzzzzzz: 1\n"),
      "s.yaml:2:1: zzzzzzzzz: unknown key 'zzzzzzzzz'; allowed: name, optics, rate_hz, "
      "wavelength_nm, limits, light, lidar_equation, footprint, receiver, weather, "
@@ -244,7 +245,8 @@ const BadFile kBadFiles[] = {
      "wedge_mirror, table, "
      "ouster; did you mean 'pinhole'?"},
     {"UnknownDistortion", optics("width: 4, height: 2, fov_deg: 20, distortion: {model: fish_eye}"),
-     "s.yaml:1:64: optics.distortion.model: 'fish_eye'; allowed: none, radial_tangential, fisheye; "
+     "s.yaml:1:64: optics.distortion.model: 'fish_eye'; allowed: none, radial_tangential, "
+     "fisheye, fov, omni, double_sphere, eucm, equirectangular; "
      "did you mean 'fisheye'?"},
     {"DistortionWithoutModel", optics("width: 4, height: 2, fov_deg: 20, distortion: {k1: 1}"),
      "s.yaml:1:56: optics.distortion: the key 'model' is missing; add 'model: ...'"},
