@@ -104,10 +104,10 @@ VerifyResult run_case(const VerifyCase& c, const Shape& shape, const VerifySubje
     renderer->cast({.beams = beams,
                     .world_from_sensor = stage.world_from_sensor,
                     .world_from_instance = {},
-                    .hit_columns = {.normal = true},
+                    .hit_columns = kGeometricColumns,
                     .cull_back_faces = false},
                    hits);
-    result.add(compare_cast(exact, stage.world_from_sensor, beams, hits));
+    result.add(compare_cast(exact, stage.world_from_sensor, beams, hits, renderer->thread_pool()));
   }
   return result;
 }

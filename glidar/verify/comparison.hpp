@@ -4,10 +4,12 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/verify/shapes.hpp>
 #include <glidar/verify/verify.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace glidar {
@@ -15,6 +17,18 @@ namespace glidar {
 /// A reported triangle must contain the exact point within this fraction of range and size: 2^12
 /// roundings of double, for the point and for the beam's direction.
 inline constexpr double kIdTolerance = 0x1p-40;
+
+/// The columns that casts of verify() fill.
+inline constexpr HitColumnMask kGeometricColumns = {.depth = true,
+                                                    .normal = true,
+                                                    .shading_normal = true,
+                                                    .incidence = true,
+                                                    .shading = true,
+                                                    .barycentrics = true,
+                                                    .object_point = true};
+
+/// Bound of errors of columns in float32: unit vectors, cosines and barycentric weights.
+inline constexpr double kColumnBound = 1e-6;
 
 /// A shape as an instance of a scene, relative to a viewpoint.
 struct PlacedShape {
@@ -41,13 +55,24 @@ struct ReportedHit {
   RealVector normal;
 };
 
-/// Compares a beam's hit with the exact one and adds the errors to `result`. The origin is relative
-/// to the viewpoint.
-void compare_beam(const ExactScene& scene, const RealVector& origin, const RealVector& direction,
-                  const ReportedHit& reported, VerifyResult& result);
+/// The exact hit of a beam, relative to the viewpoint, in world axes.
+struct ExactContact {
+  std::uint32_t instance;
+  Real range_m;
+  RealVector point;
+  double tolerance_m;  ///< rounding of the point
+};
 
-/// Compares a cast of a static scene. The viewpoint is the sensor's origin.
+/// Compares a beam's hit with the exact one and adds the errors to `result`. The origin is relative
+/// to the viewpoint. Returns the exact hit if the beam was compared and its ids are right.
+std::optional<ExactContact> compare_beam(const ExactScene& scene, const RealVector& origin,
+                                         const RealVector& direction, const ReportedHit& reported,
+                                         VerifyResult& result);
+
+/// Compares a cast of a static scene with kGeometricColumns. The viewpoint is the sensor's origin.
+/// Of every `stride` beams one is compared.
 VerifyResult compare_cast(const ExactScene& scene, const Pose& world_from_sensor,
-                          const Beams& beams, const Hits& hits);
+                          const Beams& beams, const Hits& hits, ThreadPool& thread_pool,
+                          std::size_t stride = 1);
 
 }  // namespace glidar

@@ -14,4 +14,8 @@ namespace glidar {
 VerifyResult moving_sensor_and_target(const VerifySubject& subject,
                                       const std::vector<Shape>& shapes);
 
+/// The same beams measured by a sensor: also the poses of sensor and target, the beams without the
+/// motion, and radial velocities.
+VerifyResult measured_motion(const VerifySubject& subject, const std::vector<Shape>& shapes);
+
 }  // namespace glidar

@@ -16,6 +16,7 @@ namespace glidar {
 /// compared with double.
 using Real = long double;
 using RealVector = Eigen::Matrix<Real, 3, 1>;
+using RealMatrix = Eigen::Matrix<Real, 3, 3>;
 
 /// A shape with a surface in closed form: flat faces, each a polygon of vertices that are exact in
 /// single precision.
@@ -48,7 +49,7 @@ struct ClosedForm {
 
 /// The pose of an object relative to a viewpoint: p = rotation * (scale * p_object) + shift.
 struct ExactPose {
-  Eigen::Matrix<Real, 3, 3> rotation;
+  RealMatrix rotation;
   RealVector shift;
 };
 

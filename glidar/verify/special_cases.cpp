@@ -5,6 +5,8 @@
 #include <glidar/math/portable.hpp>
 #include <glidar/verify/aimed_probes.hpp>
 #include <glidar/verify/comparison.hpp>
+#include <glidar/verify/large_cases.hpp>
+#include <glidar/verify/measurement_cases.hpp>
 #include <glidar/verify/moving_case.hpp>
 #include <glidar/verify/probes.hpp>
 
@@ -52,9 +54,9 @@ VerifyResult cast_and_compare(Renderer& renderer, const ExactScene& exact,
                               const Pose& world_from_sensor, const Beams& beams) {
   Hits hits;
   renderer.cast(
-      {.beams = beams, .world_from_sensor = world_from_sensor, .hit_columns = {.normal = true}},
+      {.beams = beams, .world_from_sensor = world_from_sensor, .hit_columns = kGeometricColumns},
       hits);
-  return compare_cast(exact, world_from_sensor, beams, hits);
+  return compare_cast(exact, world_from_sensor, beams, hits, renderer.thread_pool());
 }
 
 /// Casts the beams of a camera and, if the renderer supports them, random beams.
@@ -253,6 +255,8 @@ std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes) {
   for (const Shape& shape : shapes) {
     if (shape.solid) add_aimed_cases(shape, cases);
   }
+  add_large_cases(shapes, cases);
+  add_measurement_cases(shapes, cases);
   return cases;
 }
 

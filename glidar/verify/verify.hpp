@@ -4,6 +4,8 @@
 
 #include <glidar/core/report.hpp>
 #include <glidar/render/renderer.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
+#include <glidar/simulate/simulator.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -31,10 +33,15 @@ struct VerifyResult {
   double range_error_m = 0.0;     ///< maximum
   double range_error_ulp = 0.0;   ///< maximum, in float32 steps at the exact range
   double normal_error_rad = 0.0;  ///< maximum
+  /// Maximum of the errors of all other columns and of measurements, as a share of their bounds.
+  double other_error = 0.0;
+  bool may_miss = true;  ///< false: no beam of the case can miss
 
   void add(const VerifyResult& other);
+  /// Adds an error of another column; NaN counts as infinite.
+  void check(double error, double bound);
   [[nodiscard]] std::size_t wrong() const { return wrong_hits + wrong_misses + wrong_ids; }
-  /// True if all errors are within the bounds and both hits and misses were compared.
+  /// True if all errors are within the bounds, and hits and misses were compared.
   [[nodiscard]] bool passed() const;
 };
 
@@ -58,11 +65,18 @@ enum class BeamKind : std::uint8_t {
 /// The beams that a renderer of this kind supports.
 BeamKind beams_of_renderer(std::string_view kind);
 
-/// A renderer to verify.
+/// The simulation and the optics of the library.
+void measure_frame(Simulator& simulator, const Motion& motion, Frame& frame);
+Beams camera_beams(const Pinhole& camera);
+
+/// A renderer to verify, and what measures with it.
 struct VerifySubject {
   std::string renderer;  ///< kind of the renderer, the key of known failures
   BeamKind casts = BeamKind::any;
   std::function<std::unique_ptr<Renderer>(const Scene&)> make;
+  /// Simulates the frame that its stamp and number state, with all ground truth.
+  std::function<void(Simulator&, const Motion&, Frame&)> measure = measure_frame;
+  std::function<Beams(const Pinhole&)> beams_of_camera = camera_beams;
 };
 
 /// The outcome of a row.
@@ -89,8 +103,9 @@ struct AccuracyCase {
 /// The name of a verdict in tables and JSON.
 std::string_view verdict_name(Verdict verdict);
 
-/// Measures the accuracy of ranges, normals and ids on this machine (docs/accuracy.md): compares
-/// every shape at every distance from 0.1 m to 10 km, and the special cases, with closed forms.
+/// Measures the accuracy of hits, of all their geometric columns and of measurements on this
+/// machine (docs/accuracy.md): compares every shape at every distance from 0.1 m to 10 km, and the
+/// special cases, with closed forms.
 std::vector<AccuracyCase> verify(const VerifySubject& subject, const ProgressCallback& progress);
 std::vector<AccuracyCase> verify(const RendererOptions& options, const ProgressCallback& progress);
 

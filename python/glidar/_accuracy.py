@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Accuracy of a renderer's hits, instance ids, ranges and normals on this machine."""
+"""Accuracy of a renderer's hits and of what is measured with them on this machine."""
 
 from __future__ import annotations
 
@@ -33,6 +33,8 @@ class AccuracyCase:
     """Maximum, in units in the last place (ulp) of float32 at the true range."""
     normal_error_rad: float
     """Maximum, rad."""
+    other_error: float
+    """Maximum of the errors of other columns and of measurements, as a share of their bounds."""
     known_failure: str
     """The reason for a known failure of this renderer; empty when the case must pass."""
     verdict: str
@@ -53,8 +55,8 @@ class AccuracyReport:
 
     @property
     def passed(self) -> bool:
-        """Whether ranges are within 0.001 ulp of float32, normals within 1e-6 rad, and hits, misses and ids
-        correct, except for known failures, which have bounds too."""
+        """Whether ranges are within 0.001 ulp of float32, normals within 1e-6 rad, other errors within
+        their bounds, and hits, misses and ids correct, except for known failures, which have bounds too."""
         return all(row.verdict != "FAILED" for row in self.rows)
 
     def __bool__(self) -> bool:

@@ -161,6 +161,7 @@ void bind_tools(nb::module_& module) {
                    [](const AccuracyCase& self) { return self.result.range_error_ulp; })
       .def_prop_ro("normal_error_rad",
                    [](const AccuracyCase& self) { return self.result.normal_error_rad; })
+      .def_prop_ro("other_error", [](const AccuracyCase& self) { return self.result.other_error; })
       .def_prop_ro("known_failure", [](const AccuracyCase& self) { return self.known.reason; })
       .def_prop_ro("verdict", [](const AccuracyCase& self) {
         return std::string(verdict_name(self.verdict()));
