@@ -53,7 +53,7 @@ TEST(TimeText, DecimalSecondsReadBack) {
   EXPECT_EQ(decimal_seconds(-1), "-0.000000001");
   EXPECT_EQ(decimal_seconds(12'500'000'000), "12.5");
   EXPECT_EQ(decimal_seconds(std::numeric_limits<std::int64_t>::min()), "-9223372036.854775808");
-  for (const std::int64_t t_ns : {1'700'000'000'123'456'789, -1'000'000'007, 100'000'000}) {
+  for (const std::int64_t t_ns : {1'700'000'000'123'456'789L, -1'000'000'007L, 100'000'000L}) {
     EXPECT_EQ(parse_seconds_ns(decimal_seconds(t_ns)), t_ns);
   }
 }
