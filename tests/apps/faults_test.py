@@ -15,6 +15,7 @@ from pathlib import Path
 from cli_support import BOX, CliTest
 
 from faults import CALLS, ERRORS, NO_LIBRARY, Faults, library, random_below
+from skipping import skip
 from waiting import MAX_WAIT_S
 
 SIZE = ("--width", "16", "--height", "12", "--fov", "40", "--threads", "1", "--quiet")
@@ -86,7 +87,6 @@ class FaultTest(CliTest):
                 check()
 
 
-@unittest.skipUnless(library(), NO_LIBRARY)
 class Render(FaultTest):
     def test_every_failed_call_is_reported_and_leaves_no_partial_file(self):
         self.succeed(*RENDER)
@@ -117,7 +117,6 @@ class Render(FaultTest):
         self.each_kill(RENDER, self.empty, check)
 
 
-@unittest.skipUnless(library(), NO_LIBRARY)
 class Recording(FaultTest):
     def recorded(self):
         """The frames of a recording, whose last line has their number; None: no recording."""
@@ -200,7 +199,6 @@ class Recording(FaultTest):
         self.each_kill(DURABLE, prepare, check)
 
 
-@unittest.skipUnless(library(), NO_LIBRARY)
 class Cache(FaultTest):
     """Here the folder of outputs is the cache."""
 
@@ -244,4 +242,6 @@ class Cache(FaultTest):
 
 
 if __name__ == "__main__":
+    if not library():
+        skip(*NO_LIBRARY.split("; "))
     unittest.main()
