@@ -36,7 +36,7 @@ class Drivers(DriverTest):
         hits = ~misses
         elevation = np.degrees(np.arctan2(data["z"], np.hypot(data["x"], data["y"])))
         expected = np.broadcast_to(np.arange(-15, 16, 2), data.shape)
-        self.assertLess(np.abs(elevation - expected)[hits].max(), 0.05)
+        self.assertLess(np.abs(elevation - expected)[hits].max(), 0.5)  # beams start beside the centre
         # azimuth 0 is +x, clockwise at 10 Hz; a packet is stamped when it is complete, after 24 firings of 55.296 us
         fired_s = stamp_s(cloud) + data["time"].astype(float) - 24 * 55.296e-6
         start_s = fired_s.min()
@@ -85,7 +85,7 @@ class Drivers(DriverTest):
         self.assertLess(data["t"].max(), 10**8)
         distance = np.sqrt(sum(data[axis].astype(float)**2 for axis in "xyz"))
         self.assertLess(np.abs(distance * 1e3 - data["range"]).max(), 30)  # ranges count from near the axis
-        self.assertGreaterEqual(record_ns, stamp_ns(cloud) + data["t"].max())
+        self.assertGreaterEqual(record_ns, stamp_ns(cloud) + int(data["t"].max()))
 
     def test_ouster_misses_are_nan_with_range_0(self):
         self.publish(*OPEN, "--sensor", "OS1-32", "--as", "ouster")
@@ -123,7 +123,7 @@ class Drivers(DriverTest):
         self.assertEqual(list(imu.linear_acceleration_covariance), [0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01])
         self.assertEqual(list(imu.angular_velocity_covariance), [6e-4, 0, 0, 0, 6e-4, 0, 0, 0, 6e-4])
         self.assertAlmostEqual(imu.linear_acceleration.z, 9.8, 0)
-        self.assertIn("2", str(self.qos["/ouster/points"][0].reliability))  # best effort
+        self.assertEqual(self.qos["/ouster/points"][0].reliability.name, "BEST_EFFORT")
 
     def test_ouster_scan_is_reversed(self):
         self.publish(*ROOM, "--sensor", "OS1-32", "--as", "ouster")
@@ -208,9 +208,9 @@ class Drivers(DriverTest):
         misses = np.isnan(data["x"])
         self.assertTrue(misses.any() and not misses.all())
         self.assertFalse(np.any(data["intensity"][misses]))
-        azimuth = np.where(misses, np.nan, np.arctan2(data["y"], data["x"]))
-        rows = np.nanmedian(azimuth, axis=1)
-        steps = np.diff(rows[np.isfinite(rows)])
+        azimuth = np.arctan2(data["y"], data["x"])[~misses.any(axis=1)]  # of whole columns
+        self.assertGreater(len(azimuth), 10)
+        steps = np.diff(np.median(azimuth, axis=1))
         self.assertLess(np.median(steps), 0)  # clockwise
         self.publish(*OPEN, "--sensor", "RS-LiDAR-16", "--as", "robosense", "--layout", "robosense")
         self.assertEqual(layout(self.first("/rslidar_points")), [*XYZI, ("ring", 16, U16), ("timestamp", 18, F64)])
