@@ -144,8 +144,8 @@ class Package(unittest.TestCase):
             self.assertEqual(os.listdir(folder), ["rig.yaml"])
 
     def exercise(self, node):
-        def call(name, **request):
-            result = node.services[f"~/{name}"](Anything(**request), Anything()).result
+        def call(service, /, **request):
+            result = node.services[f"~/{service}"](Anything(**request), Anything()).result
             return result.result, result.__dict__.get("error_message", "")
 
         clouds, clock = node.published["top/points"], node.published["/clock"]

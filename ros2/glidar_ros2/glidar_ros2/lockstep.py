@@ -27,6 +27,9 @@ class Client:
             self._socket.setsockopt(option, value)
         self._socket.connect(endpoint)
 
+    def close(self):
+        self._socket.close()
+
     def _ask(self, request):
         self._socket.send(request)
         try:
@@ -58,6 +61,7 @@ class Server:
     """`glidar stream SCENE --lockstep` at a port of its own, and a client of it."""
 
     def __init__(self, scene):
+        self.client = None
         self._process = subprocess.Popen(["glidar", "stream", str(scene), "--lockstep", "tcp://127.0.0.1:*"],
                                          stdout=subprocess.PIPE, text=True)
         line = self._process.stdout.readline()
@@ -67,6 +71,8 @@ class Server:
         self.client = Client(line.split()[-1])
 
     def stop(self):
+        if self.client is not None:
+            self.client.close()
         self._process.terminate()
         self._process.wait()
         self._process.stdout.close()

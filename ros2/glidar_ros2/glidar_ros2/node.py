@@ -38,7 +38,7 @@ def with_model(scene, name, uri, pose):
     content = yaml.safe_load(Path(scene).read_text(encoding="utf-8"))
     position, (w, x, y, z) = pose[:3], pose[3:]
     content.setdefault("models", []).append(
-        {"name": name, "model": uri, "pose": {"position": position, "quaternion": {"w": w, "x": x, "y": y, "z": z}}})
+        {"name": name, "model": uri, "pose": {"position": position, "orientation": {"w": w, "x": x, "y": y, "z": z}}})
     return yaml.safe_dump(content)
 
 
