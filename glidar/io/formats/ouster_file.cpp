@@ -178,7 +178,7 @@ void apply_start(const nlohmann::json& all, const std::string& file, Spinning& s
   const auto sensor_from_lidar = matrix(all, "lidar_to_sensor_transform", file);
   if (!sensor_from_lidar) return;
   const Matrix4& m = *sensor_from_lidar;
-  if (std::abs(m[10] - 1.0) > kLevel || std::abs(std::hypot(m[0], m[4]) - 1.0) > kLevel)
+  if (std::abs(m[10] - 1.0) > kLevel || std::abs(m[0] * m[0] + m[4] * m[4] - 1.0) > 2.0 * kLevel)
     fail(file + ": lidar_to_sensor_transform", "a rotation that is not about z",
          "a rotation about z");
   // in degrees, as sensor files state it
