@@ -289,7 +289,7 @@ TEST(Drops, DoNotExistInABeamWithoutWidth) {
 
 TEST(Drops, OfABeamWithMoreThanAMillionAreRefused) {
   const DropField field =
-      drop_field(strong_light(), rain_sizes(50.0), {.divergence_rad = 0.003}, 0.1);
+      drop_field(strong_light(), rain_sizes(50.0), {.divergence_rad = 0.003}, 1e-6);
   EXPECT_THAT(error_text([&] { drops_of(strong_light(), field, kNoTarget, 0); }),
               ::testing::AllOf(HasSubstr("weather, mean number of detectable drops in a beam"),
                                HasSubstr("allowed: 1e6; increase min_signal")));
