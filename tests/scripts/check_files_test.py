@@ -23,7 +23,7 @@ class CheckFiles(unittest.TestCase):
         self.assertEqual(found, ["glidar/a.cpp:1: the two SPDX lines are missing at the top"])
 
     def test_a_long_file_is_found(self):
-        found = check_files.check_text("glidar/a.cpp", HEAD + "\n" * 399)
+        found = check_files.check_text("glidar/a.cpp", HEAD + "\n" * 799)
         self.assertEqual(found, ["glidar/a.cpp:800: 801 lines, allowed are 800; split it"])
 
     def test_a_test_that_sleeps_is_found_with_its_line(self):
@@ -58,10 +58,8 @@ class CheckFiles(unittest.TestCase):
         for path in ("glidar/math/a.cpp", "tests/math/a_test.cpp", "bench/a.cpp", "scripts/a.py"):
             self.assertEqual(check_files.check_text(path, HEAD + "x = std::sin(long double{1});\n"), [])
 
-    def test_every_file_off_the_data_path_needs_its_exception(self):
-        for path, reason in check_files.NOT_ON_THE_DATA_PATH.items():
-            self.assertRegex((ROOT / path).read_text(encoding="utf-8"), check_files.NOT_PORTABLE, path)
-            self.assertTrue(reason)
+    def test_closed_forms_may_call_the_library(self):
+        self.assertEqual(check_files.check_text("glidar/verify/a.cpp", HEAD + "x = std::sin(y);\n"), [])
 
     def test_every_exception_is_a_file_that_needs_it(self):
         for path, reason in check_files.SLEEPERS.items():
