@@ -7,7 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -26,12 +28,12 @@ double x_at(const Trajectory& trajectory, std::int64_t t_ns) {
 }
 
 /// A run with a sensor and one object.
-struct Run {
+struct StartedRun {
   Trajectory sensor;
   std::vector<Trajectory> objects;
   std::int64_t start_ns = 0;
 
-  Run(const RunStart& start, Trajectory world_from_sensor, Trajectory world_from_object)
+  StartedRun(const RunStart& start, Trajectory world_from_sensor, Trajectory world_from_object)
       : sensor(std::move(world_from_sensor)), objects{std::move(world_from_object)} {
     start_ns = set_run_clock(start, sensor, objects);
   }
@@ -43,10 +45,10 @@ struct Run {
   }
 };
 
-const Trajectory kStill = ConstantPose{};
+const Trajectory kAtRest = ConstantPose{};
 const Trajectory kTwist = ConstantTwist{.linear_m_s = {1.0, 0.0, 0.0}};
 
-std::string error_text(const RunStart& start, Trajectory sensor) {
+std::string run_error(const RunStart& start, Trajectory sensor) {
   std::vector<Trajectory> none;
   try {
     set_run_clock(start, sensor, none);
@@ -58,7 +60,7 @@ std::string error_text(const RunStart& start, Trajectory sensor) {
 
 TEST(RunClock, ARunStartsAtTheFirstPoseOfTheSensorWithItsTime) {
   for (const std::int64_t first_ns : {kRecorded, 5 * kSecond, std::int64_t{0}, -3 * kSecond}) {
-    const Run run({}, drive(first_ns), kStill);
+    const StartedRun run({}, drive(first_ns), kAtRest);
     EXPECT_EQ(run.start_ns, first_ns);
     EXPECT_EQ(run.sensor_x(0.0), 10.0);
     EXPECT_EQ(run.sensor_x(1.0), 11.0);
@@ -66,65 +68,68 @@ TEST(RunClock, ARunStartsAtTheFirstPoseOfTheSensorWithItsTime) {
 }
 
 TEST(RunClock, WithoutATrajectoryItStartsAtTheOrigin) {
-  EXPECT_EQ(Run({}, kStill, kStill).start_ns, 0);
-  const Run run({.origin_ns = kDefaultDate_ns}, kTwist, kTwist);
+  EXPECT_EQ(StartedRun({}, kAtRest, kAtRest).start_ns, 0);
+  const StartedRun run({.origin_ns = kDefaultDate_ns}, kTwist, kTwist);
   EXPECT_EQ(run.start_ns, kDefaultDate_ns);
   EXPECT_EQ(run.sensor_x(1.5), 1.5);
   EXPECT_EQ(run.object_x(1.5), 1.5);
 }
 
 TEST(RunClock, TimesThatAreNoDatesCountFromTheOrigin) {
-  const Run run({.origin_ns = kDefaultDate_ns}, drive(5 * kSecond), drive(6 * kSecond));
+  const StartedRun run({.origin_ns = kDefaultDate_ns}, drive(5 * kSecond), drive(6 * kSecond));
   EXPECT_EQ(run.start_ns, kDefaultDate_ns + 5 * kSecond);
   EXPECT_EQ(run.sensor_x(0.5), 10.5);
   EXPECT_EQ(run.object_x(0.5), 10.0);
   EXPECT_EQ(run.object_x(1.5), 10.5);
-  EXPECT_EQ(Run({.origin_ns = kDefaultDate_ns}, drive(kRecorded), kStill).start_ns, kRecorded);
+  EXPECT_EQ(StartedRun({.origin_ns = kDefaultDate_ns}, drive(kRecorded), kAtRest).start_ns,
+            kRecorded);
 }
 
 TEST(RunClock, AStartTimeIsLookedUpOnATrajectoryWithDates) {
-  const Run run({.time_ns = kRecorded + kSecond}, drive(kRecorded), drive(kRecorded + kSecond));
+  const StartedRun run({.time_ns = kRecorded + kSecond}, drive(kRecorded),
+                       drive(kRecorded + kSecond));
   EXPECT_EQ(run.start_ns, kRecorded + kSecond);
   EXPECT_EQ(run.sensor_x(0.5), 11.5);
   EXPECT_EQ(run.object_x(0.5), 10.5);
 }
 
 TEST(RunClock, AStartTimeDatesTheFirstPoseOfATrajectoryWithoutDates) {
-  const Run run({.time_ns = kRecorded}, drive(5 * kSecond), kTwist);
+  const StartedRun run({.time_ns = kRecorded}, drive(5 * kSecond), kTwist);
   EXPECT_EQ(run.start_ns, kRecorded);
   EXPECT_EQ(run.sensor_x(0.5), 10.5);
   EXPECT_EQ(run.object_x(0.5), 5.5);  // its clock is that of the trajectory
 }
 
 TEST(RunClock, ASegmentStartsThereAtItsOwnTimeOrAtAnother) {
-  const Run own({.from_ns = kRecorded + kSecond}, drive(kRecorded), kTwist);
+  const StartedRun own({.from_ns = kRecorded + kSecond}, drive(kRecorded), kTwist);
   EXPECT_EQ(own.start_ns, kRecorded + kSecond);
   EXPECT_EQ(own.sensor_x(0.25), 11.25);
   EXPECT_EQ(own.object_x(0.25), 0.25);  // without a date, it starts with the run
-  const Run other({.time_ns = kSecond, .from_ns = kRecorded + kSecond}, drive(kRecorded),
-                  drive(kRecorded));
+  const StartedRun other({.time_ns = kSecond, .from_ns = kRecorded + kSecond}, drive(kRecorded),
+                         drive(kRecorded));
   EXPECT_EQ(other.start_ns, kSecond);
   EXPECT_EQ(other.sensor_x(0.25), 11.25);
   EXPECT_EQ(other.object_x(0.25), 11.25);
 }
 
 TEST(RunClock, NowMovesTrajectoriesWhateverTheirTimes) {
-  const Run run({.time_ns = kDefaultDate_ns, .moves_trajectory = true}, drive(kRecorded),
-                drive(kRecorded + kSecond));
+  const StartedRun run({.time_ns = kDefaultDate_ns, .moves_trajectory = true}, drive(kRecorded),
+                       drive(kRecorded + kSecond));
   EXPECT_EQ(run.start_ns, kDefaultDate_ns);
   EXPECT_EQ(run.sensor_x(1.5), 11.5);
   EXPECT_EQ(run.object_x(1.5), 10.5);
 }
 
 TEST(RunClock, DatesOfObjectsAloneGiveTheStart) {
-  const Run run({.origin_ns = kDefaultDate_ns}, kTwist, drive(kRecorded));
+  const StartedRun run({.origin_ns = kDefaultDate_ns}, kTwist, drive(kRecorded));
   EXPECT_EQ(run.start_ns, kRecorded);
   EXPECT_EQ(run.sensor_x(0.5), 0.5);
   EXPECT_EQ(run.object_x(0.5), 10.5);
-  const Run later({.time_ns = kRecorded + kSecond}, kStill, drive(kRecorded));
+  const StartedRun later({.time_ns = kRecorded + kSecond}, kAtRest, drive(kRecorded));
   EXPECT_EQ(later.start_ns, kRecorded + kSecond);
   EXPECT_EQ(later.object_x(0.5), 11.5);
-  const Run now({.time_ns = kDefaultDate_ns, .moves_trajectory = true}, kStill, drive(kRecorded));
+  const StartedRun now({.time_ns = kDefaultDate_ns, .moves_trajectory = true}, kAtRest,
+                       drive(kRecorded));
   EXPECT_EQ(now.object_x(0.5), 10.5);
 }
 
@@ -154,21 +159,21 @@ TEST(RunClock, PosesAreTheSameBitsAtAnyStart) {
 }
 
 TEST(RunClock, ErrorsStateTheTimesOfTheTrajectory) {
-  EXPECT_EQ(error_text({.time_ns = kRecorded + 3 * kSecond}, drive(kRecorded)),
+  EXPECT_EQ(run_error({.time_ns = kRecorded + 3 * kSecond}, drive(kRecorded)),
             "start time: 1700000003.123456789 s, outside of the trajectory of the sensor; allowed: "
             "1700000000.123456789 to 1700000002.123456789 s; state also where on the trajectory "
             "the run starts then (--from 1700000000.123456789 for example)");
-  EXPECT_THAT(error_text({.time_ns = 0}, drive(kRecorded)),
+  EXPECT_THAT(run_error({.time_ns = 0}, drive(kRecorded)),
               ::testing::StartsWith("start time: 0 s"));
   EXPECT_EQ(
-      error_text({.from_ns = 8 * kSecond}, drive(5 * kSecond)),
+      run_error({.from_ns = 8 * kSecond}, drive(5 * kSecond)),
       "start on the trajectory: 8 s, outside of the trajectory of the sensor; allowed: 5 to 7 "
       "s; times are those of the trajectory");
   EXPECT_EQ(
-      error_text({.from_ns = 0}, kTwist),
+      run_error({.from_ns = 0}, kTwist),
       "start on the trajectory: the sensor has none; allowed: a file of timed poses; leave it "
       "out, or give a trajectory");
-  EXPECT_THAT(error_text({.time_ns = std::numeric_limits<std::int64_t>::max()}, drive(kSecond)),
+  EXPECT_THAT(run_error({.time_ns = std::numeric_limits<std::int64_t>::max()}, drive(kSecond)),
               ::testing::HasSubstr("times that leave the range of nanoseconds"));
 }
 
