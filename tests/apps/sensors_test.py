@@ -116,7 +116,8 @@ class Sensors(CliTest):
             self.assertFalse(os.path.exists(os.path.join(self.folder, name)))
 
     def test_renders_with_a_preset(self):
-        done = self.succeed("render", "builtin:box", "--sensor", "vlp-16", "--eye", "0,0,0",
+        self.write("walls.yaml", "models: [{model: builtin:box, scale: 4}]\n")
+        done = self.succeed("render", "walls.yaml", "--sensor", "vlp-16", "--eye", "0,0,0",
                             "--columns", "xyz,range,ring,time", "-o", "room.npz")
         self.assertIn("16 x 1809 beams, 28944 hits (100.0 %)", done.stdout)
         with open(os.path.join(self.folder, "room.npz.json"), encoding="utf-8") as file:
@@ -179,7 +180,8 @@ class Sensors(CliTest):
         self.assertEqual(reported["D435"]["returns"], [])
 
     def test_returns_can_be_selected(self):
-        room = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "--returns")
+        self.write("walls.yaml", "models: [{model: builtin:box, scale: 4}]\n")
+        room = ("render", "walls.yaml", "--eye", "0,0,0", "--sensor", "VLP-16", "--returns")
         done = self.succeed(*room, "strongest,last", "-o", "a.pcd")
         self.assertIn("16 x 1809 beams, 2 returns, 28944 hits (50.0 %)", done.stdout)  # a wall returns one echo
         with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
