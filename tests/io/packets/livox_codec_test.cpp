@@ -154,6 +154,14 @@ TEST(LivoxPacket, PointsBeyondTheBitsOfTheTypeAreNoReturns) {
     EXPECT_EQ(point.numbers, (std::array<std::int64_t, 3>{}));
 }
 
+TEST(LivoxEncoder, CountsPacketsOnFromFrameToFrame) {
+  const Sensor sensor = packet_sensor("Livox-Mid-40", false);
+  std::uint16_t expected = 0;
+  for (const UdpPacket& packet : livox_packets(sensor, LivoxDataType::cartesian_mm, 3))
+    EXPECT_EQ(decode_livox_packet(packet.payload).count, expected++);
+  EXPECT_GT(expected, 200);
+}
+
 TEST(LivoxEncoder, RejectsSensorsThatDoNotFit) {
   Sensor dual = packet_sensor("Livox-Avia", false);
   dual.receiver.returns.resize(2);
