@@ -256,16 +256,13 @@ void pack_padded(const Packed& packed, std::span<std::byte> to) {
 }
 
 bool has_nan(const PointCloud& cloud, const CloudMessageOptions& options) {
-  return options.misses == Misses::nan &&
-         std::any_of(cloud.columns.begin(), cloud.columns.end(), [](const Column& column) {
-           if (column.name != "x" && column.name != "xyz") return false;
-           return std::visit(
-               [](const auto& values) {
-                 return std::any_of(values.begin(), values.end(),
-                                    [](auto v) { return std::isnan(static_cast<double>(v)); });
-               },
-               column.values);
-         });
+  if (options.misses != Misses::nan) return false;
+  const Column* x = find_column(cloud, options.layout.empty() ? "xyz" : "x");
+  if (x == nullptr) return false;
+  const auto is_nan = [](auto value) { return std::isnan(static_cast<double>(value)); };
+  return std::visit(
+      [&](const auto& values) { return std::any_of(values.begin(), values.end(), is_nan); },
+      x->values);
 }
 
 std::uint32_t checked_size(std::size_t bytes) {
