@@ -76,6 +76,7 @@ std::string explain_extra(const CLI::App& program, const Commands& commands, std
 std::vector<const CLI::Option*> options_in(const CLI::App& command, const std::string& message) {
   std::map<std::size_t, const CLI::Option*> found;
   for (const CLI::Option* option : command.get_options()) {
+    if (option->get_name().empty()) continue;  // hidden
     const std::regex name(option->get_name() + "(?![-A-Za-z0-9])");
     std::smatch match;
     if (std::regex_search(message, match, name)) found.emplace(match.position(), option);

@@ -51,14 +51,14 @@ class Lidars(Calibrated):
         sensor = ("--sensor", "VLP-16", "--calibration", "c.yaml")
         self.succeed("render", *ROOM, *sensor, "--columns", "xyz,range", "-o", "true.npz", "-o", "scan.pcap")
         self.succeed("decode", "scan.pcap", *sensor, "-o", "found.npz")
-        true, found = self.arrays("true.npz"), self.arrays("found.npz")
+        true, found = self.arrays("true.npz"), self.arrays("found_000000.npz")
         cols = min(true["range"].shape[1], found["range"].shape[1])
         difference = true["range"][:, :cols] - found["range"][:, :cols]
         valid = np.isfinite(difference)
         self.assertGreater(valid.mean(), 0.95)
         self.assertLessEqual(np.abs(difference[valid]).max(), 0.001001)
         self.succeed("decode", "scan.pcap", "--sensor", "VLP-16", "-o", "raw.npz")
-        shift = self.arrays("raw.npz")["range"][:, :cols] - true["range"][:, :cols]
+        shift = self.arrays("raw_000000.npz")["range"][:, :cols] - true["range"][:, :cols]
         rows = np.nanmean(shift, axis=1)  # the packets have the range minus the correction; the highest beam first
         lasers = [15, 13, 11, 9, 7, 5, 3, 1, 14, 12, 10, 8, 6, 4, 2, 0]
         np.testing.assert_allclose(rows, [-0.1 - 0.01 * i for i in lasers], atol=1e-3)
@@ -124,7 +124,7 @@ class Cameras(Calibrated):
         np.testing.assert_array_equal(np.array(self.grey_rows("a.depth.png")), np.round(ranges * 1000))
         for name in ("a.npy", "a.depth.png", "a.depth.tiff"):
             with open(os.path.join(self.folder, name + ".json"), encoding="utf-8") as file:
-                self.assertTrue(json.load(file)["image"]["pixels"].startswith("range along the beam "), name)
+                self.assertTrue(json.load(file)["cloud"]["image"]["pixels"].startswith("range along the beam "), name)
 
 
 if __name__ == "__main__":

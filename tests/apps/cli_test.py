@@ -237,14 +237,18 @@ class Motion(CliTest):
         self.assertIn("give --fisher too", self.refused(
             "render", "builtin:box", "--range-sigma", "0.1", "-o", "x.pcd"))
 
-    def test_trajectory_gives_the_pose_at_time_zero(self):
+    def test_a_run_starts_with_its_trajectory(self):
         self.write("path.tum", "0 0 0 -7 0 0 0 1\n1 0 0 -6 0 0 0 1\n")
         self.succeed("render", "builtin:box", "--trajectory", "path.tum", "-o", "x.pcd")
         with open(os.path.join(self.folder, "x.pcd.json"), encoding="utf-8") as file:
             pose = json.load(file)["sensor"]["world_from_sensor"]
         self.assertEqual(pose["position_m"], [0, 0, -7])
-        late = self.write("late.tum", "5 0 0 -7 0 0 0 1\n")
-        self.assertIn("its first or last pose is used", self.warned("builtin:box", "--trajectory", late))
+        late = self.write("late.tum", "5 0 0 -6 0 0 0 1\n")
+        self.succeed("render", "builtin:box", "--trajectory", late, "-o", "late.pcd")
+        with open(os.path.join(self.folder, "late.pcd.json"), encoding="utf-8") as file:
+            written = json.load(file)
+        self.assertEqual((written["stamp_ns"], written["sensor"]["world_from_sensor"]["position_m"]), (5 * 10**9, [0, 0, -6]))
+        self.assertIn("its first or last pose is used", self.warned("builtin:box", "--trajectory", late, "--duration", "1"))
         self.assertIn("both are given; give one of them", self.refused(
             "render", "builtin:box", "--trajectory", "path.tum", "--camera-z", "5", "-o", "y.pcd"))
 

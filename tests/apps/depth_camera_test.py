@@ -206,9 +206,10 @@ class Determinism(DepthCameras):
 class Traces(DepthCameras):
     def test_a_stereo_pixel_is_explained_by_its_images(self):
         self.render("stereo.yaml", "a.ir_left.png", "a.csv", options=COLUMNS)
-        row, col = 48, 60
-        point = next(p for p in self.points("a.csv") if (int(p["row"]), int(p["col"])) == (row, col))
-        self.assertEqual(int(point["status"]), HIT)
+        row = 48
+        point = next(p for p in self.points("a.csv")
+                     if int(p["row"]) == row and int(p["col"]) >= 60 and int(p["status"]) == HIT)  # fmt: skip
+        col = int(point["col"])
         text = self.explain("stereo.yaml", row, col)
         level = int(re.search(r"read noise [-+0-9.]+: grey (\d+)", text)[1])
         self.assertEqual(level, self.grey_rows("a.ir_left.png")[row][col])

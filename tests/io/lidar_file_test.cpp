@@ -236,7 +236,7 @@ TEST(OusterFile, SectionsAndOldNamesOfSectionsAreFlat) {
     EXPECT_EQ(read.spinning.columns_per_turn, 512U) << text;
     EXPECT_EQ(read.spinning.rotation_hz, 20.0) << text;
     EXPECT_DOUBLE_EQ(read.spinning.beam_origin_m, 0.015) << text;
-    EXPECT_DOUBLE_EQ(read.spinning.start_azimuth_rad, std::numbers::pi);
+    EXPECT_EQ(read.spinning.start_azimuth_rad, std::numbers::pi);
     EXPECT_EQ(read.spinning.azimuth_width_rad, kTwoPi);
     EXPECT_TRUE(read.notes.empty()) << read.notes.front();
   }

@@ -52,7 +52,7 @@ void add_message_options(CLI::App& command, MessageFlags& flags) {
                                         {"odom", ros::TransformMode::odom},
                                         {"map", ros::TransformMode::map},
                                         {"none", ros::TransformMode::none}}));
-  group.add("--frame-prefix", "TEXT", "Before the names of all frames but map: robot1/ [none]",
+  group.add("--frame-prefix", "PREFIX", "Before the names of all frames but map: robot1/ [none]",
             flags.frame_prefix, parse_frame_prefix);
   group.add_flag("--imu-orientation", "True orientations in IMU messages [marked as absent]",
                  flags.imu_orientation);

@@ -31,7 +31,8 @@ std::string error_with(const std::string& name, Value SensorOptions::*option, Gi
 }
 
 TEST(SensorOptions, SetWhatTheyNameAndNothingElse) {
-  const Sensor sensor = with(preset("VLP-16"), {.rate_hz = 20.0,
+  const Sensor sensor = with(preset("VLP-16"), {.calibration_files = {},
+                                                .rate_hz = 20.0,
                                                 .columns_per_turn = 900,
                                                 .depth_model = {},
                                                 .returns = parse_returns("", {"strongest", "last"}),
