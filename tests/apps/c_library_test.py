@@ -33,7 +33,7 @@ class CLibrary(CliTest):
         probed = {subprocess.run([sys.executable, "-c", PROBE], env=self.environment | more, capture_output=True, text=True,
                                  check=True).stdout for more in ({}, WITHOUT_FMA)}
         if len(probed) == 1:
-            self.skipTest("the C library's switch changes nothing here: the processor has no FMA, or this is not glibc")
+            self.skipTest("the C library's switch changes nothing here: the processor has no FMA, or this is not glibc; run it on one that has FMA")
         self.write("turning.yaml", TURNING)
         self.write("moving.tum", MOVING)
 
