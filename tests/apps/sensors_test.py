@@ -164,7 +164,7 @@ class Sensors(CliTest):
         times = [float(row.split(",")[5]) for row in rows]
         self.assertTrue(0.0 <= min(times) < 1e-4 and 0.0999 < max(times) < 0.1001, (min(times), max(times)))
         self.assertEqual({int(row.split(",")[4]) for row in rows}, set(range(16)))
-        self.assertIn("  velodyne        velodyne_pointcloud: x y z intensity ring time\n",
+        self.assertIn("  velodyne       velodyne_pointcloud: x y z intensity ring time\n",
                       self.succeed("render", "--help").stdout)
 
     def test_beams_and_returns_are_printed_with_their_sources(self):

@@ -130,6 +130,8 @@ inline void set_frame(CloudFixture& made) {
                                Pose::Identity()};
   for (std::size_t i = 0; i < count; ++i)
     frame.status.push_back(is_miss(i) ? Status::miss : Status::hit);
+  for (std::size_t i = 0; i < count; ++i)
+    frame.range_m.push_back(is_miss(i) ? kNaN : 1.0 + static_cast<double>(i));
   frame.framebuffer = {
       .rows = made.rows, .cols = made.cols, .near_m = 1.25, .far_m = 3.1, .rgba = {}};
   for (std::size_t k = 0; k < 4 * count; ++k)

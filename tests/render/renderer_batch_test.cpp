@@ -75,7 +75,7 @@ class RendererBatch : public testing::RendererSuite {
   }
 
   Scene scene_ = builtin_scene("asteroid");
-  Draws draws_{5};
+  Draws draws_{6};
   int count_ = 0;
   std::vector<CastRequest> requests_;
 };

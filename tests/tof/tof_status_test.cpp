@@ -199,7 +199,7 @@ TEST(TofTraces, PrintPhasesTestsAndCandidates) {
   EXPECT_EQ(trace.candidates.size(), 15U);
   EXPECT_NEAR(trace.candidates[0].range_m, trace.range_m, 1e-9);
   const std::string text = format_tof_trace(trace);
-  EXPECT_THAT(text, HasSubstr("pixel 80,60: valid\nrange 1.2"));
+  EXPECT_THAT(text, HasSubstr("pixel 80,60: valid\nrange 1.1998 m"));
   EXPECT_THAT(text, HasSubstr("  80.000 MHz: raw "));
   EXPECT_THAT(text, HasSubstr("  passed  low_signal: least amplitude "));
   EXPECT_THAT(text, HasSubstr(" rad, whole periods 0 0 0\n"));

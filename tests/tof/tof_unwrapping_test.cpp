@@ -121,8 +121,8 @@ TEST(TofUnwrapping, WrongWrapsByNoiseAreAsManyAsOfAllCombinations) {
 }
 
 TEST(TofUnwrapping, TheKinectsOrderOfDecisionsErrsMoreOften) {
-  const WrongWraps wrong = count_wrong_wraps(TofUnwrapping::kinect_v2, 8.4);
-  EXPECT_GT(wrong.decoded, wrong.brute_force);
+  const WrongWraps wrong = count_wrong_wraps(TofUnwrapping::kinect_v2, 6.0);
+  EXPECT_GT(wrong.decoded, wrong.brute_force);  // 1018 to 976; by 24 to 42 with other seeds
   EXPECT_LT(wrong.decoded, 3 * wrong.brute_force);
 }
 

@@ -40,12 +40,11 @@ std::string parse_frame_prefix(const std::string& text) {
 
 void add_message_options(CLI::App& command, MessageFlags& flags) {
   const OptionGroup group(command, kMessageHeading);
-  group.add_repeatable("--as", "[SENSOR=]DRIVER",
-                       "Topics, frames and messages of a maker's driver, see below; repeatable",
-                       [&flags](const std::string& text) {
-                         with_option_name("--as",
-                                          [&] { flags.drivers.push_back(parse_driver(text)); });
-                       });
+  group.add_repeatable(
+      "--as", "[SENSOR=]DRIVER", "As a maker's driver publishes, see below; repeatable",
+      [&flags](const std::string& text) {
+        with_option_name("--as", [&] { flags.drivers.push_back(parse_driver(text)); });
+      });
   group.add("--tf", "NAME", "Poses in /tf: ground_truth, odom, map or none [ground_truth]",
             flags.tf,
             one_of<ros::TransformMode>({{"ground_truth", ros::TransformMode::ground_truth},

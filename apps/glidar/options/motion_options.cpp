@@ -56,12 +56,11 @@ void add_motion_options(CLI::App& command, MotionFlags& flags) {
                  {{"linear", Interpolation::linear}, {"spline", Interpolation::spline}}));
   require_option(command, {"--trajectory-rate", "--trajectory-times", "--trajectory-interpolation"},
                  "--trajectory");
-  motion.add("--from", "T", "Start here on the trajectory: its time, or +S after the first pose",
+  motion.add("--from", "T", "Start on the trajectory: its time, or +S after its first pose",
              [&flags](const std::string& text) { flags.from = parse_trajectory_time(text); });
   motion.add("--to", "T", "End here on the trajectory, instead of --duration",
              [&flags](const std::string& text) { flags.to = parse_trajectory_time(text); });
-  motion.add("--start-time", "T",
-             "Time of the start: s since 1970, a date, now, trajectory [trajectory]",
+  motion.add("--start-time", "T", "Start: s since 1970, a date, now, trajectory [trajectory]",
              [&flags](const std::string& text) { parse_start_time(text, flags); });
   motion.add("--object-rate", "X,Y,Z", "Angular rate of the model about its axes, rad/s",
              flags.object_rate_rad_s, parse_angular_rate);

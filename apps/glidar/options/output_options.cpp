@@ -78,10 +78,9 @@ void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
             parse_columns);
   group.add("--layout", "NAME", "Point layout of another sensor's clouds, see below",
             flags.sink.layout, one_of(layout_names()));
-  group.add("--frame", "NAME",
-            "Axes: sensor, optical, ros, gl, legacy or world [.las: world, else sensor]",
-            flags.frame, one_of({output_frame_names().begin(), output_frame_names().end()}));
-  group.add_flag("--deskew", "Compensate the motion of the sensor within a frame (.las: always)",
+  group.add("--frame", "NAME", "Axes, see below [sensor; of .las files: world]", flags.frame,
+            one_of({output_frame_names().begin(), output_frame_names().end()}));
+  group.add_flag("--deskew", "Compensate the sensor's motion within a frame (.las: always)",
                  flags.deskew);
   group.add("--crs", "CRS", "Coordinate system of .las: EPSG:CODE, WKT or its file [local]",
             flags.sink.crs);
@@ -177,7 +176,7 @@ std::string output_names_text() {
   text += indented(names);
   text += "\nLayouts of clouds (" + suffixes_with_layouts() + " and bags):\n";
   for (const PointFieldLayout& layout : cloud_layouts()) {
-    text += fmt::format("  {:<15} {}\n", layout.name, layout.description);
+    text += fmt::format("  {:<14} {}\n", layout.name, layout.description);
   }
   return text + driver_names_text() +
          "\nAxes of clouds:\n"

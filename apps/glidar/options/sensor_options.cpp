@@ -75,7 +75,7 @@ void add_light_options(const OptionGroup& group, SensorFlags& flags) {
 
 void add_calibration_option(const OptionGroup& group, std::vector<std::string>& files) {
   group.add_repeatable("--calibration", "FILE",
-                       "Calibration of one LiDAR: Ouster, Velodyne, Hesai; repeatable [none]",
+                       "Calibration of one LiDAR or camera; repeatable [none]",
                        [&files](const std::string& file) { files.push_back(file); });
 }
 

@@ -142,7 +142,7 @@ const std::vector<Layout>& layouts() {
                  {"ring", U16{}, "ring", 0, same},
                  {"time", F32{}, "time", 0, seconds}})},
       {"ouster", "ouster-ros", ouster_fields({"ring", U16{}, "ring", 0, same}, "ambient")},
-      {"ouster-2022", "ouster_example before 2023, LIO-SAM",
+      {"ouster-2022", "Ouster before 2023, LIO-SAM",
        ouster_fields({"ring", U8{}, "ring", 0, same}, "noise")},
       {"livox", "livox_ros_driver2",
        with_xyz({{"intensity", F32{}, kReflectivity, 0, livox_byte},
