@@ -86,7 +86,9 @@ TEST(SimulateImu, IntegratedWithoutErrorsReproducesTheTrajectory) {
   const auto acceleration = [&](std::size_t i, const Eigen::Matrix3d& rotation) -> Vector3d {
     return rotation * s.specific_force_m_s2[i] + standard_gravity_m_s2();
   };
-  const auto exp = [](const Vector3d& v) { return se3_exp(v, Vector3d::Zero()).linear(); };
+  const auto exp = [](const Vector3d& v) -> Eigen::Matrix3d {
+    return se3_exp(v, Vector3d::Zero()).linear();
+  };
   Pose pose = s.ground_truth.world_from_imu.front();
   Vector3d velocity = s.ground_truth.velocity_m_s.front();
   for (std::size_t i = 0; i + 2 < s.t_ns.size(); i += 2) {

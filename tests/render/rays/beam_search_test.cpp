@@ -284,7 +284,7 @@ TEST(BeamSearch, IsExactWithInstancesAtVastlyDifferentDistances) {
       scene.instances.push_back(instance);
     }
     std::rotate(scene.instances.begin(), scene.instances.end() - 3, scene.instances.end());
-    Stage stage(scene, some_beams(480, has_origins, true, 18), Pose::Identity());
+    Stage stage(scene, some_beams(960, has_origins, true, 18), Pose::Identity());
     const std::vector<PrimitiveRef> found = stage.search();
     EXPECT_EQ(stage.groups(), 3U);
     EXPECT_GT(stage.hits(found), 60U);
