@@ -197,8 +197,9 @@ const BadFile kBadScenes[] = {
      "s.yaml:2:9: sensor: no such file: c.yaml; allowed: a map, or the path of a sensor file; "
      "paths are relative to the folder of this file"},
     {"SensorInTheSceneIsWrong", with_model("sensor: {optics: {widht: 3}}"),
-     "s.yaml:2:19: sensor.optics.widht: unknown key 'widht'; allowed: type, width, height, "
-     "fov_deg, fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
+     "s.yaml:2:19: sensor.optics.widht: unknown key 'widht'; allowed: type, "
+     "calibration_file, width, height, fov_deg, fov_x_deg, fx, fy, cx, cy, pixel_centre, skew, "
+     "distortion; did you mean 'width'?"},
     {"LookAtBesidePosition",
      with_model("sensor_pose: {position: [0, 0, 0], look_at: {eye: [0, 0, 0], target: [1, 0, 0]}}"),
      "s.yaml:2:45: sensor_pose.look_at: given beside 'position'; allowed: look_at alone, or a "
