@@ -149,7 +149,7 @@ def test_bags_have_a_cube_for_each_box(name, tmp_path, program):
     for message, frame in zip(found, frames):
         for cube, box in zip(message.markers, frame.boxes(), strict=True):
             assert (cube.ns, cube.id, cube.type, cube.header.frame_id) == (box.class_name, box.id, 1, "lidar_frame")
-            assert cube.header.stamp.sec * 10**9 + cube.header.stamp.nanosec == frame.stamp_ns
+            assert cube.header.stamp.sec * 10**9 + cube.header.stamp.nanosec == 1767225600 * 10**9 + frame.stamp_ns  # 2026
             at, turn, size = cube.pose.position, cube.pose.orientation, cube.scale
             np.testing.assert_allclose([at.x, at.y, at.z], box.centre_m, atol=1e-12)
             np.testing.assert_allclose([turn.w, turn.x, turn.y, turn.z], box.wxyz, atol=1e-12)
