@@ -56,7 +56,7 @@ def completed(function, *arguments):
 
 
 def keys(count):
-    return np.arange(count, dtype=np.uint64), np.zeros(count, np.uint32), 0
+    return np.arange(count, dtype=np.uint64), np.zeros(count, np.uint32), 0, None
 
 
 def test_ctrl_c_stops_a_batch_and_leaves_the_simulator_usable(asteroid):

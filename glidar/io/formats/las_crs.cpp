@@ -116,7 +116,8 @@ void check_crs_unit(std::string_view text) {
     const std::size_t comma = text.find(',', at);
     if (comma == std::string_view::npos) return;
     double factor = 0.0;
-    std::from_chars(text.data() + comma + 1, text.data() + text.size(), factor);
+    const std::size_t digits = std::min(text.find_first_not_of(" \t\r\n", comma + 1), text.size());
+    std::from_chars(text.data() + digits, text.data() + text.size(), factor);
     const std::string_view name = text.substr(at + 5, comma - at - 5);
     const bool is_angle = name.find("egree") != std::string_view::npos ||
                           name.find("rad") != std::string_view::npos ||
