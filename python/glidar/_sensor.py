@@ -321,8 +321,9 @@ def _return_names(returns: object) -> list[str]:
 
 def _calibration_files(files: object) -> list[str]:
     """One path, or several."""
-    one = isinstance(files, (str, os.PathLike)) or not isinstance(files, Iterable)
-    return [path_of(file, "calibration") for file in ([files] if one else files)]
+    if isinstance(files, (str, os.PathLike)) or not isinstance(files, Iterable):
+        return [path_of(files, "calibration")]
+    return [path_of(file, "calibration") for file in files]
 
 
 def load_sensor(

@@ -61,16 +61,18 @@ def test_a_bag_has_all_sensors_of_a_rig_with_their_frames_and_ground_truth(folde
     assert set(found) == {"/lidar/points", "/camera/points", *images, "/imu/data", "/tf", "/tf_static",
                           "/ground_truth/odom", "/clock"}  # fmt: skip
     stamps = [cloud.header.stamp.sec * 10**9 + cloud.header.stamp.nanosec for _, cloud in found["/lidar/points"]]
-    assert stamps == pytest.approx([0, 1e8], abs=2e5)  # frames begin with a firing
+    start_ns = 1767225600 * 10**9  # 2026
+    assert [stamp - start_ns for stamp in stamps] == pytest.approx([0, 1e8], abs=2e5)  # frames begin with a firing
     assert len(found["/camera/points"]) == 6
     static = {t.child_frame_id for t in found["/tf_static"][0][1].transforms}
     assert static == {"lidar", "camera_link", "camera_depth_optical_frame", "imu"}
     assert found["/lidar/points"][0][1].header.frame_id == "lidar"
     times = [stamp for stamp, _ in found["/tf"]]
-    assert set(times) >= {*range(0, 200_000_001, 10_000_000), *stamps, *(stamp for stamp, _ in found["/camera/points"])}
+    steps = range(start_ns, start_ns + 200_000_001, 10_000_000)
+    assert set(times) >= {*steps, *stamps, *(stamp for stamp, _ in found["/camera/points"])}
     assert (np.diff(times) > 0).all()
     assert times == [stamp for stamp, _ in found["/ground_truth/odom"]] == [stamp for stamp, _ in found["/clock"]]
-    assert times[-1] == 200_000_000
+    assert times[-1] == start_ns + 200_000_000
     odometry = found["/ground_truth/odom"][-1][1]
     assert odometry.twist.twist.linear.x == pytest.approx(1.0, abs=1e-12)
     assert odometry.twist.twist.angular.z == pytest.approx(0.5, abs=1e-12)

@@ -51,9 +51,9 @@ def test_presets_are_valid(sensor_schema, preset):
 
 
 def test_a_family_is_valid_without_the_keys_that_its_variants_complete(sensor_schema):
-    document = {"optics": {"type": "spinning", "columns_per_turn": 100}}
+    document = {"optics": {"type": "spinning", "elevation_deg": [1, 2]}}
     assert not sensor_schema.is_valid(document)
-    family = {**document, "variants": {"A": {"optics": {"elevation_deg": [1, 2]}}}}
+    family = {**document, "variants": {"A": {"optics": {"columns_per_turn": 100}}}}
     sensor_schema.validate({**family, "modes": {"fast": {"rate_hz": 20}}, "default_mode": "fast"})
     for wrong in ({"variants": 3}, {"variants": {"A": 3}}, {"optics": {"columns_per_turm": 3}}, {"aliases": "a"}):
         assert not sensor_schema.is_valid({**family, **wrong}), wrong

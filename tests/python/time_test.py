@@ -31,7 +31,7 @@ def test_a_frame_has_the_time_of_its_trajectory(simulator):
         frame = simulator.simulate(drive(first_ns), frame=10, columns="xyz,stamp,time")
         assert frame.stamp_ns == first_ns + SECOND
         assert frame.world_from_sensor[:3, 3] == pytest.approx([1, 0, 0], abs=1e-12)
-        cloud = frame.cloud()
+        cloud = frame.cloud("stamp,time")
         assert np.array_equal(cloud["stamp"], frame.stamp_ns + cloud["time"].astype(np.int64))
 
 
@@ -69,7 +69,7 @@ def test_objects_with_dates_give_the_start_where_the_sensor_has_none():
     scene = glidar.Scene.from_dict({"models": [{"model": "builtin:box"}], "sensor": "VLP-16"})
     frame = glidar.simulate(scene, pose=glidar.pose([0, -5, 0]), objects=[drive(RECORDED)], frame=5)
     assert frame.stamp_ns == RECORDED + SECOND // 2
-    assert frame.world_from_instance[0][:3, 3] == pytest.approx([0.5, 0, 0], abs=1e-12)
+    assert frame.world_from_objects[0][:3, 3] == pytest.approx([0.5, 0, 0], abs=1e-12)
 
 
 def test_samples_of_imus_start_with_their_trajectory():
