@@ -315,7 +315,8 @@ void write_las(const CloudFile& job, AtomicFile& file) {
   check_crs_frame(job, file);
   const Beams& beams = job.context.beams;
   std::vector<std::uint32_t> order = las_order(job.frame, beams);
-  const bool is_measured = order.size() == job.cloud.size();  // else decoded from other clouds
+  // else decoded from other clouds
+  const bool is_measured = !order.empty() && order.size() == job.cloud.size();
   const PointCloud cloud = is_measured ? in_las_order(job.cloud, las_places(order)) : job.cloud;
   const LasScan scan =
       is_measured ? las_scan(job.frame, beams, job.context.sensor, cloud.world_from_cloud, order)

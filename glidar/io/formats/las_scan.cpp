@@ -82,7 +82,9 @@ void set_scan_flags(const Beams& beams, std::span<const std::uint32_t> order, La
 
 std::vector<std::uint32_t> las_order(const Frame& frame, const Beams& beams) {
   std::vector<std::uint32_t> order;
-  for (std::size_t i = 0; i < frame.status.size(); ++i) {
+  const std::size_t size = frame.status.size();
+  if (beams.size() != size || frame.range_m.size() != size) return order;
+  for (std::size_t i = 0; i < size; ++i) {
     if (frame.status[i] == Status::hit) order.push_back(static_cast<std::uint32_t>(i));
   }
   const std::size_t firings = beams.firings();

@@ -13,7 +13,7 @@
 namespace glidar {
 
 /// The entries of a frame that have a return, in the order of the points of a LAS file: by firing
-/// time, then by pulse, then by range.
+/// time, then by pulse, then by range. Empty if it was not measured with these beams.
 std::vector<std::uint32_t> las_order(const Frame& frame, const Beams& beams);
 
 /// What a point record states of the scan.
