@@ -109,7 +109,9 @@ def layout_values(c):
                   "timestamp": c["stamp"].astype(np.float64) * 1e-9},
         "autoware": {"intensity": percent, "return_type": c["status"] == 0, "channel": c["ring"],
                      "azimuth": turn, "elevation": c["elevation"], "distance": c["range"], "time_stamp": c["time"]},
-        "ouster-fast-lio": {"intensity": c["intensity"], "t": c["time"], "ring": np.minimum(c["ring"], 255), "ambient": zero},
+        "ouster-fast-lio": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
+                            "ring": np.minimum(c["ring"], 255), "ambient": zero,
+                            "range": np.floor(np.nan_to_num(c["range"]) / 0.001 + 0.5)},
         "robosense-xyzi": {"intensity": percent},
     }  # fmt: skip
 
