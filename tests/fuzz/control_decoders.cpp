@@ -54,7 +54,8 @@ bool try_http(std::span<const std::byte> bytes) {
       R"("udp_port_lidar":7502,"udp_port_imu":7503,"lidar_mode":"1024x10"},"user_data":""})";
   control::OusterApi api(
       {.metadata = kMetadata, .destinations = {kChosen}, .on_destination = check_destination});
-  const auto conversation = control::make_http_conversation(api, kClient);
+  link::HttpGuard guard({}, link::HttpClients::programs, control::sensor_http_limits());
+  const auto conversation = control::make_http_conversation(api, guard, kClient);
   const std::string answer = converse(*conversation, text_of(bytes));
   demand(answer.empty() || answer.starts_with("HTTP/1.1 "), "answers are HTTP");
   return answer.starts_with("HTTP/1.1 200");

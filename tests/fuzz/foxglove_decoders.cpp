@@ -20,16 +20,17 @@ void try_routes(std::string_view text) {
   constexpr std::string_view kHost = "localhost:1";
   constexpr std::string_view kOrigin = "http://localhost:1";
   constexpr std::string_view kJson = "application/json";
+  link::HttpGuard guard({}, link::HttpClients::own_pages);
   for (const std::string_view target : {"/api/pick", "/api/playback"}) {
-    foxglove::route({"POST", target, kHost, kOrigin, kJson, text}, {}, {true, true});
+    foxglove::route({{"POST", kHost, kOrigin}, target, kJson, text}, guard, {true, true});
     const auto foreign =
-        foxglove::route({"POST", target, kHost, text, kJson, "{}"}, {}, {true, true});
+        foxglove::route({{"POST", kHost, text}, target, kJson, "{}"}, guard, {true, true});
     const auto* reply = std::get_if<HttpReply>(&foreign);
     demand(reply != nullptr && reply->status >= 400, "foreign pages have no effect");
   }
-  foxglove::route({"GET", text, kHost}, {}, {});
-  foxglove::route({"GET", "/", text}, {}, {});
-  foxglove::is_allowed_origin(text, kHost, {});
+  foxglove::route({{"GET", kHost}, text}, guard, {});
+  foxglove::route({{"GET", text}, "/"}, guard, {});
+  link::is_allowed_origin(text, kHost, {});
   foxglove::choose_subprotocol(text);
 }
 

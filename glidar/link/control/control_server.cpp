@@ -6,7 +6,6 @@
 #include <glidar/link/control/tcp_service.hpp>
 #include <glidar/link/control/udp_responder.hpp>
 
-#include <chrono>
 #include <utility>
 
 namespace glidar::control {
@@ -16,14 +15,29 @@ class OusterServer final : public ControlServer {
  public:
   OusterServer(const OusterApiOptions& sensor, const link::Endpoint& at, link::ErrorLog& errors)
       : api_(sensor),
+        guard_(access_rules(at), link::HttpClients::programs, sensor_http_limits()),
         service_(
-            {.at = at, .what = "HTTP of the sensor", .idle = std::chrono::seconds(10)},
-            [this](const std::string& client) { return make_http_conversation(api_, client); },
+            {.at = at,
+             .what = "HTTP of the sensor",
+             .connections = guard_.limits().connections,
+             .request = guard_.limits().request,
+             .idle = guard_.limits().request},
+            [this](const std::string& client) {
+              return make_http_conversation(api_, guard_, client);
+            },
             errors) {}
   [[nodiscard]] std::uint16_t port() const override { return service_.port(); }
 
  private:
+  /// The name that --control has is as good as an address.
+  static link::AccessRules access_rules(const link::Endpoint& at) {
+    link::AccessRules rules{.origins = {}, .hosts = {}};
+    if (at.host != "*") rules.hosts.push_back(at.host);
+    return rules;
+  }
+
   OusterApi api_;
+  link::HttpGuard guard_;  // used in the service's thread
   TcpService service_;
 };
 

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/control/http_conversation.hpp>
 
+#include <glidar/link/http_parser.hpp>
+
 #include <boost/asio/buffer.hpp>
 #include <boost/beast/http/error.hpp>
-#include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/status.hpp>
-#include <boost/beast/http/string_body.hpp>
 
-#include <cstdint>
 #include <utility>
 
 namespace glidar::control {
@@ -16,16 +15,9 @@ namespace {
 
 namespace http = boost::beast::http;
 
-constexpr std::uint32_t kMaxHeaderBytes = 8192;
-constexpr std::uint64_t kMaxBodyBytes = 16'384;
-
-std::string_view text_view(boost::beast::string_view text) {
-  return {text.data(), text.size()};
-}
-
 std::string http_text(const ApiReply& reply, bool has_body) {
-  const std::string reason(
-      text_view(http::obsolete_reason(http::int_to_status(static_cast<unsigned>(reply.status)))));
+  const std::string reason(link::text_view(
+      http::obsolete_reason(http::int_to_status(static_cast<unsigned>(reply.status)))));
   return "HTTP/1.1 " + std::to_string(reply.status) + " " + reason +
          "\r\nContent-Type: application/json\r\nCache-Control: no-store\r\n"
          "X-Content-Type-Options: nosniff\r\nConnection: close\r\nContent-Length: " +
@@ -44,9 +36,9 @@ Step malformed_step(std::size_t consumed, int status, const std::string& what) {
 
 class HttpConversation final : public Conversation {
  public:
-  HttpConversation(OusterApi& api, std::string client) : api_(api), client_(std::move(client)) {
-    parser_.header_limit(kMaxHeaderBytes);
-    parser_.body_limit(kMaxBodyBytes);
+  HttpConversation(OusterApi& api, link::HttpGuard& guard, std::string client)
+      : api_(api), guard_(guard), client_(std::move(client)) {
+    link::apply_limits(guard.limits(), parser_);
     parser_.eager(true);
   }
 
@@ -66,27 +58,32 @@ class HttpConversation final : public Conversation {
   Step answer(std::size_t consumed) {
     const auto& request = parser_.get();
     const bool has_body = request.method() != http::verb::head;
-    const std::string_view site = text_view(request["Sec-Fetch-Site"]);
-    const bool is_page =
-        request.find(http::field::origin) != request.end() || (!site.empty() && site != "none");
-    if (is_page)
-      return final_step(consumed, {403, R"({"error":{"detail":"web pages have no access"}})"},
-                        has_body);
+    const link::HttpHead head = link::head_of(request);
+    if (const auto refusal = guard_.refuse(head)) {
+      Step step = final_step(consumed, refusal_reply(*refusal), has_body);
+      step.error = "refused a request: " + std::string(refusal->text);
+      return step;
+    }
     return final_step(consumed,
-                      api_.answer({text_view(request.method_string()), text_view(request.target()),
-                                   request.body(), client_}),
+                      api_.answer({.method = head.method,
+                                   .target = link::text_view(request.target()),
+                                   .body = request.body(),
+                                   .client = client_,
+                                   .no_change = guard_.refuse_change(head)}),
                       has_body);
   }
 
   OusterApi& api_;
+  link::HttpGuard& guard_;
   std::string client_;
-  http::request_parser<http::string_body> parser_;
+  link::HttpParser parser_;
 };
 
 }  // namespace
 
-std::unique_ptr<Conversation> make_http_conversation(OusterApi& api, const std::string& client) {
-  return std::make_unique<HttpConversation>(api, client);
+std::unique_ptr<Conversation> make_http_conversation(OusterApi& api, link::HttpGuard& guard,
+                                                     const std::string& client) {
+  return std::make_unique<HttpConversation>(api, guard, client);
 }
 
 }  // namespace glidar::control

@@ -4,14 +4,21 @@
 
 #include <glidar/link/control/conversation.hpp>
 #include <glidar/link/control/ouster_api.hpp>
+#include <glidar/link/http_guard.hpp>
 
 #include <memory>
 #include <string>
 
 namespace glidar::control {
 
-/// Answers one HTTP request (RFC 9112) and ends. Requests of web pages, which browsers mark with
-/// Origin or Sec-Fetch-Site, are refused. `api` must outlive it.
-std::unique_ptr<Conversation> make_http_conversation(OusterApi& api, const std::string& client);
+/// Limits of a sensor's HTTP server: its configuration is short.
+inline link::HttpLimits sensor_http_limits() {
+  return {.body_bytes = 16'384};
+}
+
+/// Answers one HTTP request (RFC 9112) that the guard lets pass, and ends. `api` and `guard` must
+/// outlive it.
+std::unique_ptr<Conversation> make_http_conversation(OusterApi& api, link::HttpGuard& guard,
+                                                     const std::string& client);
 
 }  // namespace glidar::control

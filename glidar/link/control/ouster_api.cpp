@@ -94,10 +94,10 @@ struct OusterApi::Impl {
       throw Error({"metadata of the sensor", "no config_params", "the JSON of ouster_metadata()"});
   }
 
-  ApiReply get(std::string_view path, std::string_view query, const std::string& client);
-  ApiReply command(std::string_view name, std::string_view query, const std::string& client);
-  ApiReply configure(const ApiJson& changes, const std::string& client);
-  ApiReply set_parameter(const std::string& arguments, const std::string& client);
+  ApiReply get(std::string_view path, std::string_view query, const ApiRequest& request);
+  ApiReply command(std::string_view name, std::string_view query, const ApiRequest& request);
+  ApiReply configure(const ApiJson& changes, const ApiRequest& request);
+  ApiReply set_parameter(const std::string& arguments, const ApiRequest& request);
   void change(ApiJson& config, const std::string& key, const ApiJson& value,
               const std::string& client) const;
   ApiJson& config() { return metadata["config_params"]; }
@@ -109,6 +109,10 @@ struct OusterApi::Impl {
 OusterApi::OusterApi(const OusterApiOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 OusterApi::~OusterApi() = default;
 
+ApiReply refusal_reply(const link::HttpRefusal& refused) {
+  return refusal(refused.status, std::string(refused.text));
+}
+
 ApiReply OusterApi::answer(const ApiRequest& request) {
   const std::size_t mark = request.target.find('?');
   std::string_view path = request.target.substr(0, mark);
@@ -119,12 +123,11 @@ ApiReply OusterApi::answer(const ApiRequest& request) {
   while (path.ends_with('/')) path.remove_suffix(1);
   try {
     if (request.method == "GET" || request.method == "HEAD")
-      return impl_->get(path, query, request.client);
+      return impl_->get(path, query, request);
     if (request.method != "POST") return refusal(405, "GET, HEAD or POST");
     if (path != "sensor/config") return refusal(404, "no such resource");
     const std::string_view body = request.body.empty() ? std::string_view("{}") : request.body;
-    return impl_->configure(parse_json<ApiJson>("configuration", body, kApiJsonLimits),
-                            request.client);
+    return impl_->configure(parse_json<ApiJson>("configuration", body, kApiJsonLimits), request);
   } catch (const ApiJson::exception&) {
     return refusal(400, "the body is not JSON");
   } catch (const Error& error) {
@@ -133,7 +136,7 @@ ApiReply OusterApi::answer(const ApiRequest& request) {
 }
 
 ApiReply OusterApi::Impl::get(std::string_view path, std::string_view query,
-                              const std::string& client) {
+                              const ApiRequest& request) {
   constexpr std::string_view kSections = "sensor/metadata/";
   constexpr std::string_view kCommands = "sensor/cmd/";
   if (path == "sensor/metadata") return json_reply(metadata);
@@ -145,28 +148,28 @@ ApiReply OusterApi::Impl::get(std::string_view path, std::string_view query,
     const auto section = metadata.find(std::string(path.substr(kSections.size())));
     if (section != metadata.end()) return json_reply(*section);
   }
-  if (path.starts_with(kCommands)) return command(path.substr(kCommands.size()), query, client);
+  if (path.starts_with(kCommands)) return command(path.substr(kCommands.size()), query, request);
   return refusal(404, "no such resource");
 }
 
 /// The TCP and HTTP commands of firmware before 2.4.
 ApiReply OusterApi::Impl::command(std::string_view name, std::string_view query,
-                                  const std::string& client) {
+                                  const ApiRequest& request) {
   for (const auto& [known, section] : kSectionCommands)
     if (name == known) return json_reply(metadata[section]);
   if (name == "get_config_param") return json_reply(config());
   if (name == "set_udp_dest_auto") {
-    const ApiReply reply = configure({{"udp_dest", "@auto"}}, client);
+    const ApiReply reply = configure({{"udp_dest", "@auto"}}, request);
     return reply.status == 200 ? json_reply(std::string(name)) : reply;
   }
-  if (name == "set_config_param") return set_parameter(query_value(query, "args"), client);
+  if (name == "set_config_param") return set_parameter(query_value(query, "args"), request);
   if (std::find(kEmptyCommands.begin(), kEmptyCommands.end(), name) != kEmptyCommands.end())
     return json_reply(std::string(name));
   return refusal(404, "no such command");
 }
 
 /// "KEY VALUE", or ". {...}" with several.
-ApiReply OusterApi::Impl::set_parameter(const std::string& arguments, const std::string& client) {
+ApiReply OusterApi::Impl::set_parameter(const std::string& arguments, const ApiRequest& request) {
   const std::size_t blank = arguments.find(' ');
   if (blank == std::string::npos) return refusal(400, "args: KEY VALUE");
   const std::string key = arguments.substr(0, blank);
@@ -177,7 +180,7 @@ ApiReply OusterApi::Impl::set_parameter(const std::string& arguments, const std:
   } catch (const ApiJson::exception&) {
     value = text;  // words are given without quotation marks
   }
-  const ApiReply reply = configure(key == "." ? value : ApiJson{{key, value}}, client);
+  const ApiReply reply = configure(key == "." ? value : ApiJson{{key, value}}, request);
   return reply.status == 200 ? json_reply("set_config_param") : reply;
 }
 
@@ -204,10 +207,12 @@ void OusterApi::Impl::change(ApiJson& config, const std::string& key, const ApiJ
                "restart glidar stream with other options"});
 }
 
-ApiReply OusterApi::Impl::configure(const ApiJson& changes, const std::string& client) {
+ApiReply OusterApi::Impl::configure(const ApiJson& changes, const ApiRequest& request) {
+  if (request.no_change) return refusal_reply(*request.no_change);
   if (!changes.is_object()) return refusal(400, "the configuration is no JSON object");
   ApiJson changed = config();
-  for (const auto& [key, value] : changes.items()) change(changed, current_key(key), value, client);
+  for (const auto& [key, value] : changes.items())
+    change(changed, current_key(key), value, request.client);
   const bool moves = changed != config();
   config() = changed;
   if (moves && options.on_destination) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <glidar/link/control/destination.hpp>
+#include <glidar/link/http_guard.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,13 +25,17 @@ struct ApiRequest {
   std::string_view method;
   std::string_view target;  ///< path and query
   std::string_view body = {};
-  std::string client = {};  ///< IPv4 address
+  std::string client = {};                          ///< IPv4 address
+  std::optional<link::HttpRefusal> no_change = {};  ///< it may only read, for this reason
 };
 
 struct ApiReply {
   int status = 200;
   std::string body;  ///< JSON
 };
+
+/// The reply of a request that a guard refuses.
+ApiReply refusal_reply(const link::HttpRefusal& refused);
 
 /// The HTTP API of Ouster sensors (firmware manual, "HTTP API Reference Guide"): metadata and its
 /// sections, configuration, user data and firmware; with the commands of firmware before 2.4. Of

@@ -26,7 +26,7 @@ std::uint16_t TcpService::port() const {
   return 0;
 }
 
-std::unique_ptr<Conversation> make_http_conversation(OusterApi& /*api*/,
+std::unique_ptr<Conversation> make_http_conversation(OusterApi& /*api*/, link::HttpGuard& /*guard*/,
                                                      const std::string& /*client*/) {
   return nullptr;
 }

@@ -83,7 +83,7 @@ void Acceptor::make_room() {
     const auto session = one.lock();
     return session == nullptr || !session->is_waiting();
   });
-  while (waiting_.size() >= std::max<std::size_t>(hub_.options().limits.connections, 1)) {
+  while (waiting_.size() >= std::max<std::size_t>(hub_.options().limits.http.connections, 1)) {
     if (const auto oldest = waiting_.front().lock()) oldest->close();
     waiting_.pop_front();
     hub_.errors().report("Foxglove connection", "closed the oldest one without a request");

@@ -30,7 +30,7 @@ ClientSession::ClientSession(boost::beast::tcp_stream&& stream, Hub& hub)
 void ClientSession::start(const Request& request, std::string_view subprotocol) {
   socket_.next_layer().expires_never();  // the WebSocket layer has times of its own
   const ServerLimits& limits = hub_.options().limits;
-  socket_.set_option(websocket::stream_base::timeout{.handshake_timeout = limits.handshake,
+  socket_.set_option(websocket::stream_base::timeout{.handshake_timeout = limits.http.request,
                                                      .idle_timeout = limits.idle,
                                                      .keep_alive_pings = true});
   socket_.set_option(websocket::stream_base::decorator(

@@ -12,6 +12,10 @@ HttpReply plain(int status, const std::string& text) {
   return {.status = status, .content_type = "text/plain; charset=utf-8", .body = text + "\n"};
 }
 
+HttpReply plain(const link::HttpRefusal& refusal) {
+  return plain(refusal.status, std::string(refusal.text));
+}
+
 HttpReply get(std::string_view target) {
   const PageFile* file = find_page_file(target.substr(0, target.find('?')));
   if (file == nullptr) return plain(404, "not found");
@@ -20,15 +24,14 @@ HttpReply get(std::string_view target) {
           .body = std::string(file->text)};
 }
 
-HttpAction post(const HttpRequest& request, const PageServices& services) {
+HttpAction post(const HttpRequest& request, const link::HttpGuard& guard,
+                const PageServices& services) {
   const bool is_playback = request.target == "/api/playback";
   const bool is_pick = request.target == "/api/pick";
   if (!(is_playback && services.has_playback) && !(is_pick && services.has_picks)) {
     return plain(404, "not found");
   }
-  if (!is_same_origin(request.origin, request.host)) {
-    return plain(403, "only the page of this server may send this request");
-  }
+  if (const auto refusal = guard.refuse_change(request.head)) return plain(*refusal);
   if (request.content_type != "application/json") return plain(415, "not application/json");
   try {
     if (is_playback) return decode_playback_command(request.body);
@@ -40,14 +43,9 @@ HttpAction post(const HttpRequest& request, const PageServices& services) {
 
 }  // namespace
 
-HttpAction route(const HttpRequest& request, const AccessRules& rules,
-                 const PageServices& services) {
-  if (!is_allowed_host(request.host, rules)) {
-    return plain(403, "unknown host name; use an address, localhost or an allowed name");
-  }
-  if (request.method == "GET" || request.method == "HEAD") return get(request.target);
-  if (request.method == "POST") return post(request, services);
-  return plain(405, "GET, HEAD or POST");
+HttpAction route(const HttpRequest& request, link::HttpGuard& guard, const PageServices& services) {
+  if (const auto refusal = guard.refuse(request.head)) return plain(*refusal);
+  return request.head.method == "POST" ? post(request, guard, services) : get(request.target);
 }
 
 }  // namespace glidar::foxglove

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/link/foxglove/access_rules.hpp>
 #include <glidar/link/foxglove/page_messages.hpp>
+#include <glidar/link/http_guard.hpp>
 
 #include <string>
 #include <string_view>
@@ -13,10 +13,8 @@ namespace glidar::foxglove {
 
 /// The parts of an HTTP request that decide the answer.
 struct HttpRequest {
-  std::string_view method;
+  link::HttpHead head;
   std::string_view target;
-  std::string_view host;
-  std::string_view origin = {};
   std::string_view content_type = {};
   std::string_view body = {};
 };
@@ -38,8 +36,7 @@ using HttpAction = std::variant<HttpReply, PlaybackCommand, Pick>;
 
 /// GET of the page's files; POST of /api/playback and /api/pick, which only the page itself may
 /// use.
-HttpAction route(const HttpRequest& request, const AccessRules& rules,
-                 const PageServices& services);
+HttpAction route(const HttpRequest& request, link::HttpGuard& guard, const PageServices& services);
 
 /// Sent with every reply: scripts, styles and connections only from and to this server.
 inline constexpr std::string_view kContentSecurityPolicy =

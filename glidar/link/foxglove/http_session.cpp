@@ -18,15 +18,9 @@ namespace {
 
 namespace http = boost::beast::http;
 
-constexpr std::uint32_t kMaxHeader_bytes = 8192;
-
-std::string_view view(boost::beast::string_view text) {
-  return {text.data(), text.size()};
-}
-
 template <class Message>
 std::string_view header(const Message& message, http::field name) {
-  return view(message[name]);
+  return link::text_view(message[name]);
 }
 
 HttpReply plain_reply(int status, const std::string& text) {
@@ -42,12 +36,11 @@ HttpReply json_reply(int status, const char* member, const std::string& text) {
 HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub,
                          std::shared_ptr<ReplyGate> gate)
     : stream_(std::move(socket)), hub_(hub), gate_(std::move(gate)) {
-  parser_.header_limit(kMaxHeader_bytes);
-  parser_.body_limit(hub_.options().limits.received_bytes);
+  link::apply_limits(hub_.guard().limits(), parser_);
 }
 
 void HttpSession::start() {
-  stream_.expires_after(hub_.options().limits.handshake);
+  stream_.expires_after(hub_.options().limits.http.request);
   http::async_read(
       stream_, received_, parser_,
       [self = shared_from_this()](Failure failure, std::size_t) { self->on_read(failure); });
@@ -79,13 +72,11 @@ void HttpSession::on_read(Failure failure) {
 }
 
 void HttpSession::upgrade(const Request& request) {
-  const AccessRules& rules = hub_.options().access;
-  const std::string_view host = header(request, http::field::host);
-  const std::string_view origin = header(request, http::field::origin);
-  if (!is_allowed_host(host, rules) || !is_allowed_origin(origin, host, rules)) {
-    hub_.errors().report("Foxglove client", "refused a page of '" + excerpt(origin) +
-                                                "' at host '" + excerpt(host) + "'");
-    return respond(plain_reply(403, "this origin or host is not allowed"));
+  const link::HttpHead head = link::head_of(request);
+  if (const auto refusal = hub_.guard().refuse(head)) {
+    hub_.errors().report("Foxglove client", "refused a page of '" + excerpt(head.origin) +
+                                                "' at host '" + excerpt(head.host) + "'");
+    return respond(plain_reply(refusal->status, std::string(refusal->text)));
   }
   const std::string_view protocol =
       choose_subprotocol(header(request, http::field::sec_websocket_protocol));
@@ -99,13 +90,11 @@ void HttpSession::answer(const Request& request) {
   const ServerOptions& options = hub_.options();
   is_head_ = request.method() == http::verb::head;
   const HttpAction action =
-      route({.method = view(request.method_string()),
-             .target = view(request.target()),
-             .host = header(request, http::field::host),
-             .origin = header(request, http::field::origin),
+      route({.head = link::head_of(request),
+             .target = link::text_view(request.target()),
              .content_type = header(request, http::field::content_type),
              .body = request.body()},
-            options.access,
+            hub_.guard(),
             {.has_playback = bool(options.on_playback), .has_picks = bool(options.on_pick)});
   if (const auto* reply = std::get_if<HttpReply>(&action)) {
     respond(*reply);
@@ -151,7 +140,7 @@ void HttpSession::respond(const HttpReply& reply) {
   response_.set("Cross-Origin-Resource-Policy", "same-origin");
   response_.content_length(reply.body.size());
   if (!is_head_) response_.body() = reply.body;
-  stream_.expires_after(hub_.options().limits.handshake);
+  stream_.expires_after(hub_.options().limits.http.request);
   http::async_write(stream_, response_,
                     [self = shared_from_this()](Failure, std::size_t) { self->on_written(); });
 }

@@ -5,11 +5,11 @@
 #include <glidar/link/foxglove/http_routes.hpp>
 #include <glidar/link/foxglove/hub.hpp>
 #include <glidar/link/foxglove/reply_gate.hpp>
+#include <glidar/link/http_parser.hpp>
 
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/message.hpp>
-#include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
 
 #include <memory>
@@ -31,7 +31,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
  private:
   using Failure = boost::beast::error_code;
-  using Request = boost::beast::http::request<boost::beast::http::string_body>;
+  using Request = link::HttpParser::value_type;
 
   void on_read(Failure failure);
   void upgrade(const Request& request);
@@ -43,7 +43,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer received_;
-  boost::beast::http::request_parser<boost::beast::http::string_body> parser_;
+  link::HttpParser parser_;
   boost::beast::http::response<boost::beast::http::string_body> response_;
   Hub& hub_;
   std::shared_ptr<ReplyGate> gate_;

@@ -15,6 +15,7 @@ namespace glidar::foxglove {
 Hub::Hub(boost::asio::io_context& io, const ServerOptions& options, link::ErrorLog& errors)
     : io_(io),
       options_(options),
+      guard_(options.access, link::HttpClients::own_pages, options.limits.http),
       errors_(errors),
       session_id_(std::to_string(std::chrono::system_clock::now().time_since_epoch().count())) {}
 

@@ -47,6 +47,7 @@ class Hub {
   void count_connection() { ++connections_; }
   void count_sent() { ++sent_; }
   [[nodiscard]] const ServerOptions& options() const { return options_; }
+  [[nodiscard]] link::HttpGuard& guard() { return guard_; }
   [[nodiscard]] link::ErrorLog& errors() { return errors_; }
   [[nodiscard]] const std::string& session_id() const { return session_id_; }
   [[nodiscard]] boost::asio::io_context& io() { return io_; }
@@ -67,6 +68,7 @@ class Hub {
 
   boost::asio::io_context& io_;
   const ServerOptions& options_;
+  link::HttpGuard guard_;
   link::ErrorLog& errors_;
   std::string session_id_;
   std::set<std::shared_ptr<ClientSession>> clients_;

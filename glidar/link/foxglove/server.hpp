@@ -4,9 +4,9 @@
 
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/error_log.hpp>
-#include <glidar/link/foxglove/access_rules.hpp>
 #include <glidar/link/foxglove/messages.hpp>
 #include <glidar/link/foxglove/page_messages.hpp>
+#include <glidar/link/http_guard.hpp>
 #include <glidar/link/payload.hpp>
 
 #include <chrono>
@@ -20,12 +20,11 @@ namespace glidar::foxglove {
 
 /// Limits of clients. Those beyond a limit are refused or disconnected; the stream continues.
 struct ServerLimits {
-  std::size_t clients = 32;       ///< WebSocket connections
-  std::size_t connections = 128;  ///< without a complete request; the oldest one makes room
-  std::size_t received_bytes = std::size_t{64} << 10;  ///< of one message or HTTP request
+  link::HttpLimits http = {};
+  std::size_t clients = 32;                            ///< WebSocket connections
+  std::size_t received_bytes = std::size_t{64} << 10;  ///< of one message
   std::size_t picks = 8;                               ///< that wait for their explanation
-  std::chrono::milliseconds handshake{10'000};  ///< from the connection to the complete request
-  std::chrono::milliseconds idle{120'000};      ///< without a byte or an answer to a ping
+  std::chrono::milliseconds idle{120'000};             ///< without a byte or an answer to a ping
 };
 
 /// Receives the text that explains a point. May be called in any thread, once, also after the
@@ -36,7 +35,7 @@ using PickReply = std::function<void(const std::string& text)>;
 struct ServerOptions {
   link::Endpoint at = {.host = "127.0.0.1", .port = 8765};
   std::string name = "GLIDAR";
-  AccessRules access = {};
+  link::AccessRules access = {};
   ServerLimits limits = {};
   /// Called in the server's thread when the user of the page plays, pauses or steps; must return
   /// quickly. Empty: the page shows no such buttons.

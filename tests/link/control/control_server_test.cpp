@@ -56,6 +56,12 @@ struct PtcServer {
   }
 };
 
+/// The command of old firmware that sends packets to the client.
+std::string set_destination(const std::string& host, const std::string& header) {
+  return "GET /api/v1/sensor/cmd/set_udp_dest_auto HTTP/1.1\r\nHost: " + host + "\r\n" + header +
+         "\r\n\r\n";
+}
+
 /// Bytes that are requests of neither protocol.
 std::vector<std::string> garbage() {
   std::vector<std::string> all = {
@@ -88,7 +94,8 @@ TEST(OusterServer, AnswersOneRequestPerConnection) {
   EXPECT_THAT(answer, HasSubstr("Content-Length: 2\r\n"));
   EXPECT_TRUE(answer.ends_with("\r\n\r\n\"\""));
   EXPECT_THAT(http_answer(http.port(), get_request("/")), StartsWith("HTTP/1.1 404"));
-  const std::string head = http_answer(http.port(), "HEAD /api/v1/user/data HTTP/1.1\r\n\r\n");
+  const std::string head =
+      http_answer(http.port(), "HEAD /api/v1/user/data HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(head.ends_with("Content-Length: 2\r\n\r\n"));
 }
 
@@ -96,8 +103,9 @@ TEST(OusterServer, AnswersRequestsThatArriveByteByByte) {
   const HttpServer http;
   const TcpPeer peer(http.port());
   const std::string body = R"({"udp_port_lidar":7600})";
-  for (const char byte : "POST /api/v1/sensor/config HTTP/1.1\r\nContent-Length: " +
-                             std::to_string(body.size()) + "\r\n\r\n" + body)
+  for (const char byte :
+       "POST /api/v1/sensor/config HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
+           std::to_string(body.size()) + "\r\n\r\n" + body)
     peer.send(std::string(1, byte));
   EXPECT_THAT(peer.receive_all(), StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(http.destinations.all(),
@@ -106,15 +114,45 @@ TEST(OusterServer, AnswersRequestsThatArriveByteByByte) {
 
 TEST(OusterServer, WebPagesHaveNoAccess) {
   const HttpServer http;
-  for (const char* header : {"Origin: http://127.0.0.1", "Sec-Fetch-Site: cross-site"}) {
-    EXPECT_THAT(http_answer(http.port(), "GET /api/v1/sensor/cmd/set_udp_dest_auto HTTP/1.1\r\n" +
-                                             std::string(header) + "\r\n\r\n"),
-                StartsWith("HTTP/1.1 403"));
+  for (const char* header : {"Origin: http://127.0.0.1", "Sec-Fetch-Site: cross-site",
+                             "Referer: http://evil.example/"}) {
+    EXPECT_THAT(http_answer(http.port(), set_destination("127.0.0.1", header)),
+                StartsWith("HTTP/1.1 403"))
+        << header;
   }
   EXPECT_TRUE(http.destinations.all().empty());
-  EXPECT_THAT(
-      http_answer(http.port(), "GET /api/v1/user/data HTTP/1.1\r\nSec-Fetch-Site: none\r\n\r\n"),
-      StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(http_answer(http.port(),
+                          "GET /api/v1/user/data HTTP/1.1\r\nHost: localhost\r\n"
+                          "Sec-Fetch-Site: none\r\n\r\n"),
+              StartsWith("HTTP/1.1 200"));
+}
+
+TEST(OusterServer, ForeignHostsHaveNoAccess) {
+  const HttpServer http;
+  for (const char* target : {"metadata", "config", "cmd/set_udp_dest_auto"}) {
+    EXPECT_THAT(http_answer(http.port(),
+                            get_request("/api/v1/sensor/" + std::string(target), "evil.example")),
+                StartsWith("HTTP/1.1 403"))
+        << target;
+  }
+  EXPECT_THAT(http_answer(http.port(), "GET /api/v1/user/data HTTP/1.1\r\n\r\n"),
+              StartsWith("HTTP/1.1 403"))
+      << "no host";
+  EXPECT_THAT(http_answer(http.port(), set_destination("127.0.0.1", "Host: evil.example")),
+              StartsWith("HTTP/1.1 400"))
+      << "two hosts";
+  EXPECT_TRUE(http.destinations.all().empty());
+}
+
+TEST(OusterServer, GetChangesTheDestinationAtANumericHostOnly) {
+  const HttpServer http;
+  EXPECT_THAT(http_answer(http.port(), set_destination("localhost", "Accept: */*")),
+              StartsWith("HTTP/1.1 403"));
+  EXPECT_TRUE(http.destinations.all().empty());
+  EXPECT_THAT(http_answer(http.port(), set_destination("127.0.0.1", "Accept: */*")),
+              StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(http.destinations.all(),
+              ElementsAre("7502 to 127.0.0.1:7502", "7503 to 127.0.0.1:7503"));
 }
 
 TEST(OusterServer, LargeRequestsAreRefused) {

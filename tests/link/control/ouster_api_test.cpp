@@ -90,6 +90,22 @@ TEST(OusterApi, AcceptsTheSimulatedConfigurationOnly) {
   EXPECT_THAT(api.destinations.all(), IsEmpty());
 }
 
+TEST(OusterApi, RequestsThatMayOnlyReadChangeNothing) {
+  Api api;
+  const link::HttpRefusal reason{403, "read only"};
+  for (const char* target :
+       {"sensor/cmd/set_udp_dest_auto", "sensor/cmd/set_config_param?args=udp_port_lidar%207600"}) {
+    const std::string whole = "/api/v1/" + std::string(target);
+    const ApiReply reply = api.api.answer({"GET", whole, "", "127.0.0.1", reason});
+    EXPECT_EQ(reply.status, 403) << target;
+    EXPECT_THAT(reply.body, HasSubstr("read only"));
+  }
+  EXPECT_EQ(api.api.answer({"POST", "/api/v1/sensor/config", "{}", "127.0.0.1", reason}).status,
+            403);
+  EXPECT_EQ(api.api.answer({"GET", "/api/v1/sensor/config", "", "127.0.0.1", reason}).status, 200);
+  EXPECT_THAT(api.destinations.all(), IsEmpty());
+}
+
 TEST(OusterApi, OtherMethodsAreRefused) {
   Api api;
   EXPECT_EQ(api.api.answer({"DELETE", "/api/v1/sensor/config"}).status, 405);

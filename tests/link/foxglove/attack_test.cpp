@@ -123,7 +123,7 @@ TEST(FoxgloveAttack, ClientsThatSendOnlyErrorsAreDisconnected) {
 }
 
 TEST(FoxgloveAttack, LargeMessagesAreRefusedBeforeTheyAreReceived) {
-  TestServer server({.limits = {.received_bytes = 1000}});
+  TestServer server({.limits = {.http = {.body_bytes = 1000}, .received_bytes = 1000}});
   const WebSocketPeer attacker(server.port());
   attacker.tcp().send(client_frame(1, std::string(1001, 'x')));
   attacker.tcp().finish();
@@ -182,7 +182,7 @@ TEST(FoxgloveAttack, StormsOfConnectionsLeaveNothingBehind) {
 }
 
 TEST(FoxgloveAttack, ConnectionsWithoutARequestEnd) {
-  TestServer server({.limits = {.handshake = std::chrono::milliseconds(30)}});
+  TestServer server({.limits = {.http = {.request = std::chrono::milliseconds(30)}}});
   const TcpPeer silent(server.port());
   silent.send("GET / HTT");
   EXPECT_EQ(silent.receive_all(), "");
