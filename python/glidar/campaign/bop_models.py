@@ -185,7 +185,7 @@ def write(plan, folder):
     listed, written = {}, []
     with folder.temp_folder() as temp:
         for name, data in _contents(plan):
-            written.append(files.prepare_bytes(temp, folder.root / name, data))
+            written.append(files.prepare_bytes(temp, folder.place(name), data))
             listed[name] = [files.hash_bytes(data), len(data)]
         files.publish_all(temp, written)
         files.write_json(temp, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})

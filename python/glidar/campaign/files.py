@@ -7,9 +7,9 @@ Durable files also survive power loss: their data is synced before the rename, a
 """
 
 import contextlib
-import glob
 import hashlib
 import json
+import logging
 import os
 import secrets
 import re
@@ -19,15 +19,23 @@ import stat
 from pathlib import Path
 
 from glidar import Error
-from glidar._errors import excerpt
+from glidar._errors import excerpt, printable
 from glidar.campaign import durable as disk
+from glidar.campaign.beneath import Inside
 
 MAX_BYTES = 1 << 40  # of a file that is hashed or copied in blocks
 MAX_JSON_BYTES = 1 << 30
 MAX_JSON_LEVELS = 64
 STRING = re.compile(rb'"(?:[^"\\]|\\.)*"')
 NO_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
-MAX_FOLDER_TRIES = 100  # each fails only if another process ends between two system calls of this one
+MAX_PID = (1 << 31) - 1
+TEMP_NAME = re.compile(r"(?P<host>.+)-(?P<pid>[0-9]{1,10})-[0-9a-f]{8}", re.ASCII | re.DOTALL)
+LOGGER = logging.getLogger("glidar")
+
+
+def note(text):
+    """A warning for people, who may have the file from others."""
+    LOGGER.warning("%s", printable(text))
 
 
 def write_error(path, error):
@@ -44,8 +52,8 @@ class TempFolder:
     one are synced to the disk."""
 
     def __init__(self, root, durable=False):
-        name = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}"
-        self.folder = Path(root) / "tmp" / name
+        self._place = Inside(root, "tmp", f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}")
+        self.folder = self._place.path
         self.newest = self.folder  # the path returned last
         self.folders = disk.Folders(root) if durable else None
         self._count = 0
@@ -55,7 +63,7 @@ class TempFolder:
         try:
             if self.folders:
                 self.folders.record_new_folders()
-            _make_folders(self.folder)
+            self._place.make_folder()
         except OSError as error:
             raise write_error(self.folder, error) from None
         self._count += 1
@@ -68,18 +76,8 @@ class TempFolder:
             self.folders.sync(folders)
 
     def remove(self):
-        shutil.rmtree(self.folder, ignore_errors=True)
-        _remove_empty(self.folder.parent)
-
-
-def _make_folders(folder):
-    """Creates a folder in a campaign's `tmp`, which other processes remove whenever it is empty: also between the system
-    calls of mkdir()."""
-    for _ in range(MAX_FOLDER_TRIES - 1):
-        with contextlib.suppress(FileNotFoundError, FileExistsError):
-            folder.mkdir(parents=True, exist_ok=True)
-            return
-    folder.mkdir(parents=True, exist_ok=True)
+        self._place.remove_tree()
+        self._place.parent.remove_empty()
 
 
 def _is_running(pid):
@@ -104,38 +102,36 @@ def temp_folder(root, durable=False):
         own.remove()
 
 
+def _stale_pid(name):
+    """The process of this machine that made a folder in `tmp`, if that has ended. Others keep theirs."""
+    made = TEMP_NAME.fullmatch(name)
+    if not made or int(made["pid"]) > MAX_PID:
+        note(f"tmp/{excerpt(name)}: it is not a folder of glidar campaign, and stays")
+        return None
+    is_ours = made["host"] == socket.gethostname()
+    return int(made["pid"]) if is_ours and not _is_running(int(made["pid"])) else None
+
+
 def remove_stale_files(root):
     """Removes partial files that killed processes of this machine left; other processes may be writing."""
-    tmp = Path(root) / "tmp"
-    folders = []
-    with contextlib.suppress(FileNotFoundError):  # another process has removed `tmp`
-        folders = list(tmp.glob(f"{glob.escape(socket.gethostname())}-*-*"))
-    for folder in folders:
-        pid = folder.name.rsplit("-", 2)[1]
-        if pid.isdigit() and not _is_running(int(pid)):
-            shutil.rmtree(folder, ignore_errors=True)
-    _remove_empty(tmp)
-
-
-def _remove_empty(folder):
-    try:
-        folder.rmdir()  # fails while other processes write there
-    except OSError:
-        pass
+    tmp = Inside(root, "tmp")
+    for folder in tmp.children():
+        if _stale_pid(folder.name) is not None:
+            folder.remove_tree()
+    tmp.remove_empty()
 
 
 def publish_all(temp, pairs, kept=()):
-    """Renames finished files, given as pairs (written, final). For a durable folder their data is on the disk before,
+    """Renames finished files, given as pairs (written, final): a path in `temp` and a place in the campaign's folder. For a durable folder their data is on the disk before,
     and their names when this returns. The same then holds for `kept`, files that have their final names already."""
     if temp.folders:
-        disk.sync_files([*kept, *(written for written, _ in pairs)])
+        disk.sync_files([*(final.path for final in kept), *(written for written, _ in pairs)])
     for written, final in pairs:
         try:
-            Path(final).parent.mkdir(parents=True, exist_ok=True)
-            os.replace(written, final)
+            final.take(written)
         except OSError as error:
             raise write_error(final, error) from None
-    temp.sync_folders({Path(final).parent for final in [*kept, *(final for _, final in pairs)]})
+    temp.sync_folders({final.parent.path for final in [*kept, *(final for _, final in pairs)]})
 
 
 def publish(temp, written, final):
@@ -145,7 +141,7 @@ def publish(temp, written, final):
 
 def prepare_bytes(temp, final, data):
     """Writes a file to be published; returns its pair for publish_all."""
-    path = temp.path(Path(final).name)
+    path = temp.path(final.name)
     try:
         with open(path, "wb") as file:
             file.write(data)
@@ -170,9 +166,11 @@ def write_json(temp, final, value):
 
 
 def open_input(path, max_bytes=MAX_BYTES):
-    """Opens a regular file of at most `max_bytes` for reading. A pipe or device is rejected and cannot block."""
+    """Opens a regular file of at most `max_bytes` for reading: a path that the user has named, or a place in a campaign's
+    folder. A pipe or device is rejected and cannot block."""
+    flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        descriptor = path.open(flags) if isinstance(path, Inside) else os.open(path, flags)
     except OSError as error:
         raise Error(str(path), f"it cannot be read: {error.strerror}", "a file that can be read", "") from None
     except ValueError as error:  # a zero byte or unencodable characters
@@ -200,9 +198,9 @@ def read_bytes(path, max_bytes):
     return data
 
 
-def copy(source, target):
-    """Copies a regular file."""
-    with open_input(source) as file, open(target, "wb") as copied:
+def copy(source, target, max_bytes=MAX_BYTES):
+    """Copies a regular file of at most `max_bytes`."""
+    with open_input(source, max_bytes) as file, open(target, "wb") as copied:
         shutil.copyfileobj(file, copied, 1 << 20)
 
 

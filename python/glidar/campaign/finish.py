@@ -50,21 +50,22 @@ def _write_lines(folder, temp, name, lines_of):
     path = temp.path(name.replace("/", "-"))
     try:
         with open(path, "w", encoding="utf-8") as file:
-            for table in index.batches(folder.root / index.INDEX_FILE, ["trial", *index.POSE]):
+            for table in index.batches(folder.place(index.INDEX_FILE), ["trial", *index.POSE]):
                 file.writelines(lines_of(table))
     except OSError as error:
-        raise files.write_error(folder.root / name, error) from None
-    files.publish(temp, path, folder.root / name)
+        raise files.write_error(folder.place(name), error) from None
+    files.publish(temp, path, folder.place(name))
     return name
 
 
-def _write_index(folder, temp, shards):
+def _write_index(folder, temp, described):
     path = temp.path(index.INDEX_FILE)
     try:
-        index.join((folder.part(shard) for shard in range(shards)), path)
+        index.join((index.read_part(folder.part(shard), described, records.read_receipt(folder.receipt(shard), described))
+                    for shard in range(described["shards"])), path)
     except OSError as error:
-        raise files.write_error(folder.root / index.INDEX_FILE, error) from None
-    files.publish(temp, path, folder.root / index.INDEX_FILE)
+        raise files.write_error(folder.place(index.INDEX_FILE), error) from None
+    files.publish(temp, path, folder.place(index.INDEX_FILE))
     return index.INDEX_FILE
 
 
@@ -85,8 +86,8 @@ def _write_manifest(folder, temp, described, once):
         with open(path, "w", encoding="utf-8") as file:
             file.write('{"files": {\n')
             for name in once:
-                whole = folder.root / name
-                entry = [files.hash_file(whole), whole.stat().st_size]
+                whole = folder.place(name)
+                entry = [files.hash_file(whole), whole.size()]
                 file.write(f"{json.dumps(name)}: {json.dumps(entry)},\n")
             for receipt in _receipts(folder, described):
                 trials += receipt["trials"]
@@ -95,13 +96,13 @@ def _write_manifest(folder, temp, described, once):
                     if not name.startswith("parts/"):
                         file.write(f"{json.dumps(name)}: {json.dumps(entry)},\n")
             plan_file = folder.plan_file().name
-            entry = [files.hash_file(folder.plan_file()), folder.plan_file().stat().st_size]
+            entry = [files.hash_file(folder.plan_file()), folder.plan_file().size()]
             file.write(f'{json.dumps(plan_file)}: {json.dumps(entry)}\n}},\n')
             rest = files.json_bytes({**head, "trials": trials, "failed": failed}).decode()
             file.write(rest.lstrip("{\n"))
     except OSError as error:
-        raise files.write_error(folder.root / MANIFEST_FILE, error) from None
-    files.publish(temp, path, folder.root / MANIFEST_FILE)
+        raise files.write_error(folder.place(MANIFEST_FILE), error) from None
+    files.publish(temp, path, folder.place(MANIFEST_FILE))
     return trials, failed
 
 
@@ -109,8 +110,8 @@ def finish(folder, described):
     """Writes index, trajectories and manifest of a campaign whose shards are all complete; returns (trials,
     failed)."""
     with folder.temp_folder() as temp:
-        temp.sync_folders([folder.receipt(0).parent])  # a killed run may have written a receipt without this sync
-        once = [_write_index(folder, temp, described["shards"])]
+        temp.sync_folders([folder.receipt(0).parent.path])  # a killed run may have written a receipt without this sync
+        once = [_write_index(folder, temp, described)]
         outputs = described["plan"]["campaign"]["outputs"]
         if outputs["tum"]:
             once.append(_write_lines(folder, temp, "trajectory.tum", _tum_lines))

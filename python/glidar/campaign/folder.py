@@ -18,36 +18,43 @@ from pathlib import Path
 from glidar import Error
 from glidar._inputs import path_of
 from glidar.campaign import files, names, records
+from glidar.campaign.beneath import Inside
 from glidar.campaign.plan import PLAN_FILE, identity
 
 
 @dataclass(frozen=True)
 class CampaignFolder:
+    """Its files are places in the folder (beneath.py), which may come from others."""
+
     root: Path
     durable: bool = False  # files survive power loss
+
+    def place(self, name):
+        """The place of a file that a receipt or manifest lists."""
+        return Inside(self.root) / name
 
     def temp_folder(self):
         """A temporary folder for files that are being written; a context manager."""
         return files.temp_folder(self.root, self.durable)
 
     def plan_file(self):
-        return self.root / PLAN_FILE
+        return self.place(PLAN_FILE)
 
     def receipt(self, shard):
-        return self.root / "receipts" / f"{shard:06}.json"
+        return self.place(f"receipts/{shard:06}.json")
 
     def part(self, shard):
-        return self.root / "parts" / f"{shard:06}.parquet"
+        return self.place(f"parts/{shard:06}.parquet")
 
     def extras(self):
         """Receipts of files that are written once for the whole campaign."""
-        return sorted((self.root / "receipts").glob("once-*.json"))
+        return [place for place in records.receipts_in(self.root) if place.name.startswith("once-")]
 
     def once(self, name):
-        return self.root / "receipts" / f"once-{name}.json"
+        return self.place(f"receipts/once-{name}.json")
 
     def log(self):
-        return self.root / "log" / f"{socket.gethostname()}-{os.getpid()}.jsonl"
+        return self.place(f"log/{socket.gethostname()}-{os.getpid()}.jsonl")
 
 
 def describe(plan):
@@ -59,7 +66,7 @@ def describe(plan):
 def create_or_check(folder, plan):
     """Creates the folder of a campaign, or checks that it belongs to it; returns whether it is new."""
     wanted = describe(plan)
-    if folder.plan_file().exists():
+    if folder.plan_file().is_file():
         require_same(folder.root, records.read_campaign(folder.plan_file()), wanted)
         return False
     require_empty(folder.root)
@@ -70,7 +77,7 @@ def create_or_check(folder, plan):
 
 def require_empty(root):
     """Raises Error when a folder contains anything but temporary files."""
-    if root.is_dir() and any(path.name != "tmp" for path in root.iterdir()):
+    if any(place.name != "tmp" for place in Inside(root).children()):
         raise Error(str(root), "the folder is not empty and contains no campaign",
                     "a new folder, or that of this campaign", "choose another with -o")
 
@@ -78,14 +85,12 @@ def require_empty(root):
 def remove_unused(folder):
     """Removes a folder in which nothing was measured."""
     try:
-        names = {path.name for path in folder.root.iterdir()}
-        if not names <= {PLAN_FILE, "log"} or (folder.root / "log").is_dir() and any(
-                (folder.root / "log").iterdir()):
+        log = Inside(folder.root, "log")
+        if not {place.name for place in Inside(folder.root).children()} <= {PLAN_FILE, "log"} or log.children():
             return
-        folder.plan_file().unlink(missing_ok=True)
-        for path in (folder.root / "log", folder.root):
-            if path.is_dir():
-                path.rmdir()
+        folder.plan_file().unlink()
+        log.remove_empty()
+        folder.root.rmdir()
     except OSError:
         pass  # another process has started to write there
 
@@ -138,7 +143,7 @@ def is_done(folder, shard, described):
         return False
     for name, (_, size) in records.read_receipt(path, described)["files"].items():
         try:
-            if (folder.root / name).stat().st_size != size:
+            if folder.place(name).size() != size:
                 return False
         except OSError:
             return False
@@ -161,9 +166,7 @@ def count_missing(folder, described):
 def append_log(folder, **values):
     """Appends a line to the log; a full disk is ignored there."""
     try:
-        folder.log().parent.mkdir(parents=True, exist_ok=True)
-        with open(folder.log(), "a", encoding="utf-8") as file:
-            file.write(json.dumps({"time_s": round(time.time(), 3), **values}) + "\n")
+        folder.log().append(json.dumps({"time_s": round(time.time(), 3), **values}) + "\n")
     except OSError:
         pass
 
@@ -171,6 +174,6 @@ def append_log(folder, **values):
 def wrong_files(root, listed):
     """Names of files that are missing or differ from a receipt or manifest: {name: (hash, size)}."""
     for name, (digest, size) in listed.items():
-        path = Path(root) / name
-        if not path.is_file() or path.stat().st_size != size or files.hash_file(path) != digest:
+        place = Inside(root) / name
+        if place.size() != size or files.hash_file(place) != digest:
             yield name

@@ -9,7 +9,7 @@ import numpy as np
 
 from glidar import Error
 from glidar._errors import excerpt
-from glidar.campaign import files, rotations
+from glidar.campaign import files, records, rotations
 
 INDEX_FILE = "index.parquet"
 FACTS = ["beams", "hits", "range_min_m", "range_max_m", "intensity_mean"]
@@ -17,6 +17,10 @@ POSE = ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"]
 HIT = 0  # value in the column status
 NO_BEAM = 4
 WRITE_BYTES = 1 << 20  # size of the buffer for writing
+TEXTS = ["error", "scene", "sensor"]
+MAX_TEXT_BYTES = 1 << 12  # of a row in one column, in the mean
+MAX_ROW_BYTES = 1 << 16
+MIN_TABLE_BYTES = 1 << 24
 
 
 def facts_of(frame):
@@ -87,16 +91,15 @@ def write_part(path, table):
 
 
 def join(parts, path):
-    """Concatenates all parts in order, with only one part in memory."""
+    """Concatenates the tables of all parts in order, with only one in memory."""
     import pyarrow.parquet as pq
 
     with contextlib.ExitStack() as stack:
         writer = None
-        for part in parts:
-            table = read(part)
+        for table in parts:
             if writer and table.schema != writer.schema:
-                raise Error(str(part), "its columns differ from those of the other parts", "parts of one campaign",
-                            "remove its receipt and run the part again")
+                raise Error(f"part of trial {table['trial'][0]}", "its columns differ from those of the other parts",
+                            "parts of one campaign", "remove its receipt and run the part again")
             if writer is None:
                 sink = stack.enter_context(_buffered(path))
                 writer = stack.enter_context(pq.ParquetWriter(sink, table.schema, compression="zstd"))
@@ -104,10 +107,10 @@ def join(parts, path):
 
 
 def count_errors(parts):
-    """How often each error text occurs in parts of the index."""
+    """How often each error text occurs in the tables of parts."""
     counts = Counter()
-    for part in parts:
-        counts.update(text for text in read(part)["error"].to_pylist() if text)
+    for table in parts:
+        counts.update(text for text in table["error"].to_pylist() if text)
     return counts
 
 
@@ -134,22 +137,83 @@ def _no_index(path, what):
                  "glidar campaign check lists the files that differ")
 
 
-def read(path):
-    """An index or a part of one, after checking the columns that all of them have."""
+def _checked_metadata(path, metadata, rows):
+    """Raises Error unless the file claims this number of rows, of a size that rows can have."""
+    if metadata.num_rows != rows:
+        raise Error(str(path), f"{metadata.num_rows} rows", f"{rows}, one for each trial",
+                    "copy the part again from its source; this one may be corrupt or forged")
+    size = sum(metadata.row_group(i).total_byte_size for i in range(metadata.num_row_groups))
+    allowed = MIN_TABLE_BYTES + rows * MAX_ROW_BYTES
+    if size > allowed:
+        raise Error(str(path), f"a table of {size >> 20} MiB", f"at most {allowed >> 20} MiB for {rows} rows", "")
+
+
+def read(path, rows):
+    """An index or a part of one with this number of rows, after checking the columns that all of them have. The others
+    have numbers."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     try:
-        with files.open_input(path) as opened, _native(opened) as source:
-            table = pq.read_table(source)
+        with files.open_input(path) as opened, _native(opened) as source, \
+                pq.ParquetFile(source, read_dictionary=TEXTS) as file:
+            _checked_metadata(path, file.metadata, rows)
+            _check_columns(path, file.schema_arrow)
+            table = file.read()  # texts as dictionaries: a long one that is repeated needs its memory once
     except (pa.ArrowException, OSError) as error:
         raise _no_index(path, error) from None
-    kinds = {"trial": pa.types.is_integer, "shard": pa.types.is_integer, "ok": pa.types.is_boolean,
-             "error": pa.types.is_string, "scene": pa.types.is_string, "sensor": pa.types.is_string}
-    kinds |= dict.fromkeys(POSE, pa.types.is_floating)
-    for name, is_right in kinds.items():
-        if table.schema.names.count(name) != 1 or not is_right(table.schema.field(name).type):
-            raise _no_index(path, f"column {name}")
+    for name in [*TEXTS, *POSE, "trial", "shard", "ok"]:
         if table[name].null_count:
             raise _no_index(path, f"column {name} has gaps")
+    if table.num_rows != rows:
+        raise _no_index(path, f"{table.num_rows} rows instead of {rows}")
+    return _with_plain_texts(path, table)
+
+
+def _check_columns(path, schema):
+    import pyarrow as pa
+
+    kinds = {"trial": pa.types.is_integer, "shard": pa.types.is_integer, "ok": pa.types.is_boolean}
+    kinds |= dict.fromkeys(POSE, pa.types.is_floating) | dict.fromkeys(TEXTS, _is_text)
+    for name, is_right in kinds.items():
+        if schema.names.count(name) != 1 or not is_right(schema.field(name).type):
+            raise _no_index(path, f"column {name}")
+    for field in schema:
+        if field.name not in kinds and not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type)):
+            raise _no_index(path, f"column {field.name}")
+
+
+def _is_text(kind):
+    import pyarrow as pa
+
+    return pa.types.is_string(kind.value_type if pa.types.is_dictionary(kind) else kind)
+
+
+def _with_plain_texts(path, table):
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    for name in TEXTS:
+        column = table[name]
+        if pa.types.is_dictionary(column.type):
+            size = sum(pc.sum(pc.take(pc.binary_length(chunk.dictionary), chunk.indices)).as_py() or 0
+                       for chunk in column.chunks)
+            if size > MIN_TABLE_BYTES + table.num_rows * MAX_TEXT_BYTES:
+                raise _no_index(path, f"column {name} has {size >> 20} MiB of text")
+            table = table.set_column(table.schema.get_field_index(name), name, column.cast(pa.string()))
+    return table
+
+
+def read_part(path, described, receipt):
+    """The rows of a shard, which must be those of its receipt's trials; `described`: campaign.json."""
+    trials = records.shard_trials(described, receipt["shard"])
+    table = read(path, len(trials))
+    failed = len(trials) - sum(table["ok"].to_pylist())
+    for name, is_right in (("trial", table["trial"].to_pylist() == list(trials)),
+                           ("shard", set(table["shard"].to_pylist()) == {receipt["shard"]}),
+                           ("ok", failed == receipt["failed"])):
+        if not is_right:
+            raise Error(str(path), f"its column {name} differs from its receipt",
+                        f"trials {trials[0]} to {trials[-1]} of shard {receipt['shard']}, of which {receipt['failed']} failed",
+                        "copy the part again from its source; this one may be corrupt or forged")
     return table

@@ -7,7 +7,6 @@ campaign writes. Then it cannot refer to a file outside the folder, nor replace 
 """
 
 import re
-from pathlib import Path
 
 from glidar import Error
 from glidar._errors import excerpt
@@ -71,18 +70,17 @@ def require_manifest_files(path, listed):
 
 def receipt_shard(path):
     """The shard of a receipt; None for files that are written once. Raises Error for another file name."""
-    match = RECEIPT.fullmatch(Path(path).name)
+    match = RECEIPT.fullmatch(path.name)
     if not match:
         raise Error(str(path), "it is not a receipt, but it is in their folder", "000003.json, once-bop.json", "remove it")
     return _number(match)
 
 
+def is_part(name):
+    """Whether it is the name of a shard's rows of the index."""
+    match = OF_SHARDS.fullmatch(name)
+    return match is not None and match["part"] is not None
+
+
 def is_log(path):
-    return LOG.fullmatch(Path(path).name) is not None
-
-
-def require_inside(root, path):
-    """Raises Error when a link leads from a campaign's folder to a path outside."""
-    if not Path(path).resolve().is_relative_to(Path(root).resolve()):
-        raise Error(str(path), "a link leads out of the campaign's folder", "a folder without such links",
-                    "copy the files into the folder")
+    return LOG.fullmatch(path.name) is not None

@@ -8,11 +8,11 @@ return have the keys, types and bounds that the other modules rely on.
 
 import re
 import reprlib
-from pathlib import Path
 
 from glidar import Error
 from glidar._errors import excerpt
 from glidar.campaign import files, names
+from glidar.campaign.beneath import Inside
 
 MAX_TRIALS = 1 << 32
 MAX_SHARD_TRIALS = 1 << 16
@@ -133,7 +133,7 @@ def read_campaign(path):
     return record.value
 
 
-def _shard_trials(described, shard):
+def shard_trials(described, shard):
     """The trials of a shard."""
     first = shard * described["shard_trials"]
     return range(first, min(first + described["shard_trials"], described["trials"]))
@@ -151,7 +151,7 @@ def read_receipt(path, described):
     if shard >= described["shards"]:
         raise Error(str(path), f"a receipt of shard {shard}", f"shards from 0 to {described['shards'] - 1}", "remove it")
     record.at("shard").whole(shard, shard)
-    trials = _shard_trials(described, shard)
+    trials = shard_trials(described, shard)
     record.at("trials").whole(len(trials), len(trials))
     names.require_shard_files(path, listed, shard, trials)
     return record.value
@@ -171,5 +171,5 @@ def read_manifest(path):
 
 
 def receipts_in(root):
-    """The paths of a folder's receipts."""
-    return sorted((Path(root) / "receipts").glob("*.json"))
+    """The places of a folder's receipts."""
+    return Inside(root, "receipts").children(".json")

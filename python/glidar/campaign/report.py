@@ -17,7 +17,8 @@ from PIL import Image
 from glidar import Error
 from glidar._errors import excerpt
 from glidar._pictures import scale_of
-from glidar.campaign import charts, files, folder as folders, index, npz_output, records, rotations
+from glidar.campaign import charts, files, folder as folders, index, names, npz_output, records, rotations
+from glidar.campaign.beneath import Inside
 from glidar.campaign.finish import MANIFEST_FILE
 
 REPORT_FILE = "report.html"
@@ -72,7 +73,7 @@ def _summary(manifest):
 
 def _log_lines(folder):
     lines = []
-    for path in sorted((folder.root / "log").glob("*.jsonl")):
+    for path in filter(names.is_log, Inside(folder.root, "log").children()):
         for text in files.read_bytes(path, files.MAX_JSON_BYTES).decode("utf-8", "replace").splitlines():
             try:
                 entry = json.loads(text)
@@ -251,10 +252,10 @@ def _examples(folder, table, described):
     parts = []
     for trial in chosen:
         receipt = records.read_receipt(folder.receipt(by_trial[trial]), described)
-        names = [n for n in receipt["files"] if n.startswith("npz/")]
-        if not names:
+        shards = [n for n in receipt["files"] if n.startswith("npz/")]
+        if not shards:
             return "<p>Example views require NPZ shards, which this campaign does not write.</p>"
-        found = _pick(folder.root / names[0], trial)
+        found = _pick(folder.place(shards[0]), trial)
         if found:
             parts.append(charts.figure(f"trial {trial}: {found[0]}", _shown(found[1]), found[2]))
     return "".join(parts) or "<p>The NPZ shards contain neither depth, range nor intensity.</p>"
@@ -263,12 +264,12 @@ def _examples(folder, table, described):
 def page(root: str | os.PathLike[str]) -> str:
     """The HTML of the report."""
     folder, described = folders.opened(root)
-    if not (folder.root / MANIFEST_FILE).is_file():
+    if not folder.place(MANIFEST_FILE).is_file():
         raise Error(str(root), "the campaign is not finished", "a folder with manifest.json",
                     "run glidar campaign run again, or merge its parts")
-    manifest = records.read_manifest(folder.root / MANIFEST_FILE)
+    manifest = records.read_manifest(folder.place(MANIFEST_FILE))
     campaign = manifest["plan"]["campaign"]
-    table = index.read(folder.root / index.INDEX_FILE)
+    table = index.read(folder.place(index.INDEX_FILE), described["trials"])
     sections = [("Summary", _summary(manifest)), ("Failures", _failures(table)),
                 ("Distributions", _distributions(table, campaign)),
                 ("Coverage", _coverage(table, campaign)),
@@ -286,7 +287,7 @@ def _require_foreign(root, path):
     if not path.is_relative_to(root):
         return
     name = path.relative_to(root)
-    listed = records.read_manifest(root / MANIFEST_FILE)["files"]
+    listed = records.read_manifest(Inside(root) / MANIFEST_FILE)["files"]
     if name.as_posix() in [*listed, MANIFEST_FILE] or name.parts[:1] in [("receipts",), ("parts",), ("log",)]:
         raise Error(str(path), "it is a file of the campaign", "another name",
                     f"without -o the report is {root / REPORT_FILE}")
@@ -308,9 +309,13 @@ def _write_whole(path, text):
 def write(root: str | os.PathLike[str], path: str | os.PathLike[str] | None = None) -> Path:
     """Writes the report; returns its path."""
     text = page(root)
-    path = Path(path) if path else Path(root) / REPORT_FILE
-    _require_foreign(root, path)
+    own = Inside(root) / REPORT_FILE
+    path = Path(path) if path else own.path
     try:
+        if path == own.path:
+            own.write(text)
+            return path
+        _require_foreign(root, path)
         _write_whole(path, text)
     except OSError as error:
         raise files.write_error(path, error) from None

@@ -11,6 +11,7 @@ from pathlib import Path
 from glidar import Error
 from glidar._inputs import MAX_UINT32, path_of, whole
 from glidar.campaign import bop_models, files, finish as finishing, folder as folders, index, names, records
+from glidar.campaign.beneath import Inside
 from glidar.campaign.folder import CampaignFolder
 from glidar.campaign.local import require_guard, run_local
 from glidar.campaign.plan import Plan, make_plan
@@ -137,8 +138,9 @@ def _measure(plan: Plan, folder: CampaignFolder, todo: list[int], execute: Execu
 def _most_frequent_error(folder: CampaignFolder, shards: Sequence[int]) -> str:
     """The most frequent error of failed trials, with its count."""
     described = records.read_campaign(folder.plan_file())
-    failing = (folder.part(s) for s in shards if records.read_receipt(folder.receipt(s), described)["failed"])
-    counts = index.count_errors(failing)
+    receipts = {shard: records.read_receipt(folder.receipt(shard), described) for shard in shards}
+    counts = index.count_errors(index.read_part(folder.part(shard), described, receipt)
+                                for shard, receipt in receipts.items() if receipt["failed"])
     if not counts:
         return ""
     text, count = counts.most_common(1)[0]
@@ -155,7 +157,7 @@ def _finished(folder: CampaignFolder, rate: float = 0.0) -> Outcome:
     return Outcome(trials, failed, True, 0, rate, _most_frequent_error(folder, shards) if failed else "")
 
 
-def _bad_content(path: Path) -> Error:
+def _bad_content(path: Inside) -> Error:
     return Error(str(path), "its content differs from its receipt", "files as they were written",
                  "remove its receipt and run the part again")
 
@@ -163,35 +165,35 @@ def _bad_content(path: Path) -> Error:
 def _import_file(name, entry, source, target, temp):
     """Copies a file of another folder and checks its hash; returns the copy, or None when the target has the file."""
     digest, _ = entry
-    for root in (source, target):
-        names.require_inside(root, root / name)
-    if (target / name).is_file() and files.hash_file(target / name) == digest:
+    there, here = Inside(source) / name, Inside(target) / name
+    if here.is_file() and files.hash_file(here) == digest:
         return None
-    path = temp.path(Path(name).name)
+    path = temp.path(here.name)
     try:
-        files.copy(source / name, path)
+        files.copy(there, path)
     except OSError as error:
-        raise files.write_error(target / name, error) from None
+        raise files.write_error(here, error) from None
     if files.hash_file(path) != digest:
-        raise _bad_content(source / name)
+        raise _bad_content(there)
     return path
 
 
-def _import_receipt(receipt, source, target, temp, described):
+def _import_receipt(receipt, target, temp, described):
     """Copies all files of a receipt, and then the receipt."""
-    relative = receipt.relative_to(source)
     content = records.read_receipt(receipt, described)
-    known = target / relative
-    for root in (source, target):
-        names.require_inside(root, root / relative)
+    known = Inside(target, *receipt.parts)
     if known.is_file():
         if records.read_receipt(known, described) != content:
             raise Error(str(receipt), f"it differs from {known}", "parts of one campaign give the "
                         "same shard the same content", "check that all parts were run with the same versions")
         return
-    copied = {name: _import_file(name, entry, source, target, temp) for name, entry in sorted(content["files"].items())}
-    files.publish_all(temp, [(path, target / name) for name, path in copied.items() if path],
-                      [target / name for name, path in copied.items() if not path])
+    copied = {name: _import_file(name, entry, receipt.root, target, temp)
+              for name, entry in sorted(content["files"].items())}
+    for name in filter(names.is_part, copied):
+        index.read_part(copied[name] or Inside(target) / name, described, content)
+    places = {name: Inside(target) / name for name in copied}
+    files.publish_all(temp, [(path, places[name]) for name, path in copied.items() if path],
+                      [places[name] for name, path in copied.items() if not path])
     files.write_bytes(temp, known, files.json_bytes(content))
 
 
@@ -204,7 +206,7 @@ def _open_target(target, described, temp):
         files.write_json(temp, target.plan_file(), described)
     for receipt in records.receipts_in(target.root):
         for name in folders.wrong_files(target.root, records.read_receipt(receipt, described)["files"]):
-            raise _bad_content(target.root / name)
+            raise _bad_content(target.place(name))
 
 
 def merge(sources: Sequence[StrPath], root: StrPath, durable: bool = True) -> Outcome:
@@ -231,26 +233,27 @@ def merge(sources: Sequence[StrPath], root: StrPath, durable: bool = True) -> Ou
         for source in map(Path, sources):
             if source.resolve() != target.root.resolve():
                 for receipt in records.receipts_in(source):
-                    _import_receipt(receipt, source, target.root, temp, described)
-                _import_logs(source, target.root)
+                    _import_receipt(receipt, target.root, temp, described)
+                _import_logs(source, target.root, temp)
     files.remove_stale_files(root)
     return _finished(target)
 
 
-def _import_logs(source, target):
-    for log in filter(names.is_log, (source / "log").glob("*.jsonl")):
-        copied = target / "log" / log.name
-        names.require_inside(source, log)
-        names.require_inside(target, copied)
+def _import_logs(source, target, temp):
+    for log in Inside(source, "log").children():
+        if not names.is_log(log):
+            files.note(f"{log}: it is not a log of glidar campaign, and is not copied")
+            continue
+        copied = temp.path(log.name)
         try:
-            copied.parent.mkdir(parents=True, exist_ok=True)
-            files.copy(log, copied)
+            files.copy(log, copied, files.MAX_JSON_BYTES)
         except OSError as error:
-            raise files.write_error(copied, error) from None
+            raise files.write_error(log, error) from None
+        files.publish(temp, copied, Inside(target, "log", log.name))
 
 
 def check(root: StrPath) -> tuple[int, list[str]]:
     """Compares every file with the manifest; returns (number of files, names of those that differ or are missing)."""
     folder, _ = folders.opened(root)
-    listed = records.read_manifest(folder.root / finishing.MANIFEST_FILE)["files"]
+    listed = records.read_manifest(folder.place(finishing.MANIFEST_FILE))["files"]
     return len(listed), list(folders.wrong_files(folder.root, listed))

@@ -63,7 +63,7 @@ class ShardWriter:
             digest, size = files.hash_file(path), path.stat().st_size
             name = name.replace("{hash}", digest[:NAME_DIGITS])
             listed[name] = [digest, size]
-            published.append((path, self._folder.root / name))
+            published.append((path, self._folder.place(name)))
         files.publish_all(self._temp, published)
         failed = sum(1 for text in self._errors if text)
         receipt = {"shard": self._shard, "trials": len(self._trials), "failed": failed,
@@ -72,4 +72,4 @@ class ShardWriter:
         return len(self._trials), failed
 
     def _part_name(self):
-        return str(self._folder.part(self._shard).relative_to(self._folder.root))
+        return self._folder.part(self._shard).relative

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from glidar import Error
 from glidar._errors import excerpt
+from glidar._printing import print_line
 from glidar.campaign import files, run as running
 
 TASKS = 8
@@ -64,14 +65,13 @@ def _sbatch(script, *options):
 
 
 def _write_scripts(folder, texts):
-    paths = [folder.root / "log" / f"{name}.sbatch" for name in ("array", "merge")]
-    for path, text in zip(paths, texts):
+    places = [folder.place(f"log/{name}.sbatch") for name in ("array", "merge")]
+    for place, text in zip(places, texts):
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+            place.write(text)
         except OSError as error:
-            raise files.write_error(path, error) from None
-    return paths
+            raise files.write_error(place, error) from None
+    return [place.path for place in places]
 
 
 def _submit_array(paths):
@@ -95,8 +95,8 @@ def submit(flags):
         count = min(flags.tasks or TASKS, plan.shards)
         paths = _write_scripts(folder, scripts(flags, count))
         array = _submit_array(paths)
-    print(f"submitted job {array}: {count} tasks", flush=True)
+    print_line(f"submitted job {array}: {count} tasks")
     wait = ["--wait"] if flags.wait else []
     merge = _sbatch(paths[1], f"--dependency=afterany:{array}", *wait)
-    print(f"submitted job {merge}: merge, after all tasks", flush=True)
+    print_line(f"submitted job {merge}: merge, after all tasks")
     return running.merge([flags.output], flags.output, flags.durable) if flags.wait else None

@@ -6,12 +6,14 @@ import hashlib
 import json
 import os
 import shutil
+import socket
 
 import numpy as np
 import pytest
 
 from glidar import Error
 from glidar.campaign import files, names, npz_output, records, report, run
+from glidar.campaign.beneath import Inside
 
 
 @pytest.fixture(scope="module")
@@ -106,9 +108,127 @@ def test_links_out_of_a_campaign_are_not_followed(folder, root):
         (folder / "p1" / "npz").rename(outside)
     (folder / root / "npz").symlink_to(outside)
     before = sorted(outside.iterdir())
-    with pytest.raises(Error, match="a link leads out of the campaign's folder"):
+    with pytest.raises(Error, match="'npz' is a link; allowed: a campaign's folder without links"):
         merge(folder)
     assert sorted(outside.iterdir()) == before
+
+
+WRITTEN = ["log", "tmp", "parts", "receipts", "npz", "kitti", "bop"]
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+def test_a_run_follows_no_linked_folder(parts, folder, name):
+    outside = folder / "outside"
+    if (folder / "p1" / name).exists():
+        (folder / "p1" / name).rename(outside)
+    outside.mkdir(exist_ok=True)
+    (outside / f"{socket.gethostname()}-2147483647-0123abcd" / "keep").mkdir(parents=True)
+    (folder / "p1" / name).symlink_to(outside)
+    if name != "receipts":
+        (folder / "p1" / "receipts" / "000001.json").unlink()  # so that the shard is measured again
+    before = contents(outside)
+    with pytest.raises(Error, match=f"'{name}' is a link"):
+        run.run(parts / "campaign.yaml", folder / "p1", run.ShardSubset(1, 2), workers=1, quiet=True)
+    assert contents(outside) == before
+
+
+def contents(folder):
+    """All files below with their bytes."""
+    return {path.relative_to(folder).as_posix(): path.read_bytes() if path.is_file() else None
+            for path in sorted(folder.rglob("*"))}
+
+
+def test_a_run_appends_to_no_linked_log(parts, folder):
+    (folder / "p1" / "receipts" / "000001.json").unlink()
+    victim = folder / "victim"
+    victim.write_text("mine\n")
+    shutil.rmtree(folder / "p1" / "log")
+    (folder / "p1" / "log").mkdir()
+    (folder / "p1" / "log" / f"{socket.gethostname()}-{os.getpid()}.jsonl").symlink_to(victim)
+    with pytest.raises(Error, match=r"\.jsonl' is a link"):
+        run.run(parts / "campaign.yaml", folder / "p1", run.ShardSubset(1, 2), workers=1, quiet=True)
+    assert victim.read_text() == "mine\n"
+
+
+@pytest.mark.parametrize("name", ["parts/000001.parquet", "receipts/000001.json", "campaign.json"])
+def test_linked_files_of_a_campaign_are_not_read(parts, folder, name):
+    (folder / "p1" / name).rename(folder / "outside")
+    (folder / "p1" / name).symlink_to(folder / "outside")
+    with pytest.raises(Error, match="is a link"):
+        run.run(parts / "campaign.yaml", folder / "p1", run.ShardSubset(1, 2), workers=1, quiet=True)
+
+
+def test_the_report_replaces_a_link_in_its_place(folder):
+    (folder / "victim").write_text("mine")
+    (folder / "whole" / "report.html").symlink_to(folder / "victim")
+    report.write(folder / "whole")
+    assert (folder / "victim").read_text() == "mine"
+    assert (folder / "whole" / "report.html").read_text().startswith("<!doctype html>")
+
+
+@pytest.mark.parametrize("pid", ["99999999999999999999", "2147483648", "\u00b2", "-1", "", "1 "])
+def test_other_folders_among_the_temporary_ones_stay_with_a_note(folder, pid, caplog):
+    name = f"{socket.gethostname()}-{pid}-0123abcd"
+    (folder / "p1" / "tmp" / name).mkdir(parents=True)
+    files.remove_stale_files(folder / "p1")
+    assert (folder / "p1" / "tmp" / name).is_dir()
+    assert "it is not a folder of glidar campaign, and stays" in caplog.text
+
+
+def test_temporary_folders_of_ended_processes_are_removed_without_following_links(folder):
+    outside, stale = folder / "outside", folder / "p1" / "tmp" / f"{socket.gethostname()}-2147483647-0123abcd"
+    other = folder / "p1" / "tmp" / "another.host-2147483647-0123abcd"
+    for made in (outside, stale, other):
+        made.mkdir(parents=True)
+    (outside / "keep").write_text("mine")
+    (stale / "link").symlink_to(outside)
+    files.remove_stale_files(folder / "p1")
+    assert not stale.exists() and other.is_dir() and (outside / "keep").read_text() == "mine"
+
+
+def rewrite_part(folder, edit):
+    """Replaces the part of shard 1 by an edited table, and its hash in the receipt."""
+    import pyarrow.parquet as pq
+
+    path = folder / "p1" / "parts" / "000001.parquet"
+    pq.write_table(edit(pq.read_table(path)), path, compression="zstd")
+    change(folder / "p1" / "receipts" / "000001.json",
+           lambda r: r["files"].update(listing(path.read_bytes(), "parts/000001.parquet")))
+
+
+def replaced(table, name, values):
+    import pyarrow as pa
+
+    return table.set_column(table.schema.get_field_index(name), name, pa.array(values))
+
+
+FORGED_PARTS = {
+    "3000000 rows": lambda table: table.take([0] * 3_000_000),
+    "0 rows": lambda table: table.slice(0, 0),
+    "3 rows": lambda table: table.slice(0, 3),
+    "column trial differs": lambda table: replaced(table, "trial", [4, 5, 6, 6]),
+    "column shard differs": lambda table: replaced(table, "shard", [1, 1, 1, 0]),
+    "column ok differs": lambda table: replaced(table, "ok", [True, True, True, False]),
+    "column note": lambda table: table.append_column("note", table["scene"]),
+    "MiB": lambda table: replaced(table, "error", ["x" * (6 << 20)] * 4),
+}
+
+
+@pytest.mark.parametrize("found", FORGED_PARTS)
+def test_the_rows_of_a_part_are_those_of_its_receipt(folder, found):
+    rewrite_part(folder, FORGED_PARTS[found])
+    with pytest.raises(Error, match=found):
+        merge(folder)
+    assert not (folder / "new" / "index.parquet").exists()
+    assert not (folder / "new" / "parts" / "000001.parquet").exists()
+
+
+def test_names_in_a_campaigns_folder_lead_nowhere_else(folder):
+    for name in ("../x", "a/../../x", "/etc/passwd", "a//b", ".", "", "a\0b"):
+        with pytest.raises(Error, match="not the name of a file in this folder"):
+            Inside(folder) / name
+    with pytest.raises(TypeError):
+        open(Inside(folder) / "campaign.yaml")
 
 
 def test_pipes_and_devices_in_a_part_are_rejected_without_blocking(folder):
@@ -126,11 +246,12 @@ def test_pipes_and_devices_in_a_part_are_rejected_without_blocking(folder):
         files.hash_file("/dev/zero")
 
 
-def test_merge_copies_only_log_files_as_logs(folder):
+def test_merge_copies_only_log_files_as_logs(folder, caplog):
     (folder / "p1" / "log" / ".x;rm.jsonl").write_text("{}")
     merge(folder)
-    taken = {path.name for path in (folder / "new" / "log").iterdir()}
-    assert taken and all(names.is_log(name) for name in taken)
+    taken = list((folder / "new" / "log").iterdir())
+    assert taken and all(names.is_log(path) for path in taken)
+    assert "it is not a log of glidar campaign, and is not copied" in caplog.text
 
 
 MALFORMED = {
