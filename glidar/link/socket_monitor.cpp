@@ -3,12 +3,14 @@
 #include <glidar/link/socket_monitor.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/link/heap_trimmer.hpp>
 
 #include <sys/eventfd.h>
 #include <unistd.h>
 #include <zmq.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -114,15 +116,21 @@ void SocketMonitor::run() {
       zmq_pollitem_t{.socket = reports_, .fd = 0, .events = ZMQ_POLLIN, .revents = 0},
       zmq_pollitem_t{.socket = nullptr, .fd = ending_.get(), .events = ZMQ_POLLIN, .revents = 0}};
   auto looked = ConnectionGuard::Clock::now();
+  HeapTrimmer trimmer;
   while (items[1].revents == 0) {
-    const long at_most_ms = guard_->needs_check() ? ConnectionGuard::kCheckInterval.count() : -1;
+    const long idle_ms =
+        trimmer.is_waiting() ? std::chrono::milliseconds(HeapTrimmer::kPause).count() : -1;
+    const long at_most_ms =
+        guard_->needs_check() ? ConnectionGuard::kCheckInterval.count() : idle_ms;
     zmq_poll(items.data(), static_cast<int>(items.size()), at_most_ms);
     for (int i = 0; i < kMaxAtOnce; ++i) {
       const std::optional<Notice> notice = receive(reports_);
       if (!notice) break;
       pass_on(*notice, *guard_);
+      if (notice->event == ZMQ_EVENT_DISCONNECTED) trimmer.expect();
     }
     const auto now = ConnectionGuard::Clock::now();
+    trimmer.check(now);
     if (now - looked < ConnectionGuard::kCheckInterval) continue;
     looked = now;
     guard_->check_limits();

@@ -62,14 +62,26 @@ class SoakTest(unittest.TestCase):
         self.assertEqual(run.findings.errors, ["glidar ended before its time"])
 
     def test_memory_that_grows_is_a_fault(self):
-        self.assertEqual(soak.find_errors(findings(), memory(0.0)), [])
-        self.assertEqual(soak.find_errors(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800)), [])
-        errors = soak.find_errors(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800))
+        self.assertEqual(soak.find_errors(findings(), memory(0.0), [{}, {}]), [])
+        self.assertEqual(soak.find_errors(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800), [{}, {}]), [])
+        errors = soak.find_errors(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800), [{}, {}])
         self.assertEqual(len(errors), 1)
         self.assertIn("lock-step: memory grew by 2.2 MB", errors[0])
 
+    def test_bytes_held_for_clients_that_have_left_are_a_fault(self):
+        stats = [{"held_bytes": soak.HELD_TOLERANCE_BYTES + 1}, {}]
+        self.assertEqual(soak.find_errors(findings(), memory(0.0), stats),
+                         [f"lock-step: it holds {soak.HELD_TOLERANCE_BYTES + 1} bytes for clients that have left"])
+
+    def test_memory_returns_to_its_level_after_attackers(self):
+        said, complained = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
+            code = soak.main(["--seconds", "10", "--hostile"])
+        self.assertEqual(code, 0, said.getvalue() + complained.getvalue())
+        self.assertIn("cut off or refused", said.getvalue())
+
     def test_a_client_that_does_nothing_is_a_fault(self):
-        self.assertEqual(soak.find_errors(soak.Findings(), memory(0.0)), ["a client did nothing"])
+        self.assertEqual(soak.find_errors(soak.Findings(), memory(0.0), [{}, {}]), ["a client did nothing"])
 
 
 if __name__ == "__main__":

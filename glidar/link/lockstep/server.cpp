@@ -150,7 +150,7 @@ void Server::drop(const ReplyTo& to) {
 
 bool Server::reserve(ReplyTo& to, std::int64_t bytes) {
   if (to.reserved_bytes > 0) return true;
-  const std::int64_t used = queue_.waiting_bytes() + queue_.all_unread()->bytes + reserved_bytes_;
+  const std::int64_t used = held_bytes();
   if (used > 0 && used + bytes > link::bytes_of_mib(limits_.memory_mib)) {
     cut_off_stalled_clients(std::chrono::seconds(1));
     return false;
@@ -158,6 +158,10 @@ bool Server::reserve(ReplyTo& to, std::int64_t bytes) {
   to.reserved_bytes = bytes;
   reserved_bytes_ += bytes;
   return true;
+}
+
+std::int64_t Server::held_bytes() const {
+  return queue_.waiting_bytes() + queue_.all_unread()->bytes + reserved_bytes_;
 }
 
 void Server::reply(const ReplyTo& to, std::span<const CloudReply> clouds) {

@@ -71,6 +71,9 @@ class Server {
   /// Maximum time to wait for the socket before receive() is called again.
   [[nodiscard]] std::chrono::milliseconds poll_timeout() const;
 
+  /// Memory of queued requests, unread replies and reservations for replies.
+  [[nodiscard]] std::int64_t held_bytes() const;
+
   struct Counts {
     std::uint64_t received = 0;
     std::uint64_t refused = 0;  ///< requests answered with an error
