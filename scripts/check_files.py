@@ -40,6 +40,21 @@ CODE_ELSE = re.compile(r'"(?:\\.|[^"\\])*"|//.*')  # strings and comments
 PORTABLE_FOLDERS = ("glidar/", "apps/", "python/src/")
 NOT_ON_THE_DATA_PATH = ("glidar/verify/",)  # closed forms, which share nothing with what they check
 
+# Everything that is printed is made printable in one place, because texts may be from files.
+PRINTS = {".cpp": re.compile(r"\bfmt::print(?:ln)?\b|\bstd::(?:cout|cerr|clog|print(?:ln)?)\b|"
+                             r"(?<![\w.>])(?:std::)?(?:f?printf|f?puts|f?putc|putchar|fwrite|perror)\("),
+          ".py": re.compile(r"(?<![\w.])print\(|\bsys\.(?:__)?std(?:err|out)(?:__)?\.write")}
+PRINTERS = {
+    "apps/glidar/run/printing.cpp": "makes lines printable",
+    "apps/glidar/run/console.cpp": "draws the progress display",
+    "python/glidar/_printing.py": "makes lines printable",
+}
+
+
+def must_not_print(path):
+    """True where the rule holds."""
+    return path.startswith((*PORTABLE_FOLDERS, "python/glidar/")) and path not in PRINTERS
+
 
 def must_be_portable(path):
     """True where the rule holds."""
@@ -68,6 +83,11 @@ def check_text(path, text):
             if found := NOT_PORTABLE.search(CODE_ELSE.sub("", line)):
                 complaints.append(f"{path}:{number}: '{found[0].strip('.>(')}' has other bits on other machines; "
                                   "use glidar/math/portable.hpp, elementary.hpp or double_double.hpp")
+    if must_not_print(path):
+        prints = PRINTS.get(Path(path).suffix.replace(".hpp", ".cpp"))
+        complaints += [f"{path}:{number}: prints; use apps/glidar/run/printing.hpp or python/glidar/_printing.py"
+                       for number, line in enumerate(lines, 1)
+                       if prints and prints.search(CODE_ELSE.sub("", line) if path.endswith("pp") else line)]
     return complaints
 
 

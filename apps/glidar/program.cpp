@@ -4,6 +4,7 @@
 
 #include <apps/glidar/options/help_text.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/exr_encoder.hpp>
@@ -173,7 +174,7 @@ std::string version_text(bool has_viewer) {
 }  // namespace
 
 int report_error(const std::string& message) {
-  std::fputs(fmt::format("glidar: error: {}\n", message).c_str(), stderr);
+  print(stderr, "glidar: error: {}\n", message);
   return kBadInput;
 }
 

@@ -5,6 +5,7 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
@@ -193,7 +194,7 @@ void ViewerWindow::print_state(bool is_hidden) {
   const MouseInput& mouse = window_->mouse();
   const std::optional<std::size_t> selected = viewer_.selection().object();
   const std::int64_t object = selected ? static_cast<std::int64_t>(*selected) : -1;
-  fmt::print(
+  print(
       "state: picture={} frame={} size={}x{} hidden={} x={} y={} buttons={} wheel={} keys={} "
       "object={} sensor={}\n",
       drawn_, viewer_.snapshot()->request.number, size.width, size.height, is_hidden ? 1 : 0,
@@ -266,8 +267,8 @@ int run(ViewFlags& flags) {
     window.run_frames(*flags.frames);
     const double seconds = seconds_since(start);
     if (!flags.render.quiet) {
-      fmt::print("{} frames in {:.2f} s: {:.1f} frames/s\n", *flags.frames, seconds,
-                 *flags.frames / seconds);
+      print("{} frames in {:.2f} s: {:.1f} frames/s\n", *flags.frames, seconds,
+            *flags.frames / seconds);
     }
   }
   if (screenshot) {
@@ -277,7 +278,7 @@ int run(ViewFlags& flags) {
     write_png(picture, "the window of glidar view", *screenshot);
     screenshot->commit();
   }
-  if (!flags.render.quiet) fmt::print("drew {} frames of the window\n", window.drawn());
+  if (!flags.render.quiet) print("drew {} frames of the window\n", window.drawn());
   return kDone;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
 
 #include <algorithm>
@@ -15,6 +16,14 @@
 
 namespace glidar {
 namespace {
+
+/// The parts hold names and words of files.
+ErrorParts printable(const ErrorParts& parts) {
+  return {.where = printable_line(parts.where),
+          .found = printable_line(parts.found),
+          .allowed = printable_line(parts.allowed),
+          .remedy = printable_line(parts.remedy)};
+}
 
 std::string sentence(const ErrorParts& parts) {
   std::string text = parts.where.empty() ? parts.found : parts.where + ": " + parts.found;
@@ -81,7 +90,8 @@ std::optional<std::size_t> dissimilarity(std::string_view word, std::string_view
 
 }  // namespace
 
-Error::Error(ErrorParts parts) : std::runtime_error(sentence(parts)), parts_(std::move(parts)) {}
+Error::Error(const ErrorParts& parts)
+    : std::runtime_error(sentence(printable(parts))), parts_(printable(parts)) {}
 
 std::string number_text(double value) {
   std::array<char, 32> text{};  // the longest double has 24 characters

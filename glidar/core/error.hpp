@@ -18,11 +18,14 @@ struct ErrorParts {
 };
 
 /// The only exception type of GLIDAR. It is thrown where the cause is known and caught once, in
-/// `main`, a language binding or a socket. what() is "where: found; allowed: ...; remedy".
+/// `main`, a language binding or a socket. what() is "where: found; allowed: ...; remedy": one
+/// line, whatever the parts contain, see printable_line().
 class Error : public std::runtime_error {
  public:
-  explicit Error(ErrorParts parts);
-  [[nodiscard]] const ErrorParts& parts() const noexcept { return parts_; }
+  explicit Error(const ErrorParts& parts);
+  [[nodiscard]] const ErrorParts& parts() const noexcept {  // printable too
+    return parts_;
+  }
 
  private:
   ErrorParts parts_;

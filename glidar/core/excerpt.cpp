@@ -5,6 +5,8 @@
 #include <glidar/core/text.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 namespace glidar {
 namespace {
@@ -14,29 +16,76 @@ bool continues_character(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
 }
 
-/// Bytes of the printable UTF-8 character at the start of the text; 0: there is none. U+0080 to
-/// U+009F control terminals too.
+struct CodePointRange {
+  std::uint32_t first;
+  std::uint32_t last;
+};
+
+/// Characters that terminals obey, that change the order of their neighbours (Unicode UAX #9), that
+/// end lines, or that nobody sees.
+constexpr std::array kNotShown = {
+    CodePointRange{0x00, 0x1F},        // C0: ESC begins a control sequence
+    CodePointRange{0x7F, 0x9F},        // DEL and C1: U+009B begins one too
+    CodePointRange{0xAD, 0xAD},        // soft hyphen
+    CodePointRange{0x61C, 0x61C},      // Arabic letter mark
+    CodePointRange{0x180E, 0x180E},    // Mongolian vowel separator
+    CodePointRange{0x200B, 0x200F},    // zero width, and direction marks
+    CodePointRange{0x2028, 0x202E},    // separators of lines; embeddings and overrides
+    CodePointRange{0x2060, 0x206F},    // invisible operators; isolates
+    CodePointRange{0xFEFF, 0xFEFF},    // byte order mark
+    CodePointRange{0xFFF9, 0xFFFB},    // annotations
+    CodePointRange{0xE0000, 0xE007F},  // tags
+};
+
+/// The code point of a valid UTF-8 character of `size` bytes.
+std::uint32_t code_point(std::string_view text, std::size_t size) {
+  constexpr std::array<unsigned, 5> kFirstBits = {0, 0x7FU, 0x1FU, 0x0FU, 0x07U};
+  std::uint32_t value = static_cast<unsigned char>(text[0]) & kFirstBits.at(size);
+  for (std::size_t i = 1; i < size; ++i)
+    value = (value << 6U) | (static_cast<unsigned char>(text[i]) & 0x3FU);
+  return value;
+}
+
+/// Bytes of the printable UTF-8 character at the start of the text; 0: there is none.
 std::size_t printable_size(std::string_view text) {
   const std::size_t size = utf8_size(text);
-  const auto byte_at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (size == 1 && (byte_at(0) < 0x20U || byte_at(0) == 0x7FU)) return 0;
-  if (size == 2 && byte_at(0) == 0xC2U && byte_at(1) < 0xA0U) return 0;
-  return size;
+  if (size == 0) return 0;
+  const std::uint32_t value = code_point(text, size);
+  const bool is_hidden = std::any_of(
+      kNotShown.begin(), kNotShown.end(),
+      [&](const CodePointRange& range) { return value >= range.first && value <= range.last; });
+  return is_hidden ? 0 : size;
+}
+
+/// The text with '?' for what is not printable; the characters in `kept` remain.
+std::string printable(std::string_view text, std::string_view kept) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const bool is_kept = kept.find(text.front()) != std::string_view::npos;
+    const std::size_t size = is_kept ? 1 : printable_size(text);
+    result += size == 0 ? "?" : text.substr(0, size);
+    text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return result;
 }
 
 }  // namespace
+
+std::string printable_line(std::string_view text) {
+  return printable(text, "");
+}
+
+std::string printable_lines(std::string_view text) {
+  return printable(text, "\n\t");
+}
 
 std::string excerpt(std::string_view text, std::size_t max_bytes) {
   constexpr std::string_view kCut = "...";
   const bool is_cut = text.size() > max_bytes;
   std::size_t size = is_cut ? max_bytes - std::min(max_bytes, kCut.size()) : text.size();
   while (is_cut && size > 0 && continues_character(text[size])) --size;
-  std::string line;
-  for (std::string_view rest = text.substr(0, size); !rest.empty();) {
-    const std::size_t printable = printable_size(rest);
-    line += printable == 0 ? "?" : rest.substr(0, printable);
-    rest.remove_prefix(std::max<std::size_t>(printable, 1));
-  }
+  std::string line = printable_line(text.substr(0, size));
   return is_cut ? line.append(kCut) : line;
 }
 

@@ -17,18 +17,15 @@ ProgressCallback subrange(const ProgressCallback& whole, double begin, double en
 enum class Severity { info, warning };
 
 /// Callbacks for messages and progress, because the library prints nothing. Empty functions report
-/// nothing. `progress` may be called from worker threads, one call at a time; a negative fraction
+/// nothing. `log` gets one printable line, whatever the message contains, see printable_line().
+/// `progress` may be called from worker threads, one call at a time; a negative fraction
 /// means unknown.
 struct Report {
   std::function<void(Severity, std::string_view message)> log;
   std::function<void(std::string_view task, double fraction_done)> progress;
 
-  void info(std::string_view message) const {
-    if (log) log(Severity::info, message);
-  }
-  void warn(std::string_view message) const {
-    if (log) log(Severity::warning, message);
-  }
+  void info(std::string_view message) const;
+  void warn(std::string_view message) const;
 };
 
 }  // namespace glidar

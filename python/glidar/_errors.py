@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The only exception type of GLIDAR."""
 
-import re
 import reprlib
 
 from . import _core
@@ -10,13 +9,22 @@ from . import _core
 MAX_QUOTED_BYTES = 200
 _BRIEF = reprlib.Repr()
 _BRIEF.maxstring = _BRIEF.maxother = MAX_QUOTED_BYTES
-_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029]")
+
+
+def _utf8(text: object) -> str:
+    """Text that C++ takes: Python's may have halves of surrogate pairs, for bytes of file names."""
+    return str(text).encode("utf-8", "backslashreplace").decode()
 
 
 def excerpt(text: object, max_bytes: int = MAX_QUOTED_BYTES) -> str:
-    """Text of a file or an argument for an error: one line of at most `max_bytes`, without control characters."""
-    data = _CONTROL.sub("?", str(text)).encode("utf-8", "backslashreplace")
-    return data.decode() if len(data) <= max_bytes else data[: max_bytes - 3].decode("utf-8", "ignore") + "..."
+    """Text of a file or an argument for an error: a printable line of at most `max_bytes`."""
+    return _core.excerpt(_utf8(text), max_bytes)
+
+
+def printable(text: object) -> str:
+    """The text as a line that people may see: '?' replaces control characters, those that change the order of others
+    or are invisible, and bytes that are not UTF-8. Everything that is printed passes through this function."""
+    return _core.printable_line(_utf8(text))
 
 
 def shown(value: object) -> str:
@@ -28,7 +36,8 @@ def shown(value: object) -> str:
 
 
 class Error(Exception):
-    """Invalid input. ``str`` is the message that the command line prints.
+    """Invalid input. ``str`` is the message that the command line prints: one printable line, whatever the input
+    contains, like all attributes.
 
     Attributes:
         where: file:line:column, field, argument or file name.
@@ -38,12 +47,8 @@ class Error(Exception):
     """
 
     def __init__(self, where: str, found: str, allowed: str = "", remedy: str = "") -> None:
-        super().__init__(where, found, allowed, remedy)
-        self.where = where
-        self.found = found
-        self.allowed = allowed
-        self.remedy = remedy
+        self.where, self.found, self.allowed, self.remedy = map(printable, (where, found, allowed, remedy))
+        super().__init__(self.where, self.found, self.allowed, self.remedy)
 
     def __str__(self) -> str:
-        parts = (self.where, self.found, self.allowed, self.remedy)
-        return _core.error_text(*(str(part).encode("utf-8", "backslashreplace").decode() for part in parts))
+        return _core.error_text(*map(_utf8, (self.where, self.found, self.allowed, self.remedy)))

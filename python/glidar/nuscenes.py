@@ -28,6 +28,7 @@ from ._errors import Error, shown
 from ._inputs import MAX_UINT64, floats, path_of, whole
 from ._nuscenes_scene import SceneWriter, channels_of
 from ._nuscenes_tables import token
+from ._printing import print_line, print_message
 from ._scene import Scene, load_scene
 from ._scene_data import not_a_scene
 from ._trajectory import PoseLike, trajectories
@@ -200,12 +201,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
             for path in given.scenes:
                 data.add_scene(load_scene(path), duration_s=given.duration, seed=given.seed)
     except Error as error:
-        print(f"glidar.nuscenes: {error}", file=sys.stderr)
+        print_message(f"glidar.nuscenes: {error}")
         return 2
     except KeyboardInterrupt:
-        print("glidar.nuscenes: interrupted; nothing was written", file=sys.stderr)
+        print_message("glidar.nuscenes: interrupted; nothing was written")
         return 130
-    print(f"wrote {given.output}")
+    print_line(f"wrote {given.output}")
     return 0
 
 

@@ -3,6 +3,7 @@
 #include "report.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 
 #include <nanobind/stl/string.h>
 
@@ -33,6 +34,13 @@ void bind_errors(nb::module_& module) {
   nb::register_exception_translator(raise);
   module.def("error_text", error_text, nb::arg("where"), nb::arg("found"), nb::arg("allowed"),
              nb::arg("remedy"), "The sentence that an error reads.");
+  module.def(
+      "excerpt",
+      [](const std::string& text, std::size_t max_bytes) { return excerpt(text, max_bytes); },
+      nb::arg("text"), nb::arg("max_bytes"), "A printable line of at most `max_bytes`.");
+  module.def(
+      "printable_line", [](const std::string& text) { return printable_line(text); },
+      nb::arg("text"), "The text without characters that control a terminal.");
 }
 
 }  // namespace glidar::python

@@ -5,7 +5,9 @@
 
 import json
 import os
+import struct
 import unittest
+import zipfile
 
 import numpy as np
 from cli_support import CliTest
@@ -17,6 +19,95 @@ class DecodeTest(CliTest):
     def arrays(self, name):
         with np.load(os.path.join(self.folder, name)) as stored:
             return {key: stored[key] for key in stored.files}
+
+
+class Cdr:
+    """Serializes members of a message of ROS 2."""
+
+    def __init__(self):
+        self.data = b""
+
+    def add(self, form, *values):
+        size = struct.calcsize("<" + form[0])
+        self.data += bytes(-len(self.data) % size) + struct.pack("<" + form, *values)
+        return self
+
+    def text(self, text):
+        self.add("I", len(text) + 1).data += text + b"\0"
+        return self
+
+    def message(self):
+        return b"\0\1\0\0" + self.data
+
+
+def cloud_message(names, frame_id=b"map"):
+    """A PointCloud2 of one point with these fields of one byte behind x, y and z; a byte's value is its index."""
+    message = Cdr().add("iI", 1, 0).text(frame_id).add("III", 1, 1, 3 + len(names))
+    for i, name in enumerate([b"x", b"y", b"z", *names]):
+        message.text(name).add("I", 4 * i if i < 3 else 9 + i).add("B", 7 if i < 3 else 2).add("I", 1)
+    data = struct.pack("<3f", 1, 2, 3) + bytes(range(len(names)))
+    message.add("B", 0).add("II", len(data), len(data)).add("I", len(data)).data += data + b"\1"
+    return message.message()
+
+
+def mcap_of(message, topic=b"/points"):
+    """A bag with a message PointCloud2: mcap.dev/spec."""
+    def text(value):
+        return struct.pack("<I", len(value)) + value
+
+    def record(kind, content):
+        return bytes([kind]) + struct.pack("<Q", len(content)) + content
+
+    magic = b"\x89MCAP0\r\n"
+    return magic + b"".join([
+        record(1, text(b"ros2") + text(b"test")),
+        record(3, struct.pack("<H", 1) + text(b"sensor_msgs/msg/PointCloud2") + text(b"ros2msg") + text(b"")),
+        record(4, struct.pack("<HH", 1, 1) + text(topic) + text(b"cdr") + struct.pack("<I", 0)),
+        record(5, struct.pack("<HIQQ", 1, 0, 0, 0) + message),
+        record(15, struct.pack("<I", 0)), record(2, struct.pack("<QQI", 0, 0, 0))]) + magic
+
+
+class Names(DecodeTest):
+    """Names in bags of others."""
+
+    HOSTILE = [b"../../../evil", b"/etc/passwd", b"a\nelement face 99\nproperty list uchar int v", b"=cmd|x,\"", b"=cmd|y,\"",
+               b"@SUM(1)", b"-1", b"a,b", b"a\tb", b"\x1b]0;T\x07", b"\xff\xfe", b"\xe2\x80\xaeevil", b"seed", b"stamp_ns",
+               b"xyz", b"world_from_sensor", b"normal", b"n" * 70_000, b"n" * 70_001]
+
+    def decode(self, names, *outputs, frame_id=b"map"):
+        with open(os.path.join(self.folder, "in.mcap"), "wb") as file:
+            file.write(mcap_of(cloud_message(names, frame_id)))
+        self.succeed("decode", "in.mcap", *(word for output in outputs for word in ("-o", output)))
+
+    def test_names_of_fields_have_letters_digits_and_underscores_in_every_output(self):
+        self.decode(self.HOSTILE, "o.npz", "o.ply", "o.pcd", "o.csv", frame_id=b"map\nelement face 9\xe2\x80\xa8x")
+        with zipfile.ZipFile(os.path.join(self.folder, "o_000000.npz")) as archive:
+            members = archive.namelist()
+        self.assertEqual(len(members), len(set(members)))
+        for member in members:
+            self.assertRegex(member, r"\A[A-Za-z0-9_]{1,96}\.npy\Z")
+        ply = self.bytes_of("o_000000.ply").split(b"end_header\n")[0].decode().splitlines()
+        self.assertEqual([line.split()[0] for line in ply if line.split()[0] == "element"], ["element"])
+        fields = [line.split()[-1] for line in ply if line.startswith("property")]
+        pcd = self.bytes_of("o_000000.pcd").split(b"DATA")[0].decode().splitlines()
+        csv = self.bytes_of("o_000000.csv").decode().splitlines()
+        self.assertEqual(len(csv), 2)
+        for names in (fields, pcd[3].split()[1:], csv[0].split(",")):
+            self.assertEqual(len(names), 3 + len(self.HOSTILE))
+            self.assertEqual(len(names), len(set(names)))
+            for name in names:
+                self.assertRegex(name, r"\A[A-Za-z0-9_]{1,96}\Z")
+
+    def test_names_that_become_the_same_are_numbered_in_their_order(self):
+        self.decode([b"a.b", b"a-b", b"a_b", b"seed"], "o.npz")
+        found = self.arrays("o_000000.npz")
+        self.assertEqual([int(found[name][0, 0]) for name in ("a_b", "a_b_2", "a_b_3", "seed_2")], [0, 1, 2, 3])
+        self.assertEqual(found["seed"].shape, ())
+
+    def test_a_field_named_like_a_column_of_three_numbers_has_its_one(self):
+        self.decode([b"normal", b"colour"], "o.ply", "o.pcd", "o.csv")
+        self.assertEqual(self.bytes_of("o_000000.csv"), b"x,y,z,normal,colour\n1,2,3,0,1\n")
+        self.assertIn(b"property uchar normal\n", self.bytes_of("o_000000.ply"))
 
 
 class Decode(DecodeTest):

@@ -4,6 +4,7 @@
 
 import json
 import os
+import unicodedata
 import unittest
 
 from cli_support import BOX, CliTest
@@ -87,6 +88,68 @@ class Text(CliTest):
                 done = self.succeed(*command)
                 self.assertNotIn("\x1b", done.stdout + done.stderr)
         self.assertIn("m?[31m", self.succeed("info", "red.obj").stdout)
+
+    HOSTILE = "\x1b]0;TITLE\x07\x1b[31m\x9b2J\u202eevil\u2066\u200b"  # a title, red, erase; order and invisible
+
+    def require_harmless(self, *texts):
+        for text in texts:
+            found = [character for character in text
+                     if character != "\n" and (unicodedata.category(character) in ("Cc", "Cf", "Zl", "Zp", "Cs"))]
+            self.assertEqual(found, [], text)
+
+    def run_harmless(self, *command):
+        done = self.run_program(*command)
+        self.require_harmless(done.stdout, done.stderr)
+        return done
+
+    def test_text_of_files_in_errors_notes_and_tables_is_printable(self):
+        bad = self.HOSTILE
+        quoted = json.dumps(bad)
+        self.write("m.mtl", f"newmtl a{bad}\nmap_Kd {bad}.png\n")
+        self.write("m.obj", f"mtllib m.mtl\nmtllib {bad}.mtl\no {bad}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a{bad}\nf 1 2 3\n")
+        self.write("box.obj", BOX)
+        self.write("scene.yaml", f"models:\n  - {{model: box.obj, name: {quoted}, class: {quoted}}}\n")
+        self.write("missing.yaml", f"models:\n  - {{model: {quoted}}}\n")
+        self.write("key.yaml", f"{quoted}: 1\n")
+        self.write("material.yaml", f"models:\n  - {{model: m.obj, materials: {{{quoted}: {{surface: {quoted}}}}}}}\n")
+        self.write("sensor.yaml", f"name: {quoted}\nnotes: [{quoted}]\noptics: {{type: pinhole, width: 8, height: 8, fov_deg: 30}}\n")
+        self.write("beams.yaml", f"name: t\noptics: {{type: table, file: {quoted}}}\n")
+        self.write("rows.yaml", "name: t\noptics: {type: table, file: rows.csv}\n")
+        self.write("rows.csv", f"Time/s,Azimuth/deg,Zenith/deg\n{bad},1,2\n")
+        self.write("head.yaml", "name: t\noptics: {type: table, file: head.csv}\n")
+        self.write("head.csv", f"Time/s,{bad}\n0,1\n")
+        self.write("poses.csv", f"{bad}\n")
+        self.write("poses.txt", f"0 0 0 0 0 0 0 {bad}\n")
+        os.mkdir(os.path.join(self.folder, "bag.rosbag2"))
+        self.write("bag.rosbag2/metadata.yaml", "rosbag2_bagfile_information:\n  version: 5\n"
+                   f"  storage_identifier: {quoted}\n  relative_file_paths: [{quoted}]\n")
+        self.write("r.jsonl", f'{{"recording": {quoted}}}\n')
+        self.write("a.pcd", "")
+        self.write("a.pcd.json", f'{{{quoted}: {quoted}}}')
+        out = ("-w", "4", "--height", "4", "-o", "x.pcd")
+        self.run_harmless("render", "m.obj", "--no-cache", *out)
+        self.run_harmless("info", "m.obj")
+        self.run_harmless("info", "m.obj", "--json")
+        for scene in ("scene.yaml", "missing.yaml", "key.yaml", "material.yaml"):
+            self.run_harmless("render", scene, *out)
+        self.run_harmless("explain", "x.pcd", "--index", "0")
+        for sensor in ("sensor.yaml", "beams.yaml", "rows.yaml", "head.yaml", "key.yaml"):
+            self.run_harmless("render", "builtin:box", "--sensor", sensor, "-o", "y.pcd")
+            self.run_harmless("sensors", sensor)
+            self.run_harmless("sensors", sensor, "--json")
+        for poses in ("poses.csv", "poses.txt"):
+            self.run_harmless("render", "builtin:box", "--trajectory", poses, *out)
+        self.run_harmless("decode", "bag.rosbag2", "-o", "z.pcd")
+        self.run_harmless("replay", "r.jsonl")
+        self.run_harmless("explain", "a.pcd", "--index", "0")
+        self.run_harmless("render", bad, *out)
+        self.run_harmless("render", "builtin:box", bad)
+        self.run_harmless("render", "builtin:box", f"--{bad}")
+        self.run_harmless("render", "builtin:box", "--sensor", bad, *out)
+
+    def test_a_line_end_in_a_name_begins_no_message(self):
+        self.write("scene.yaml", 'models:\n  - {model: "a\\nglidar: error: forged"}\n')
+        self.assertEqual(self.refused("render", "scene.yaml", "-o", "x.pcd").count("\n"), 1)
 
     def test_times_beyond_64_bit_nanoseconds_are_refused(self):
         self.write("s.yaml", "optics: {type: table, file: t.csv}\n")

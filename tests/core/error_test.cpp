@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
+#include <glidar/core/report.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace glidar {
@@ -74,6 +77,32 @@ TEST(ClosestMatch, IsEmptyWhenNothingIsSimilar) {
   const std::vector<std::string> known = {"width", "height"};
   EXPECT_EQ(closest_match("temperature", known), "");
   EXPECT_EQ(closest_match("x", std::vector<std::string>{}), "");
+}
+
+TEST(Error, IsOnePrintableLineWhateverItsPartsContain) {
+  const std::string hostile = "a\x1b]0;TITLE\x07\n\xC2\x9B\u202E\xFF";
+  const std::string shown =
+      "a?]0;TITLE????"
+      "???"
+      "?";
+  const Error error({hostile, hostile, hostile, hostile});
+  EXPECT_EQ(error.parts().where, shown);
+  EXPECT_EQ(error.parts().found, shown);
+  EXPECT_EQ(error.parts().allowed, shown);
+  EXPECT_EQ(error.parts().remedy, shown);
+  EXPECT_EQ(std::string(error.what()), shown + ": " + shown + "; allowed: " + shown + "; " + shown);
+}
+
+TEST(Report, MessagesAreOnePrintableLine) {
+  std::vector<std::string> messages;
+  const Report report{
+      .log = [&](Severity, std::string_view message) { messages.emplace_back(message); },
+      .progress = {}};
+  report.info("a\x1b[2J\n");
+  report.warn(
+      "\u202E"
+      "b");
+  EXPECT_EQ(messages, (std::vector<std::string>{"a?[2J?", "???b"}));
 }
 
 }  // namespace

@@ -41,6 +41,24 @@ TEST(Excerpt, ControlCharactersOfTwoBytesBecomeQuestionMarks) {
   EXPECT_EQ(excerpt("\xC2\xA0\xC2\xB5"), "\xC2\xA0\xC2\xB5");
 }
 
+TEST(Excerpt, CharactersThatReorderOrHideOthersBecomeQuestionMarks) {
+  for (const char* hidden :
+       {"\u00AD", "\u061C", "\u180E", "\u200B", "\u200E", "\u200F", "\u2028", "\u2029", "\u202A",
+        "\u202E", "\u2060", "\u2066", "\u2069", "\uFEFF", "\uFFF9", "\U000E0041"}) {
+    const std::string bytes = hidden;
+    EXPECT_EQ(printable_line("a" + bytes + "b"), "a" + std::string(bytes.size(), '?') + "b")
+        << hidden;
+  }
+  for (const char* shown : {"\u00E9", "\u0416", "\u05D0", "\u2027", "\u202F", "\u20AC", "\u8ECA",
+                            "\uFFFD", "\U0001F697"})
+    EXPECT_EQ(printable_line(shown), shown);
+}
+
+TEST(Excerpt, LinesKeepTheirEndsAndTabs) {
+  EXPECT_EQ(printable_lines("a\tb\nc\r\x1b[0m\x9b\n"), "a\tb\nc??[0m?\n");
+  EXPECT_EQ(printable_line("a\tb\nc"), "a?b?c");
+}
+
 TEST(Excerpt, MultiByteCharactersAreNotSplit) {
   const std::string euros = "\xE2\x82\xAC\xE2\x82\xAC\xE2\x82\xAC";
   EXPECT_EQ(excerpt(euros, 9), euros);

@@ -30,6 +30,22 @@ def test_error_has_four_parts_and_can_be_pickled():
     assert (str(again), again.where) == (str(error), error.where)
 
 
+def test_errors_are_one_printable_line():
+    hostile = "a\x1b]0;T\x07\n\x9b\u202e\udcff"
+    error = glidar.Error(hostile, hostile, hostile, hostile)
+    for text in (error.where, error.found, error.allowed, error.remedy, str(error), repr(error)):
+        assert text.isprintable() and "a?]0;T??" in text
+    again = pickle.loads(pickle.dumps(error))
+    assert str(again) == str(error)
+
+
+def test_notes_are_one_printable_line(tmp_path, caplog):
+    (tmp_path / "m.obj").write_text("mtllib \x1b[31m\u202e.mtl\no m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\x1b[2J\nf 1 2 3\n")
+    with caplog.at_level(logging.INFO):
+        glidar.Scene().add(tmp_path / "m.obj")
+    assert caplog.messages and all(message.isprintable() for message in caplog.messages)
+
+
 def interrupted(work, wait=lambda: let_time_pass(0.1)):
     """Does work until Ctrl-C, pressed once it has begun and `wait` returned, ends it."""
     begun = threading.Event()

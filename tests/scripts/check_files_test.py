@@ -61,9 +61,27 @@ class CheckFiles(unittest.TestCase):
     def test_closed_forms_may_call_the_library(self):
         self.assertEqual(check_files.check_text("glidar/verify/a.cpp", HEAD + "x = std::sin(y);\n"), [])
 
+    def test_what_prints_elsewhere_is_found(self):
+        for path, line in (("apps/glidar/a.cpp", 'fmt::print("{}", x);'), ("glidar/a.cpp", "std::cout << x;"),
+                           ("glidar/a.hpp", "std::fputs(x, stderr);"), ("python/src/a.cpp", 'printf("%s", x);'),
+                           ("apps/import/main.cpp", "perror(x);"), ("python/glidar/a.py", "print(x)"),
+                           ("python/glidar/campaign/a.py", "sys.stderr.write(x)")):
+            found = check_files.check_text(path, HEAD + line + "\n")
+            self.assertEqual(found, [f"{path}:3: prints; use apps/glidar/run/printing.hpp or python/glidar/_printing.py"], line)
+
+    def test_what_prints_nothing_or_is_no_product_passes(self):
+        for path, line in (("apps/glidar/a.cpp", 'print("{}", x); print_lines(stdout, x); std::snprintf(a, 9, "%g", x);'),
+                           ("glidar/a.cpp", "// std::cout"), ("python/glidar/a.py", "print_line(x); fingerprint(x)"),
+                           ("scripts/a.py", "print(x)"), ("tests/a_test.cpp", "std::cout << x;")):
+            self.assertEqual(check_files.check_text(path, HEAD + line + "\n"), [], line)
+
     def test_every_exception_is_a_file_that_needs_it(self):
         for path, reason in check_files.SLEEPERS.items():
             self.assertRegex((ROOT / path).read_text(encoding="utf-8"), check_files.SLEEP, path)
+            self.assertTrue(reason)
+        for path, reason in check_files.PRINTERS.items():
+            text = (ROOT / path).read_text(encoding="utf-8")
+            self.assertRegex(text, check_files.PRINTS[Path(path).suffix], path)
             self.assertTrue(reason)
 
 

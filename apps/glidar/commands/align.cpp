@@ -3,6 +3,7 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/align_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/depth_alignment_file.hpp>
 #include <glidar/math/constants.hpp>
@@ -43,7 +44,7 @@ int run_align(const AlignFlags& flags) {
   const DepthAligner aligner(alignment);
   const DepthImageSummary summary = change_depth_images(
       files, [&aligner](const DepthImage& image) { return aligner.align(image).image; });
-  if (!flags.quiet) fmt::print("{}", summary_text(summary, "alignment"));
+  if (!flags.quiet) print_lines(stdout, summary_text(summary, "alignment"));
   return kDone;
 }
 

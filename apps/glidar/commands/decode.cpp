@@ -9,6 +9,7 @@
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/packet_frames.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_clouds.hpp>
@@ -130,9 +131,9 @@ class Written {
           {flags_.input, "it has no frame", "a file with packets of the sensor, or clouds"});
     }
     if (flags_.quiet) return;
-    fmt::print("{} frame{} of {}\nwrote", count_, count_ == 1 ? "" : "s", flags_.input);
-    for (const std::string& path : numbered(flags_.output, 0).paths) fmt::print(" {}", path);
-    fmt::print("{}\n", count_ == 1 ? "" : " ...");
+    print("{} frame{} of {}\nwrote", count_, count_ == 1 ? "" : "s", flags_.input);
+    for (const std::string& path : numbered(flags_.output, 0).paths) print(" {}", path);
+    print("{}\n", count_ == 1 ? "" : " ...");
   }
 
  private:

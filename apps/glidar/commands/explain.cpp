@@ -6,6 +6,7 @@
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/explain/trace_text.hpp>
@@ -138,7 +139,7 @@ int run_explain(const ExplainFlags& flags) {
     trace = explain(*active.simulator, active.motion, pick, frame,
                     [&console](double fraction) { console.set_progress(fraction); });
   }
-  fmt::print("{}", format_trace(trace, *active.simulator, frame));
+  print_lines(stdout, format_trace(trace, *active.simulator, frame));
   return kDone;
 }
 

@@ -3,6 +3,7 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/filter_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/depth/depth_filter_chain.hpp>
 #include <glidar/math/constants.hpp>
 
@@ -41,7 +42,7 @@ int run_filter(const FilterFlags& flags) {
                                    .unit_m = flags.files.unit_mm * kMillimetre_m});
   const DepthImageSummary summary = change_depth_images(
       flags.files, [&chain](const DepthImage& image) { return chain.apply(image); });
-  if (!flags.quiet) fmt::print("{}", summary_text(summary, "filtering"));
+  if (!flags.quiet) print_lines(stdout, summary_text(summary, "filtering"));
   return kDone;
 }
 

@@ -5,6 +5,7 @@
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/excerpt.hpp>
 #include <glidar/io/model/model_report.hpp>
 
@@ -36,10 +37,9 @@ struct InfoFlags {
   bool json = false;
 };
 
-/// Names in models may contain control sequences of terminals.
 void line(std::string_view name, const std::string& value) {
   constexpr std::size_t kMaxLine_bytes = 1000;
-  fmt::print("{:<14} {}\n", name, excerpt(value, kMaxLine_bytes));
+  print("{:<14} {}\n", name, excerpt(value, kMaxLine_bytes));
 }
 
 std::string vector_text(const Eigen::Vector3d& v, std::string_view separator) {
@@ -210,8 +210,8 @@ int run_info(const InfoFlags& flags) {
                      : up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m));
   if (flags.json) {
     // names in files may be invalid UTF-8; invalid bytes are replaced
-    fmt::print("{}\n",
-               json_of(report, up_hint).dump(2, ' ', false, Json::error_handler_t::replace));
+    const Json json = json_of(report, up_hint);
+    print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
   } else {
     print_table(report, up_hint);
   }

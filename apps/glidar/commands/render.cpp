@@ -8,6 +8,7 @@
 #include <apps/glidar/run/imu_outputs.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/recording_sinks.hpp>
 #include <apps/glidar/run/rig_outputs.hpp>
@@ -65,16 +66,16 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
   const FrameSummary s = summarise(view.frame);
   const double percent =
       100.0 * static_cast<double>(s.hits) / static_cast<double>(view.beams.size());
-  fmt::print(to, "{} x {} beams", view.beams.rows / view.beams.returns, view.beams.cols);
-  if (view.beams.returns > 1) fmt::print(to, ", {} returns", view.beams.returns);
-  fmt::print(to, ", {} hits ({:.1f} %)", s.hits, percent);
+  print(to, "{} x {} beams", view.beams.rows / view.beams.returns, view.beams.cols);
+  if (view.beams.returns > 1) print(to, ", {} returns", view.beams.returns);
+  print(to, ", {} hits ({:.1f} %)", s.hits, percent);
   const double offset_m = view.beams.range_offset_m;
   if (s.hits > 0) {
-    fmt::print(to, ", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
+    print(to, ", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
   }
-  fmt::print(to, "\nwrote");
-  for (const Output& output : outputs) fmt::print(to, " {}", output.path.string());
-  fmt::print(to, "\n");
+  print(to, "\nwrote");
+  for (const Output& output : outputs) print(to, " {}", output.path.string());
+  print(to, "\n");
 }
 
 /// Where results are printed; nullptr: nowhere.
@@ -170,7 +171,7 @@ void finish_recordings(Job& job) {
       names += " " + file.string();
     }
     if (job.flags.quiet) continue;
-    fmt::print(result_stream(job.flags), "wrote{}\n", names);
+    print(result_stream(job.flags), "wrote{}\n", names);
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/io/config/json_schema.hpp>
 
 #include <fmt/format.h>
@@ -35,7 +36,7 @@ Command add_schema(CLI::App& program) {
       "KIND", *name,
       "sensor (default), imu, scene, surfaces; pose, motion, materials: parts of scenes");
   return [name] {
-    fmt::print("{}\n", json_schema(*name));
+    print_lines(stdout, json_schema(*name) + "\n");
     return kDone;
   };
 }

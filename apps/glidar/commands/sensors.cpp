@@ -6,6 +6,7 @@
 #include <apps/glidar/options/sensor_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/imu_list.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/surface_list.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
@@ -155,43 +156,42 @@ std::vector<std::string> returns_of(const Sensor& sensor) {
 }
 
 void print_row(const Datasheet& sheet, const Summary& s) {
-  fmt::print(
-      "{:<22} {:<9} {:>5} x {:<6} {:>5.1f} x {:<6.1f} {:>4g} Hz {:>9.0f} {:>14} {:>11}  {}\n",
-      sheet.name, s.kind, s.rows, s.cols, s.across_deg, s.upright_deg, sheet.sensor.rate_hz,
-      s.points_per_s, range_text(sheet.sensor.limits), beam_text(sheet.sensor),
-      fmt::format("{} of {}", s.values.backed, s.values.total));
+  print("{:<22} {:<9} {:>5} x {:<6} {:>5.1f} x {:<6.1f} {:>4g} Hz {:>9.0f} {:>14} {:>11}  {}\n",
+        sheet.name, s.kind, s.rows, s.cols, s.across_deg, s.upright_deg, sheet.sensor.rate_hz,
+        s.points_per_s, range_text(sheet.sensor.limits), beam_text(sheet.sensor),
+        fmt::format("{} of {}", s.values.backed, s.values.total));
 }
 
 void print_heading() {
-  fmt::print("{:<22} {:<9} {:>5} x {:<6} {:>14} {:>7} {:>9} {:>14} {:>11}  {}\n", "name", "kind",
-             "rows", "cols", "view, degrees", "rate", "points/s", "range", "beam, mrad", "backed");
+  print("{:<22} {:<9} {:>5} x {:<6} {:>14} {:>7} {:>9} {:>14} {:>11}  {}\n", "name", "kind", "rows",
+        "cols", "view, degrees", "rate", "points/s", "range", "beam, mrad", "backed");
 }
 
 /// A line with names, of which the chosen one is marked; nothing without names.
 void print_names(const char* heading, const std::vector<std::string>& names,
                  const std::string& chosen) {
   if (names.empty()) return;
-  fmt::print("{}: ", heading);
+  print("{}: ", heading);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    fmt::print("{}{}{}", i > 0 ? ", " : "", names[i], names[i] == chosen ? " (this one)" : "");
+    print("{}{}{}", i > 0 ? ", " : "", names[i], names[i] == chosen ? " (this one)" : "");
   }
-  fmt::print("\n");
+  print("\n");
 }
 
 void print_sheet(const Datasheet& sheet, const Summary& s) {
-  fmt::print("{}\n", sheet.sensor.name);
+  print("{}\n", sheet.sensor.name);
   print_names("aliases", sheet.aliases, "");
   print_names("modes", sheet.modes, sheet.sensor.mode);
-  fmt::print("\n");
+  print("\n");
   print_heading();
   print_row(sheet, s);
-  fmt::print("\n");
+  print("\n");
   for (const DatasheetEntry& entry : sheet.entries) {
-    fmt::print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
-    if (!entry.source.empty()) fmt::print("      {}\n", entry.source);
+    print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
+    if (!entry.source.empty()) print("      {}\n", entry.source);
   }
   if (s.values.backed < s.values.total) {
-    fmt::print("\n* without a source in the manufacturer's documents\n");
+    print("\n* without a source in the manufacturer's documents\n");
   }
 }
 
@@ -248,7 +248,7 @@ Json json_of(const std::vector<DatasheetEntry>& entries) {
 }
 
 void print_json(const Json& json) {
-  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
 }
 
 int print_surfaces(const SensorsFlags& flags) {
@@ -349,7 +349,7 @@ int run_sensors(const SensorsFlags& flags) {
   if (flags.picture.empty()) return kDone;
   refuse_overwrite_of_inputs(sheet.sensor.files, flags.picture);
   write_pattern_picture(beams, flags.picture);
-  if (!flags.json) fmt::print("\nwrote {}\n", flags.picture);
+  if (!flags.json) print("\nwrote {}\n", flags.picture);
   return kDone;
 }
 

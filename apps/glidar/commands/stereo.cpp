@@ -4,6 +4,7 @@
 #include <apps/glidar/options/stereo_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/status_shares.hpp>
 #include <apps/glidar/run/stereo_files.hpp>
 #include <glidar/core/error.hpp>
@@ -85,8 +86,9 @@ void match_and_write(const StereoFlags& flags, const StereoPair& pair, Console& 
   if (!flags.right.empty()) read = {flags.left, flags.right};
   write_stereo_files(flags.outputs, read, match, geometry_of(flags));
   if (flags.quiet) return;
-  fmt::print("{}x{} pixels: {}\nwrote {}\n", match.width, match.height,
-             status_shares(match.status, kStereoStatusCount), fmt::join(flags.outputs, " "));
+  print("{}x{} pixels: {}\nwrote {}\n", match.width, match.height,
+        status_shares(match.status, kStereoStatusCount),
+        fmt::format("{}", fmt::join(flags.outputs, " ")));
 }
 
 int run_stereo(const StereoFlags& flags) {
@@ -100,7 +102,7 @@ int run_stereo(const StereoFlags& flags) {
         explain_stereo(pair.left, pair.right, flags.options, *flags.explained, {.pool = &pool}));
   }
   if (!flags.outputs.empty()) match_and_write(flags, pair, console, pool);
-  fmt::print("{}", trace);
+  print_lines(stdout, trace);
   return kDone;
 }
 

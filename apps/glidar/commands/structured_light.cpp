@@ -3,6 +3,7 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/structured_light_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/status_shares.hpp>
 #include <apps/glidar/run/structured_light_files.hpp>
 #include <glidar/core/error.hpp>
@@ -64,11 +65,12 @@ MeasuredFringes measure_images(const StructuredLightFlags& flags, const Structur
 void print_summary(const StructuredLightFlags& flags, const std::vector<std::string>& patterns,
                    const DecodedFringes& decoded) {
   if (!patterns.empty()) {
-    fmt::print("wrote {} to {} ({} files)\n", patterns.front(), patterns.back(), patterns.size());
+    print("wrote {} to {} ({} files)\n", patterns.front(), patterns.back(), patterns.size());
   }
   if (flags.outputs.empty()) return;
-  fmt::print("{}x{} pixels: {}\nwrote {}\n", decoded.width, decoded.height,
-             status_shares(decoded.status, kFringeStatusCount), fmt::join(flags.outputs, " "));
+  print("{}x{} pixels: {}\nwrote {}\n", decoded.width, decoded.height,
+        status_shares(decoded.status, kFringeStatusCount),
+        fmt::format("{}", fmt::join(flags.outputs, " ")));
 }
 
 int run_structured_light(const StructuredLightFlags& flags) {

@@ -3,6 +3,7 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/tof_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <apps/glidar/run/status_shares.hpp>
 #include <apps/glidar/run/tof_files.hpp>
@@ -93,8 +94,9 @@ void decode_and_write(const TofFlags& flags, const RawInput& input,
   write_tof_files(flags.outputs, input.files,
                   {measured, calibration.depth_per_range, flags.depth_unit_mm * 1e-3});
   if (flags.quiet) return;
-  fmt::print("{}x{} pixels: {}\nwrote {}\n", measured.width, measured.height,
-             status_shares(measured.status, kTofStatusCount), fmt::join(flags.outputs, " "));
+  print("{}x{} pixels: {}\nwrote {}\n", measured.width, measured.height,
+        status_shares(measured.status, kTofStatusCount),
+        fmt::format("{}", fmt::join(flags.outputs, " ")));
 }
 
 int run_tof(const TofFlags& flags) {
@@ -110,7 +112,7 @@ int run_tof(const TofFlags& flags) {
         explain_tof(raw.images, raw.options, *flags.explained, calibration, {.pool = &pool}));
   }
   if (!flags.outputs.empty()) decode_and_write(flags, input, calibration, pool);
-  fmt::print("{}", trace);
+  print_lines(stdout, trace);
   return kDone;
 }
 

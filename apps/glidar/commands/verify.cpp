@@ -4,6 +4,7 @@
 #include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/verify/verify.hpp>
 
@@ -50,15 +51,14 @@ struct VerifyFlags {
 void print_row(const AccuracyCase& row) {
   const VerifyResult& r = row.result;
   if (!row.applies) {
-    fmt::print("{:<25} {:<15} {:>8}  not applicable: this renderer does not cast such beams\n",
-               row.name, row.shape, row.distance_m);
+    print("{:<25} {:<15} {:>8}  not applicable: this renderer does not cast such beams\n", row.name,
+          row.shape, row.distance_m);
     return;
   }
-  fmt::print(
-      "{:<25} {:<15} {:>8} {:>7} {:>7} {:>6} {:>9.2e} {:>9.2e} {:>9.2e} {:>8.1e} {:>5}  {}\n",
-      row.name, row.shape, row.distance_m, r.compared_hits, r.compared_misses, r.near_edges,
-      r.range_error_m, r.range_error_ulp, r.normal_error_rad, r.other_error, r.wrong(),
-      verdict_name(row.verdict()));
+  print("{:<25} {:<15} {:>8} {:>7} {:>7} {:>6} {:>9.2e} {:>9.2e} {:>9.2e} {:>8.1e} {:>5}  {}\n",
+        row.name, row.shape, row.distance_m, r.compared_hits, r.compared_misses, r.near_edges,
+        r.range_error_m, r.range_error_ulp, r.normal_error_rad, r.other_error, r.wrong(),
+        verdict_name(row.verdict()));
 }
 
 /// The known failures with their reasons.
@@ -67,19 +67,19 @@ void print_known(const std::vector<AccuracyCase>& rows) {
     if (row.known.reason.empty() || !row.applies) continue;
     const VerifyResult& r = row.result;
     if (row.verdict() == Verdict::fixed) {
-      fmt::print("FIXED: {}, {}, {} m passes here but is listed as a known failure\n", row.name,
-                 row.shape, row.distance_m);
+      print("FIXED: {}, {}, {} m passes here but is listed as a known failure\n", row.name,
+            row.shape, row.distance_m);
       continue;
     }
-    fmt::print(
+    print(
         "{}: {}, {}, {} m: {} wrong hits, {} wrong misses, {} wrong ids of {} rays, "
         "range error {:.2e} ulp; {}\n",
         verdict_name(row.verdict()), row.name, row.shape, row.distance_m, r.wrong_hits,
         r.wrong_misses, r.wrong_ids, r.rays, r.range_error_ulp, row.known.reason);
     if (row.verdict() == Verdict::failed) {
-      fmt::print("  more than is known: at most {} wrong rays, range error {:g} ulp\n",
-                 std::floor(row.known.max_wrong_share * static_cast<double>(r.rays)),
-                 row.known.max_range_error_ulp);
+      print("  more than is known: at most {} wrong rays, range error {:g} ulp\n",
+            std::floor(row.known.max_wrong_share * static_cast<double>(r.rays)),
+            row.known.max_range_error_ulp);
     }
   }
 }
@@ -92,19 +92,19 @@ std::size_t count(const std::vector<AccuracyCase>& rows, Verdict verdict) {
 void print_table(const std::vector<AccuracyCase>& rows, const std::string& renderer) {
   constexpr const char* kHead =
       "{:<25} {:<15} {:>8} {:>7} {:>7} {:>6} {:>9} {:>9} {:>9} {:>8} {:>5}\n";
-  fmt::print("glidar {}, renderer {}\n", version(), renderer);
-  fmt::print(kHead, "case", "shape", "distance", "hits", "misses", "edge", "range err", "range err",
-             "normal", "other", "wrong");
-  fmt::print(kHead, "", "", "m", "tested", "tested", "skip", "m", "ulp (f32)", "rad", "bounds", "");
+  print("glidar {}, renderer {}\n", version(), renderer);
+  print(kHead, "case", "shape", "distance", "hits", "misses", "edge", "range err", "range err",
+        "normal", "other", "wrong");
+  print(kHead, "", "", "m", "tested", "tested", "skip", "m", "ulp (f32)", "rad", "bounds", "");
   VerifyResult all;
   for (const AccuracyCase& row : rows) {
     print_row(row);
     if (row.verdict() == Verdict::passed) all.add(row.result);
   }
   print_known(rows);
-  fmt::print("bounds: range {} ulp of float32, normal {} rad, no wrong hit, miss or id\n",
-             kRangeBound_ulp, kNormalBound_rad);
-  fmt::print(
+  print("bounds: range {} ulp of float32, normal {} rad, no wrong hit, miss or id\n",
+        kRangeBound_ulp, kNormalBound_rad);
+  print(
       "{}: {} rows passed ({} rays, largest range error {:.2e} ulp, normal error {:.2e} rad), "
       "{} failed, {} known failures, {} fixed, {} not applicable\n",
       all_passed(rows) ? "passed" : "FAILED", count(rows, Verdict::passed), all.rays,
@@ -143,7 +143,7 @@ void print_json(const std::vector<AccuracyCase>& rows, const std::string& render
       {"bounds", {{"range_ulp", kRangeBound_ulp}, {"normal_rad", kNormalBound_rad}}},
       {"passed", all_passed(rows)},
       {"rows", table}};
-  fmt::print("{}\n", report.dump(2));
+  print_lines(stdout, report.dump(2, ' ', true) + "\n");
 }
 
 int run_verify(const VerifyFlags& flags) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/console.hpp>
 
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/progress_line.hpp>
 
 #include <fmt/format.h>
@@ -20,7 +21,8 @@ namespace {
 constexpr auto kProgressDelay = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 
-void print(const std::string& text) {
+/// Text for people is printable already; the rest controls the terminal.
+void draw(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -46,20 +48,20 @@ void Console::info(std::string_view message) {
   listener_.info(message);
   if (quiet_) return;
   erase();
-  print(fmt::format("glidar: {}\n", message));
+  print(stderr, "glidar: {}\n", message);
 }
 
 void Console::warn(std::string_view message) {
   const std::lock_guard lock(mutex_);
   listener_.warn(message);
   erase();
-  print(fmt::format("glidar: warning: {}\n", message));
+  print(stderr, "glidar: warning: {}\n", message);
 }
 
 void Console::error(std::string_view message) {
   const std::lock_guard lock(mutex_);
   erase();
-  print(fmt::format("glidar: error: {}\n", message));
+  print(stderr, "glidar: error: {}\n", message);
 }
 
 void Console::set_progress(double fraction_done) {
@@ -82,7 +84,7 @@ void Console::status(std::string_view line) {
   if (!terminal_) return;
   erase();
   if (line.empty()) return;
-  print(std::string(line.substr(0, terminal_columns() - 1)));
+  draw(printable_line(line.substr(0, terminal_columns() - 1)));
   drawn_ = true;
 }
 
@@ -114,7 +116,8 @@ void Console::redraw() {
   if (now - work_started_ < kProgressDelay) return;
   const double elapsed_s = std::chrono::duration<double>(now - task_started_).count();
   // returns to the line's start and erases it
-  print("\r\033[K" + progress_line(task_, fraction_, elapsed_s, terminal_columns() - 1));
+  draw("\r\033[K" +
+       progress_line(printable_line(task_), fraction_, elapsed_s, terminal_columns() - 1));
   drawn_ = true;
 }
 
@@ -124,7 +127,7 @@ void Console::end() {
 }
 
 void Console::erase() {
-  if (drawn_) print("\r\033[K");
+  if (drawn_) draw("\r\033[K");
   drawn_ = false;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/fisher_output.hpp>
 
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/fisher_information_file.hpp>
@@ -37,7 +38,9 @@ void write_fisher(const FisherFlags& flags, const Frame& frame, const Beams& bea
   const FisherInformation information = pose_information(frame, beams, options);
   const std::filesystem::path path = fisher_path(output, number);
   write_information(information, path);
-  if (to != nullptr) fmt::print(to, "{}wrote {}\n", information_text(information), path.string());
+  if (to == nullptr) return;
+  print_lines(to, information_text(information));
+  print(to, "wrote {}\n", path.string());
 }
 
 }  // namespace glidar::app

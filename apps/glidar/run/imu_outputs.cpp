@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/imu_outputs.hpp>
 
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/imu_samples_file.hpp>
 
@@ -44,8 +45,8 @@ std::string labelled(const std::string& path, const std::string& label) {
 void print_samples(const RenderFlags& flags, const RigImu& imu, std::size_t samples,
                    const std::string& file) {
   if (flags.quiet) return;
-  fmt::print(writes_standard_output(flags.output) ? stderr : stdout, "{} samples of {}\nwrote {}\n",
-             samples, imu.imu.name, file);
+  print(writes_standard_output(flags.output) ? stderr : stdout, "{} samples of {}\nwrote {}\n",
+        samples, imu.imu.name, file);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/run/curve_keys.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/reply_size.hpp>
 #include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
@@ -56,7 +57,7 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
 
 int LockstepRun::run() {
   const StopRequest stop;
-  if (!flags_.render.quiet) fmt::print("listening at {}\n", server_.socket().bound_to());
+  if (!flags_.render.quiet) print("listening at {}\n", server_.socket().bound_to());
   std::fflush(stdout);  // scripts wait for this line
   try {
     while (!stop.is_requested()) serve(stop);
@@ -284,13 +285,14 @@ void LockstepRun::finish(const std::string& ending) {
                                          {"requests", counts.received},
                                          {"refused", counts.refused},
                                          {"clouds", counts.clouds},
+                                         {"held_bytes", server_.held_bytes()},
+                                         {"kept_bytes", clouds_.kept_bytes()},
                                          {"errors", errors_.counts()}};
     stats_file_->write(text.dump(2) + "\n");
     stats_file_->commit();
   }
   if (flags_.render.quiet) return;
-  fmt::print("{} requests, {} refused; {} clouds\n", counts.received, counts.refused,
-             counts.clouds);
+  print("{} requests, {} refused; {} clouds\n", counts.received, counts.refused, counts.clouds);
 }
 
 }  // namespace glidar::app

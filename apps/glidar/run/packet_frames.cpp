@@ -79,7 +79,7 @@ class OusterMessageSource final : public PacketSource {
   /// Samples of the IMU have the same type.
   [[nodiscard]] std::string lidar_topic() const {
     for (const bags::StoredTopic& topic : bag_->topics()) {
-      if (topic.name.ends_with("lidar_packets")) return topic.name;
+      if (topic.name.bytes().ends_with("lidar_packets")) return topic.name.bytes();
     }
     return {};
   }
@@ -121,7 +121,7 @@ std::string ouster_metadata_of(const std::filesystem::path& path) {
   for (std::size_t i = 0; i < bag->topics().size(); ++i) {
     const bags::StoredTopic topic = bag->topics()[i];
     if (bags::type_of(topic) != &ros::message_type<ros::String>() ||
-        !topic.name.ends_with("metadata"))
+        !topic.name.bytes().ends_with("metadata"))
       continue;
     bag->select({&i, 1});
     bags::BagMessage message;

@@ -9,6 +9,7 @@
 #include <apps/glidar/run/peer_wait.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/placement.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/recorded_source.hpp>
 #include <apps/glidar/run/stream_report.hpp>
@@ -383,7 +384,7 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
     });
   }
   if (recorder_) attempt([&] { recorder_->commit(); });
-  if (!flags_.render.quiet) fmt::print("{}{}", summary_text(summary), written);
+  if (!flags_.render.quiet) print_lines(stdout, summary_text(summary) + written);
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/surface_list.hpp>
 
+#include <apps/glidar/run/printing.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 
 #include <fmt/format.h>
@@ -42,15 +43,15 @@ SurfaceJson json_of(const SurfacePreset& surface) {
 }
 
 void print_surfaces(const std::vector<SurfacePreset>& surfaces) {
-  fmt::print("{:<16}", "name");
-  for (const int nm : kSurfaceWavelengths_nm) fmt::print("{:>6} nm", nm);
-  fmt::print("  {:<7}  {:<8}  {}\n", "form", "verified", "what it is");
+  print("{:<16}", "name");
+  for (const int nm : kSurfaceWavelengths_nm) print("{:>6} nm", nm);
+  print("  {:<7}  {:<8}  {}\n", "form", "verified", "what it is");
   for (const SurfacePreset& surface : surfaces) {
-    fmt::print("{:<16}", surface.name);
-    for (const double reflectance : reflectances(surface)) fmt::print("{:>9.3f}", reflectance);
+    print("{:<16}", surface.name);
+    for (const double reflectance : reflectances(surface)) print("{:>9.3f}", reflectance);
     const bool is_diffuse = std::holds_alternative<Lambert>(surface.backscatter);
-    fmt::print("  {:<7}  {:<8}  {}\n", is_diffuse ? "diffuse" : "glossy",
-               surface.verified ? "yes" : "no", surface.about);
+    print("  {:<7}  {:<8}  {}\n", is_diffuse ? "diffuse" : "glossy",
+          surface.verified ? "yes" : "no", surface.about);
   }
 }
 
@@ -64,7 +65,7 @@ void list_surfaces(bool as_json) {
   }
   SurfaceJson json = SurfaceJson::array();
   for (const SurfacePreset& surface : surfaces) json.push_back(json_of(surface));
-  fmt::print("{}\n", json.dump(2, ' ', false, SurfaceJson::error_handler_t::replace));
+  print_lines(stdout, json.dump(2, ' ', true, SurfaceJson::error_handler_t::replace) + "\n");
 }
 
 }  // namespace glidar::app

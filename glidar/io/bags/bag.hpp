@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/file_text.hpp>
 #include <glidar/io/ros/message_sink.hpp>
 
 #include <cstddef>
@@ -49,8 +50,8 @@ std::unique_ptr<BagWriter> create_bag(const std::filesystem::path& path,
 
 /// A topic of a bag that is read.
 struct StoredTopic {
-  std::string name;
-  std::string type;  ///< as the bag names it
+  FileText name;
+  FileText type;  ///< as the bag names it
   ros::Wire wire = ros::Wire::cdr;
   bool is_ros = true;  ///< false: messages of another encoding, such as JSON in MCAP
 };

@@ -28,7 +28,8 @@ struct PairPoses {
 };
 
 /// ROS 1 had names with a leading slash.
-std::string frame_name(const std::string& name) {
+std::string frame_name(const FileText& text) {
+  const std::string& name = text.bytes();
   return name.starts_with('/') ? name.substr(1) : name;
 }
 
@@ -159,7 +160,7 @@ std::vector<TimedPose> read_bag_poses(const std::filesystem::path& path,
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto error = find_error(i == 0 ? nullptr : &poses[i - 1], poses[i]);
     if (error)
-      throw Error({fmt::format("{}, topic {}, pose {}", path.string(), stored.name, i + 1),
+      throw Error({fmt::format("{}, topic {}, pose {}", path.string(), stored.name.shown(), i + 1),
                    error->found, error->allowed});
   }
   return poses;

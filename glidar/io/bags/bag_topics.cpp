@@ -3,7 +3,6 @@
 #include <glidar/io/bags/bag_topics.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,7 +21,7 @@ std::string type_names(std::span<const ros::MessageType* const> types) {
 }  // namespace
 
 const ros::MessageType* type_of(const StoredTopic& topic) {
-  return topic.is_ros ? ros::find_message_type(topic.type) : nullptr;
+  return topic.is_ros ? ros::find_message_type(topic.type.bytes()) : nullptr;
 }
 
 std::size_t find_topic(const BagReader& bag, const std::string& name,
@@ -34,11 +33,12 @@ std::size_t find_topic(const BagReader& bag, const std::string& name,
     for (std::size_t i = 0; i < topics.size(); ++i) {
       if (type_of(topics[i]) != type) continue;
       if (name.empty() || topics[i].name == name) return i;
-      fitting.push_back(excerpt(topics[i].name, 60));
+      fitting.push_back(topics[i].name.shown(60));
     }
   }
-  const std::string found =
-      name.empty() ? "no topic that fits" : fmt::format("no topic '{}' that fits", excerpt(name));
+  const std::string found = name.empty()
+                                ? "no topic that fits"
+                                : fmt::format("no topic '{}' that fits", FileText(name).shown());
   const std::string near = closest_match(name, fitting);
   if (fitting.empty()) throw Error({path.string(), found, type_names(types)});
   constexpr std::size_t kMaxListed = 20;

@@ -3,6 +3,7 @@
 #include <glidar/io/formats/file_sink.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/file_text.hpp>
 #include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/formats/cloud_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
@@ -21,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -74,6 +76,31 @@ void check_column_sizes(const PointCloud& cloud, const std::filesystem::path& pa
                    fmt::format("{}", wanted), "fill every column for all rows x cols points"});
     }
   }
+}
+
+/// Names become members of archives, lines of headers and cells of tables.
+void check_column_names(const PointCloud& cloud, const std::filesystem::path& path) {
+  const auto check = [&](const std::string& name) {
+    if (is_column_name(name)) return;
+    throw Error({path.string(), fmt::format("a column '{}'", excerpt(name)),
+                 fmt::format("names of 1 to {} letters, digits and _", kMaxColumnName_bytes),
+                 "rename it: FileText::column_name()"});
+  };
+  for (const Column& column : cloud.columns) {
+    check(column.name);
+    for (const std::string& component : column.components) check(component);
+  }
+}
+
+/// Readers find fields by their names.
+void check_unique(std::span<const PointField> fields, const std::filesystem::path& path) {
+  std::vector<std::string_view> names;
+  for (const PointField& field : fields) names.push_back(field.name);
+  std::ranges::sort(names);
+  const auto same = std::ranges::adjacent_find(names);
+  if (same == names.end()) return;
+  throw Error({path.string(), fmt::format("two fields '{}'", *same), "each name once",
+               "leave out or rename one of the columns"});
 }
 
 /// Columns that writers read with the types of make_point_cloud.
@@ -139,6 +166,7 @@ class FormatSink : public FileSink {
 
   void stage(const PointCloud& cloud, const Frame& frame) override {
     staged_.clear();
+    check_column_names(cloud, target_.path);
     check_column_sizes(cloud, target_.path);
     check_column_types(cloud, target_.path);
     check_needed_columns(format_.info, cloud, target_.path);
@@ -234,6 +262,7 @@ class FormatSink : public FileSink {
   /// that the others exist when it appears.
   void store(const CloudFile& job) {
     const std::filesystem::path& path = target_.path;
+    check_unique(job.fields, path);
     const bool is_stream = target_.descriptor >= 0;
     if (format_.write != nullptr) {
       AtomicFile& file = is_stream ? staged_.add(target_.descriptor, path) : staged_.add(path);

@@ -3,13 +3,13 @@
 #include <glidar/io/formats/kitti_labels.hpp>
 
 #include <glidar/core/axis_angle.hpp>
+#include <glidar/core/file_text.hpp>
 #include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -81,14 +81,6 @@ std::string box_text(const std::optional<ImageBox>& box) {
   const Eigen::AlignedBox2d& in = box->inside;
   return decimal(in.min().x()) + " " + decimal(in.min().y()) + " " + decimal(in.max().x()) + " " +
          decimal(in.max().y());
-}
-
-/// A class's name as one word.
-std::string type_of(const std::string& name) {
-  std::string word = name;
-  std::replace_if(
-      word.begin(), word.end(), [](unsigned char c) { return std::isspace(c) != 0; }, '_');
-  return word;
 }
 
 /// Occlusion states: 0 fully visible, 1 partly occluded, 2 largely occluded, 3 unknown. KITTI gives
@@ -196,7 +188,7 @@ std::string kitti_labels(const Scene& scene, const KittiCamera& camera, const Fr
     const Instance& instance = scene.instances[i];
     const PlacedMesh seen{scene.meshes.at(instance.mesh),
                           camera_from_world * frame.world_from_instance.at(i), instance.scale};
-    const std::string type = type_of(scene.class_names.at(instance.class_id));
+    const std::string type = FileText(scene.class_names.at(instance.class_id)).word();
     text += instance.class_id == 0
                 ? dont_care_line(seen, camera.intrinsics)
                 : object_line(type, occlusion_state(box_of(frame, i)), seen, camera.intrinsics);

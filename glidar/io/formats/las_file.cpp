@@ -3,6 +3,7 @@
 #include <glidar/io/formats/las_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/las_classes.hpp>
@@ -222,7 +223,7 @@ void put_vlr_header(Bytes& to, const char* user, std::uint16_t record, std::size
 /// The coordinate system in well-known text.
 std::string las_coordinate_system(const CloudFile& job) {
   if (!job.options.crs.empty()) return crs_text(job.options.crs);
-  std::string frame = one_line(job.cloud.frame_id);
+  std::string frame = printable_line(job.cloud.frame_id);
   std::erase(frame, '"');
   return fmt::format("LOCAL_CS[\"{}\",UNIT[\"metre\",1]]", frame);
 }
@@ -305,10 +306,10 @@ std::vector<std::uint32_t> las_places(std::vector<std::uint32_t> entries) {
 
 void check_crs_frame(const CloudFile& job, const AtomicFile& file) {
   if (job.options.crs.empty() || job.cloud.frame_id == "world") return;
-  throw Error({file.path().string(),
-               fmt::format("a coordinate reference system for coordinates in {}",
-                           one_line(job.cloud.frame_id)),
-               "coordinates in the world's axes", "leave the frame out"});
+  throw Error(
+      {file.path().string(),
+       fmt::format("a coordinate reference system for coordinates in {}", job.cloud.frame_id),
+       "coordinates in the world's axes", "leave the frame out"});
 }
 
 void write_las(const CloudFile& job, AtomicFile& file) {

@@ -3,6 +3,7 @@
 #include <glidar/io/formats/pcd_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
@@ -49,8 +50,8 @@ std::string header(const CloudFile& job, std::span<const PointField> fields) {
       "# glidar {}, metres in the frame {}\n"
       "VERSION 0.7\nFIELDS {}\nSIZE{}\nTYPE{}\nCOUNT{}\nWIDTH {}\nHEIGHT {}\nVIEWPOINT {}\n"
       "POINTS {}\nDATA {}\n",
-      version(), one_line(job.cloud.frame_id), joined_names(fields, ' '), sizes, types, counts,
-      job.cloud.cols, job.cloud.rows, viewpoint(job), job.cloud.size(),
+      version(), printable_line(job.cloud.frame_id), joined_names(fields, ' '), sizes, types,
+      counts, job.cloud.cols, job.cloud.rows, viewpoint(job), job.cloud.size(),
       kData[static_cast<std::size_t>(encoding)]);
 }
 

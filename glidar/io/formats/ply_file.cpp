@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/ply_file.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 
@@ -22,7 +23,7 @@ void append_renamed(const Column& column, const std::array<const char*, 3>& name
 std::string ply_header(const CloudFile& job, std::span<const PointField> fields) {
   std::string text = fmt::format("ply\nformat {} 1.0\ncomment glidar {}, metres in the frame {}\n",
                                  job.options.ply_ascii ? "ascii" : "binary_little_endian",
-                                 version(), one_line(job.cloud.frame_id));
+                                 version(), printable_line(job.cloud.frame_id));
   if (job.cloud.rows > 1) {
     fmt::format_to(std::back_inserter(text), "obj_info num_cols {}\nobj_info num_rows {}\n",
                    job.cloud.cols, job.cloud.rows);
@@ -44,7 +45,7 @@ std::vector<PointField> ply_fields(const PointCloud& cloud) {
     if (column.name == "xyz") {
       const Stored stored = float_is_enough(column) ? Stored::f32 : Stored::f64;
       append_renamed(column, {"x", "y", "z"}, stored, fields);
-    } else if (column.name == "normal") {
+    } else if (column.name == "normal" && column.components.size() == 3) {
       append_renamed(column, {"nx", "ny", "nz"}, native_type(column), fields);
     } else if (is_colour(column)) {
       append_renamed(column, {"red", "green", "blue"}, Stored::colour_byte, fields);

@@ -325,11 +325,4 @@ std::string joined_names(std::span<const PointField> fields, char separator) {
   return names;
 }
 
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
-  return line;
-}
-
 }  // namespace glidar

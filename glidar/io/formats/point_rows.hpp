@@ -92,7 +92,4 @@ void write_text_rows(std::span<const PointField> fields, std::size_t count, char
 /// The fields' names, joined by `separator`.
 std::string joined_names(std::span<const PointField> fields, char separator);
 
-/// Text that cannot break a header line: control characters become spaces.
-std::string one_line(std::string_view text);
-
 }  // namespace glidar

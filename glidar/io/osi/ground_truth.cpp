@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/osi/ground_truth.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/osi/object_types.hpp>
 #include <glidar/io/osi/osi_values.hpp>
 #include <glidar/motion/kinematics.hpp>
@@ -40,8 +41,8 @@ void add_derivatives(const Trajectory& trajectory, std::int64_t t_ns,
 ProtobufMessage source_reference(const Scene& scene, const Instance& instance) {
   return ProtobufMessage()
       .text(2, "glidar.scene")
-      .text(3, instance.name)
-      .text(3, class_name_of(scene, instance));
+      .text(3, printable_line(instance.name))  // texts of Protocol Buffers are UTF-8
+      .text(3, printable_line(class_name_of(scene, instance)));
 }
 
 ProtobufMessage vehicle_classification(std::uint64_t type) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/ros/box_message.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/config/json_numbers.hpp>
 #include <glidar/io/formats/box_json.hpp>
 #include <glidar/io/pictures/picture.hpp>
@@ -28,7 +29,7 @@ Marker cube_of(const Scene& scene, const ObjectBox& box) {
   const Instance& instance = scene.instances.at(box.instance);
   const PoseVector pose = to_xyz_wxyz(box.sensor_from_box);
   Marker cube;
-  cube.ns = scene.class_names.at(instance.class_id);
+  cube.ns = printable_line(scene.class_names.at(instance.class_id));
   cube.id = static_cast<std::int32_t>(instance.id);  // ids from 2^31 become negative
   cube.type = Marker::kCube;
   cube.pose = {{pose[0], pose[1], pose[2]}, {pose[4], pose[5], pose[6], pose[3]}};

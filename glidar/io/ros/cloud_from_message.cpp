@@ -3,7 +3,6 @@
 #include <glidar/io/ros/cloud_from_message.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 
 #include <fmt/format.h>
 
@@ -11,7 +10,10 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -22,8 +24,10 @@ namespace {
   throw Error({"PointCloud2", std::move(found), std::move(allowed), "the message is damaged"});
 }
 
+constexpr std::size_t kShown_bytes = 40;
+
 std::string shown_field(const PointField& field) {
-  return fmt::format("field '{}'", excerpt(field.name, 40));
+  return fmt::format("field '{}'", field.name.shown(kShown_bytes));
 }
 
 /// Bytes of one number; 0: unknown.
@@ -122,11 +126,42 @@ void fill_column(const FieldView& view, Column& column) {
   column.values = std::move(values);
 }
 
-Column column_of(const PointField& field, const FieldView& view) {
-  Column column{field.name, {field.name}, {}};
-  if (view.count > 1) column.components.clear();
-  for (std::size_t i = 0; view.count > 1 && i < view.count; ++i)
-    column.components.push_back(fmt::format("{}_{}", field.name, i));
+/// The names of columns and their components, each once.
+class NameList {
+ public:
+  /// Names the column after its field; a number is appended to names that are in use.
+  void name(Column& column, const FileText& field, std::size_t count) {
+    const std::string wanted = field.column_name();
+    std::size_t& number = numbers_[wanted];  // of the last column with this name
+    do ++number;
+    while (!name(column, number, wanted, count));
+    used_.insert(column.name);
+    used_.insert(column.components.begin(), column.components.end());
+  }
+
+ private:
+  /// False if a name is in use.
+  bool name(Column& column, std::size_t number, const std::string& wanted,
+            std::size_t count) const {
+    column.name = number == 1 ? wanted : fmt::format("{}_{}", wanted, number);
+    column.components.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      column.components.push_back(count == 1 ? column.name : fmt::format("{}_{}", column.name, i));
+    return !used_.contains(column.name) &&
+           std::none_of(column.components.begin(), column.components.end(),
+                        [&](const std::string& component) { return used_.contains(component); });
+  }
+
+  std::map<std::string, std::size_t> numbers_;
+  /// At first those of the points, and of NPZ's other arrays.
+  std::set<std::string> used_ = {
+      "x",        "y",   "z", "xyz", "world_from_sensor", "world_from_cloud", "world_from_instance",
+      "stamp_ns", "seed"};
+};
+
+Column column_of(const PointField& field, const FieldView& view, NameList& names) {
+  Column column;
+  names.name(column, field.name, view.count);
   switch (field.datatype) {
     case PointField::int8:
       fill_column<std::int8_t, std::int64_t>(view, column);
@@ -158,7 +193,7 @@ Column column_of(const PointField& field, const FieldView& view) {
 /// 0 to 2 for x, y and z; 3 for others.
 std::size_t axis_of(const PointField& field) {
   constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
-  return static_cast<std::size_t>(std::find(kAxes.begin(), kAxes.end(), field.name) -
+  return static_cast<std::size_t>(std::find(kAxes.begin(), kAxes.end(), field.name.bytes()) -
                                   kAxes.begin());
 }
 
@@ -172,12 +207,12 @@ void copy_axis(const PointField& field, const FieldView& view, double* to) {
 }
 
 void require_unique(const PointCloud2& message) {
-  std::vector<std::string> names;
+  std::vector<FileText> names;
   for (const PointField& field : message.fields) names.push_back(field.name);
   std::sort(names.begin(), names.end());
   const auto same = std::adjacent_find(names.begin(), names.end());
   if (same != names.end())
-    reject_cloud(fmt::format("two fields '{}'", excerpt(*same, 40)), "each name once");
+    reject_cloud(fmt::format("two fields '{}'", same->shown(kShown_bytes)), "each name once");
 }
 
 }  // namespace
@@ -190,15 +225,16 @@ PointCloud to_point_cloud(const PointCloud2& message) {
       message.data.bytes().empty() ? message.data.to_vector() : std::vector<std::byte>{};
   const std::span<const std::byte> data = copy.empty() ? message.data.bytes() : copy;
   const std::uint32_t rows = message.width == 0 ? std::min(message.height, 1U) : message.height;
-  PointCloud cloud{rows, message.width, message.header.frame_id, Pose::Identity(), {}};
+  PointCloud cloud{rows, message.width, message.header.frame_id.shown(), Pose::Identity(), {}};
   std::vector<double> xyz(3 * cloud.size());
   std::size_t axes = 0;
+  NameList names;
   cloud.columns.push_back({"xyz", {"x", "y", "z"}, {}});
   for (const PointField& field : message.fields) {
     const FieldView view{message, data, field.offset, count_of(field)};
     const std::size_t axis = axis_of(field);
     if (axis == 3) {
-      cloud.columns.push_back(column_of(field, view));
+      cloud.columns.push_back(column_of(field, view, names));
       continue;
     }
     copy_axis(field, view, xyz.empty() ? nullptr : xyz.data() + axis);
@@ -226,7 +262,7 @@ PointCloud to_point_cloud(const CustomMsg& message) {
     lines[i] = point.line;
   }
   PointCloud cloud{
-      1, static_cast<std::uint32_t>(count), message.header.frame_id, Pose::Identity(), {}};
+      1, static_cast<std::uint32_t>(count), message.header.frame_id.shown(), Pose::Identity(), {}};
   cloud.columns = {{"xyz", {"x", "y", "z"}, std::move(xyz)},
                    {"offset_time", {"offset_time"}, std::move(times)},
                    {"reflectivity", {"reflectivity"}, std::move(reflectivity)},

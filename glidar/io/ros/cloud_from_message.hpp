@@ -9,7 +9,8 @@ namespace glidar::ros {
 
 /// The points of a message with any fields, offsets and byte order, in the frame
 /// message.header.frame_id. x, y and z become the column `xyz`; other fields become columns of
-/// their name, and signed integers become int64. Throws Error when sizes contradict each other,
+/// their name, see FileText::column_name(), with a number if that is in use: a_b and a.b become a_b
+/// and a_b_2. Signed integers become int64. Throws Error when sizes contradict each other,
 /// fields overlap or repeat, or x, y or z are missing or no floats.
 PointCloud to_point_cloud(const PointCloud2& message);
 

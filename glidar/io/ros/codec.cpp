@@ -63,6 +63,8 @@ class MemberWriter {
     std::memcpy(grow(text.size() + end, 1), text.c_str(), text.size() + end);
   }
 
+  void write(const FileText& text) { write(text.bytes()); }
+
   void write(const Payload& payload) {
     write_size(payload.size());
     std::byte* place = grow(payload.size(), 1);
@@ -173,6 +175,12 @@ class MemberReader {
     if (wire_ == Wire::ros1 || size == 0) return;
     if (text.back() != '\0') reject("a text without a zero byte at its end", "a CDR string");
     text.pop_back();
+  }
+
+  void read(FileText& text) {
+    std::string bytes;
+    read(bytes);
+    text = std::move(bytes);
   }
 
   void read(Payload& payload) {

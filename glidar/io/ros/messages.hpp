@@ -8,6 +8,7 @@
 // ROS 1 Noetic and ROS 2 (Marker: Humble and later), livox_ros_driver2 (CustomMsg), velodyne_msgs
 // (VelodyneScan) and ouster_sensor_msgs.
 
+#include <glidar/core/file_text.hpp>
 #include <glidar/io/ros/payload.hpp>
 
 #include <array>
@@ -55,7 +56,7 @@ std::int64_t to_ns(const Time& time);
 struct Header {
   std::uint32_t seq = 0;
   Time stamp;
-  std::string frame_id;  ///< without a leading slash
+  FileText frame_id;  ///< without a leading slash
 };
 void visit_members(Is<Header> auto& m, auto&& visit) {
   visit(Ros1Only{m.seq}, m.stamp, m.frame_id);
@@ -73,7 +74,7 @@ struct PointField {
     float32 = 7,
     float64 = 8,
   };
-  std::string name;
+  FileText name;
   std::uint32_t offset = 0;
   std::uint8_t datatype = 0;
   std::uint32_t count = 1;
@@ -210,7 +211,7 @@ void visit_members(Is<Transform> auto& m, auto&& visit) {
 /// The pose of child_frame_id in header.frame_id.
 struct TransformStamped {
   Header header;
-  std::string child_frame_id;
+  FileText child_frame_id;
   Transform transform;
 };
 void visit_members(Is<TransformStamped> auto& m, auto&& visit) {
@@ -251,7 +252,7 @@ void visit_members(Is<Clock> auto& m, auto&& visit) {
 /// geometry_msgs/PoseWithCovariance and TwistWithCovariance in place.
 struct Odometry {
   Header header;
-  std::string child_frame_id;
+  FileText child_frame_id;
   PoseMessage pose;  ///< of child_frame_id in header.frame_id
   std::array<double, 36> pose_covariance{};
   Vector3 linear_velocity;   ///< m/s, in child_frame_id

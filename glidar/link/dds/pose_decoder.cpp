@@ -28,12 +28,12 @@ void require_stamp(const ros::Time& stamp) {
 }
 
 /// ROS 1 had names with a leading slash.
-std::string frame_name(const std::string& name) {
+std::string frame_name(const FileText& text) {
+  const std::string& name = text.bytes();
   return name.starts_with('/') ? name.substr(1) : name;
 }
 
-FramedPose checked_pose(const ros::Header& header, const std::string* child,
-                        const TimedPose& pose) {
+FramedPose checked_pose(const ros::Header& header, const FileText* child, const TimedPose& pose) {
   require_stamp(header.stamp);
   FramedPose framed{.frames = {frame_name(header.frame_id), ""}, .pose = pose};
   require_name(framed.frames.parent, "frame_id of a pose");

@@ -5,10 +5,10 @@
 import argparse
 import re
 import signal
-import sys
 
 from glidar import Error
 from glidar._errors import excerpt
+from glidar._printing import print_line, print_message
 from glidar.campaign.progress import print_warnings
 
 DONE, TRIALS_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -83,16 +83,15 @@ def make_parser():
 def _print_outcome(outcome, root):
     """Prints the last line; returns the exit code."""
     if outcome.missing:
-        print(f"{root}: {outcome.missing} shards are missing; run the other parts, then merge")
+        print_line(f"{root}: {outcome.missing} shards are missing; run the other parts, then merge")
         return BAD_INPUT
     rate = f", {outcome.rate:.4g} trials/s" if outcome.rate else ""
     kind = "" if outcome.whole else " of this part"
-    print(f"{root}: {outcome.trials} trials{kind}, {outcome.failed} failed{rate}")
+    print_line(f"{root}: {outcome.trials} trials{kind}, {outcome.failed} failed{rate}")
     if outcome.failed:
-        print(f"glidar: warning: trials failed, {outcome.error}", file=sys.stderr)
+        print_message(f"glidar: warning: trials failed, {outcome.error}")
         if outcome.whole:
-            print(f"glidar: warning: 'error' in index.parquet of all failed trials is listed there, and by glidar campaign report {root}",
-                  file=sys.stderr)
+            print_message(f"glidar: warning: 'error' in index.parquet of all failed trials is listed there, and by glidar campaign report {root}")
     return TRIALS_FAILED if outcome.failed else DONE
 
 
@@ -132,7 +131,7 @@ def _merge(flags):
 def _report(flags):
     from glidar.campaign import report
 
-    print(f"wrote {report.write(flags.folder, flags.output)}")
+    print_line(f"wrote {report.write(flags.folder, flags.output)}")
     return DONE
 
 
@@ -141,13 +140,13 @@ def _check(flags):
 
     count, wrong = running.check(flags.folder)
     for name in wrong:
-        print(f"{flags.folder}/{name}: missing or different from the manifest")
-    print(f"{flags.folder}: {count - len(wrong)} of {count} files match the manifest")
+        print_line(f"{flags.folder}/{name}: missing or different from the manifest")
+    print_line(f"{flags.folder}: {count - len(wrong)} of {count} files match the manifest")
     return TRIALS_FAILED if wrong else DONE
 
 
 def _fail(text):
-    print(f"glidar: error: {text}", file=sys.stderr)
+    print_message(f"glidar: error: {text}")
     return BAD_INPUT
 
 
@@ -163,5 +162,6 @@ def main(arguments=None):
         return _fail(f"Python package '{error.name}' is missing; install the dependencies of campaigns: "
                      "pip install '.[campaign]' in GLIDAR's source")
     except KeyboardInterrupt:
-        print("\nglidar: interrupted; run the same command again to resume", file=sys.stderr)
+        print_message("")  # the line of the progress ends
+        print_message("glidar: interrupted; run the same command again to resume")
         return INTERRUPTED

@@ -6,6 +6,8 @@ import logging
 import sys
 import time
 
+from glidar._printing import print_message
+
 BAR = 24
 LINE_EVERY_S = 30.0
 DRAW_EVERY_S = 0.2
@@ -81,9 +83,9 @@ class Warnings(logging.Handler):
         if text in self._reported or len(self._reported) == MAX_WARNINGS:
             return
         self._reported.add(text)
-        sys.stderr.write(f"glidar: warning: {text}\n")
+        print_message(f"glidar: warning: {text}")
         if len(self._reported) == MAX_WARNINGS:
-            sys.stderr.write("glidar: further warnings of this process are not shown\n")
+            print_message("glidar: further warnings of this process are not shown")
 
 
 def print_warnings():

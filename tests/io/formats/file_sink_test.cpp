@@ -61,6 +61,30 @@ TEST(FileSink, RejectsInvalidPathsImmediately) {
   EXPECT_THROW(make_file_sink(folder / "a.depth.png", options, context), Error);
 }
 
+TEST(FileSink, RefusesNamesOfColumnsThatHeadersAndArchivesCannotHave) {
+  const testing::TestFolder folder;
+  for (const char* suffix : {".npz", ".ply", ".pcd", ".csv", ".las"}) {
+    for (const char* name : {"../evil", "a\nelement face 9", "=cmd|x,\"", "a b", "\u00E9", ""}) {
+      CloudFixture made = make_fixture();
+      made.cloud.columns.push_back({name, {"a"}, std::vector<float>(made.cloud.size())});
+      const std::string path = (folder / ("a" + std::string(suffix))).string();
+      EXPECT_THAT(error_text([&] { write_cloud(made, path); }), HasSubstr("letters, digits and _"));
+      std::swap(made.cloud.columns.back().name, made.cloud.columns.back().components[0]);
+      EXPECT_THAT(error_text([&] { write_cloud(made, path); }), HasSubstr("letters, digits and _"));
+    }
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(FileSink, RefusesTwoFieldsOfOneName) {
+  const testing::TestFolder folder;
+  CloudFixture made = make_fixture();
+  made.cloud.columns.push_back({"a", {"x"}, std::vector<float>(made.cloud.size())});
+  EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.ply"); }),
+              HasSubstr("two fields 'x'"));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
 TEST(FileSink, TrailingSeparatorsOfAFolderAreIgnored) {
   const testing::TestFolder folder;
   EXPECT_EQ(format_for("out.kitti/").suffix, ".kitti");

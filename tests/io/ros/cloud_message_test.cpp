@@ -276,6 +276,43 @@ TEST(CloudFromMessage, ReadsAllTypesOffsetsStepsAndByteOrders) {
   }
 }
 
+TEST(CloudFromMessage, NamesAreColumnNamesAndUnique) {
+  PointCloud2 message = mixed_message(false);
+  message.fields[3].name = "../../evil";
+  message.fields[4].name = "..evil";
+  message.fields[5].name = "xyz";
+  message.header.frame_id = "map\nelement face 9";
+  const PointCloud cloud = to_point_cloud(message);
+  std::vector<std::string> names;
+  for (const Column& column : cloud.columns)
+    names.insert(names.end(), column.components.begin(), column.components.end());
+  EXPECT_THAT(names, ElementsAre("x", "y", "z", "_evil", "_evil_2_0", "_evil_2_1", "xyz_2"));
+  EXPECT_EQ(cloud.frame_id, "map?element face 9");
+  message.fields[3].name = "b_0";
+  message.fields[4].name = "b";
+  message.fields[5].name = "world_from_sensor";
+  names.clear();
+  for (const Column& column : to_point_cloud(message).columns) names.push_back(column.name);
+  EXPECT_THAT(names, ElementsAre("xyz", "b_0", "b_2", "world_from_sensor_2"));
+}
+
+TEST(CloudFromMessage, ManyNamesThatBecomeOneTakeLittleTime) {
+  constexpr std::uint32_t kFields = 60'000;
+  PointCloud2 message;
+  message.height = 1;
+  message.fields = {{"x", 0, PointField::float32, 1},
+                    {"y", 4, PointField::float32, 1},
+                    {"z", 8, PointField::float32, 1}};
+  for (std::uint32_t i = 0; i < kFields; ++i) {
+    std::string name;
+    for (std::uint32_t rest = i + 1; rest > 0; rest /= 8) name += "!#$%&()*"[rest % 8];
+    message.fields.push_back({name, 12 + i, PointField::uint8, 1});
+  }
+  message.point_step = 12 + kFields;
+  const PointCloud cloud = to_point_cloud(message);
+  EXPECT_EQ(cloud.columns.back().name, "__" + std::to_string(kFields));
+}
+
 TEST(CloudFromMessage, RowsWithoutPointsTakeNoTime) {
   PointCloud2 message = mixed_message(false);
   message.width = 0;
