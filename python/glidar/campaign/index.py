@@ -137,7 +137,7 @@ def _no_index(path, what):
                  "glidar campaign check lists the files that differ")
 
 
-def _checked_metadata(path, metadata, rows):
+def _check_size(path, metadata, rows):
     """Raises Error unless the file claims this number of rows, of a size that rows can have."""
     if metadata.num_rows != rows:
         raise Error(str(path), f"{metadata.num_rows} rows", f"{rows}, one for each trial",
@@ -155,11 +155,12 @@ def read(path, rows):
     import pyarrow.parquet as pq
 
     try:
-        with files.open_input(path) as opened, _native(opened) as source, \
-                pq.ParquetFile(source, read_dictionary=TEXTS) as file:
-            _checked_metadata(path, file.metadata, rows)
-            _check_columns(path, file.schema_arrow)
-            table = file.read()  # texts as dictionaries: a long one that is repeated needs its memory once
+        with files.open_input(path) as opened, _native(opened) as source:
+            with pq.ParquetFile(source) as file:
+                _check_size(path, file.metadata, rows)
+                _check_columns(path, file.schema_arrow)
+            # texts as dictionaries: a long one that is repeated needs its memory once
+            table = pq.read_table(source, read_dictionary=TEXTS)
     except (pa.ArrowException, OSError) as error:
         raise _no_index(path, error) from None
     for name in [*TEXTS, *POSE, "trial", "shard", "ok"]:
@@ -174,19 +175,13 @@ def _check_columns(path, schema):
     import pyarrow as pa
 
     kinds = {"trial": pa.types.is_integer, "shard": pa.types.is_integer, "ok": pa.types.is_boolean}
-    kinds |= dict.fromkeys(POSE, pa.types.is_floating) | dict.fromkeys(TEXTS, _is_text)
+    kinds |= dict.fromkeys(POSE, pa.types.is_floating) | dict.fromkeys(TEXTS, pa.types.is_string)
     for name, is_right in kinds.items():
         if schema.names.count(name) != 1 or not is_right(schema.field(name).type):
             raise _no_index(path, f"column {name}")
     for field in schema:
         if field.name not in kinds and not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type)):
             raise _no_index(path, f"column {field.name}")
-
-
-def _is_text(kind):
-    import pyarrow as pa
-
-    return pa.types.is_string(kind.value_type if pa.types.is_dictionary(kind) else kind)
 
 
 def _with_plain_texts(path, table):
