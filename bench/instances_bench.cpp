@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // A scene of 100,000 instances: time until it can be cast, and cost of moving one of them, or of
-// one that is very far away.
+// one that is very far away. 50,000 boxes at one place, and as many behind a box.
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/model/builtin_models.hpp>
@@ -39,6 +39,22 @@ Scene make_boxes_and_far_one() {
   box.scale = 1e8;
   box.world_from_object.translation() = Eigen::Vector3d(0.0, 0.0, 1e11);
   scene.instances.push_back(box);
+  return scene;
+}
+
+/// A box, and others `behind` it in a row, or at its place.
+Scene make_copies(bool behind) {
+  constexpr int kCopies = 50'000;
+  Scene scene;
+  add_model(scene, make_builtin_model("box"));
+  scene.instances[0].scale = 100.0;
+  scene.instances[0].world_from_object.translation() = Eigen::Vector3d(300.0, 300.0, 0.0);
+  Instance box = scene.instances[0];
+  for (int i = 0; i < kCopies; ++i) {
+    if (behind)
+      box.world_from_object.translation() += Eigen::Vector3d(320.0, 330.0, -60.0).normalized();
+    scene.instances.push_back(box);
+  }
   return scene;
 }
 
@@ -106,13 +122,19 @@ void register_casts(Stage& stage, std::size_t moved, const std::string& name) {
 int main(int argc, char** argv) {
   glidar::bench::Stage stage(glidar::bench::make_boxes());
   glidar::bench::Stage with_far_one(glidar::bench::make_boxes_and_far_one());
+  glidar::bench::Stage hidden(glidar::bench::make_copies(true));
+  glidar::bench::Stage coincident(glidar::bench::make_copies(false));
   glidar::bench::register_first_cast(stage, "first cast");
+  glidar::bench::register_casts(hidden, 0, "50,000 hidden");
+  glidar::bench::register_casts(coincident, 0, "50,000 coincident");
   glidar::bench::register_casts(stage, 0, "at rest");
   glidar::bench::register_casts(stage, 1, "one moves");
   glidar::bench::register_casts(stage, 1000, "1000 move");
   glidar::bench::register_casts(with_far_one, 0, "one is at 1e11 m");
-  return glidar::bench::run(argc, argv,
-                            {{"one is at 1e11 m / none is", "at rest", "one is at 1e11 m", 0.8},
-                             {"one of 100,000 moves / none does", "at rest", "one moves", 0.99},
-                             {"1000 move / none does", "at rest", "1000 move", 0.0}});
+  return glidar::bench::run(
+      argc, argv,
+      {{"one is at 1e11 m / none is", "at rest", "one is at 1e11 m", 0.8},
+       {"one of 100,000 moves / none does", "at rest", "one moves", 0.99},
+       {"1000 move / none does", "at rest", "1000 move", 0.0},
+       {"50,000 coincident / 50,000 hidden", "50,000 hidden", "50,000 coincident", 0.99}});
 }

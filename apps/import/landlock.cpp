@@ -8,6 +8,7 @@
 #include <linux/landlock.h>
 #include <sys/syscall.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -24,6 +25,8 @@ struct RulesetAttributes {
   std::uint64_t scopes = 0;   ///< from version 6
 };
 
+constexpr long kTruncationVersion = 3;
+
 constexpr std::uint64_t bits(unsigned count) {
   return (std::uint64_t{1} << count) - 1;
 }
@@ -31,7 +34,7 @@ constexpr std::uint64_t bits(unsigned count) {
 /// All access rights that this version of the interface can restrict.
 RulesetAttributes everything(long version) {
   RulesetAttributes all;
-  all.files = bits(version >= 5 ? 16 : version >= 3 ? 15 : version >= 2 ? 14 : 13);
+  all.files = bits(version >= 5 ? 16 : version >= kTruncationVersion ? 15 : version >= 2 ? 14 : 13);
   if (version >= 4) all.network = bits(2);  // bind and connect TCP
   if (version >= 6) all.scopes = bits(2);   // abstract UNIX sockets, signals
   return all;
@@ -43,33 +46,33 @@ std::size_t size_for(long version) {
   return fields * sizeof(std::uint64_t);
 }
 
-std::string why(const char* what) {
-  if (errno == ENOSYS) return "this kernel does not have it";
-  if (errno == EOPNOTSUPP) return "it is switched off in this kernel";
-  return std::string(what) + ": " + std::strerror(errno);
+FileRestriction failed(const char* what) {
+  if (errno == ENOSYS) return {"this kernel does not have it"};
+  if (errno == EOPNOTSUPP) return {"it is switched off in this kernel"};
+  return {std::string(what) + ": " + std::strerror(errno)};
 }
 
 }  // namespace
 
-std::string restrict_files(const std::filesystem::path& root) {
-  const long version =
-      ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
-  if (version < 1) return why("querying its version");
+FileRestriction restrict_files(const std::filesystem::path& root, long newest) {
+  const long version = std::min(
+      newest, ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION));
+  if (version < 1) return failed("querying its version");
   const RulesetAttributes all = everything(version);
   const UniqueFd ruleset(
       static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, size_for(version), 0)));
-  if (!ruleset) return why("making rules");
+  if (!ruleset) return failed("making rules");
   const UniqueFd folder(::open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-  if (!folder) return why("opening the model's folder");
+  if (!folder) return failed("opening the model's folder");
   landlock_path_beneath_attr rule{};
   rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
   rule.parent_fd = folder.get();
   if (::syscall(SYS_landlock_add_rule, ruleset.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0) {
-    return why("allowing the model's folder");
+    return failed("allowing the model's folder");
   }
   if (::syscall(SYS_landlock_restrict_self, ruleset.get(), 0) != 0)
-    return why("applying the rules");
-  return "";
+    return failed("applying the rules");
+  return {"", version >= kTruncationVersion};
 }
 
 }  // namespace glidar::import

@@ -10,6 +10,7 @@
 #include <import/process_limits.hpp>
 #include <import/sandbox.hpp>
 
+#include <glidar/io/files/checksummed_block.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/model_folder.hpp>
 
@@ -29,6 +30,7 @@ constexpr int kProgressFd = 4;
 constexpr int kExitAnswered = 0;
 constexpr int kExitFailed = 2;
 constexpr int kExitNoMemory = 3;
+constexpr int kExitFileSize = 4;
 
 void report_progress(double fraction) {
   const auto percent = static_cast<unsigned char>(fraction <= 1.0 ? fraction * 100.0 : 100.0);
@@ -60,6 +62,8 @@ int run(int argc, const char* const* argv) {
     return answer(argv);
   } catch (const std::bad_alloc&) {
     return kExitNoMemory;
+  } catch (const FileSizeLimit&) {
+    return kExitFileSize;
   } catch (const std::exception&) {
     return kExitFailed;  // the parent reports the missing answer
   }

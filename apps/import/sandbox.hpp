@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <import/landlock.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,8 +18,10 @@ namespace glidar::import {
 ///  - a seccomp filter: only the system calls for reading files and computing are allowed, so that
 ///    no process, socket, executable memory, signal to others or change of a file is possible.
 ///    Others fail with EPERM.
+/// `newest_landlock` limits the version of Landlock, for tests of old kernels.
 /// Returns a note for the user for each mechanism that the system lacks. Builds with the address or
 /// thread sanitizer have no sandbox and return one note.
-std::vector<std::string> enter_sandbox(const std::filesystem::path& root, int last_fd);
+std::vector<std::string> enter_sandbox(const std::filesystem::path& root, int last_fd,
+                                       long newest_landlock = kNewestLandlock);
 
 }  // namespace glidar::import

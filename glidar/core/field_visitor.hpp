@@ -36,6 +36,13 @@ struct NumberListRule {
   std::string allowed = {};  ///< for errors; empty: "a list of ... numbers"
 };
 
+/// The case that a nested map has a word: `key: {inner: word}`.
+struct KeyCase {
+  const char* key = nullptr;
+  const char* inner = nullptr;
+  const char* word = nullptr;
+};
+
 /// Keys of which a map has at most one.
 struct KeyChoice {
   std::vector<const char*> keys;
@@ -43,6 +50,17 @@ struct KeyChoice {
   const char* missing = nullptr;  ///< error when there is none; null: none is fine
   const char* remedy = nullptr;   ///< of that error
   const char* conflict_remedy = "remove one of them";
+  const char* supplier = nullptr;  ///< a key of a file that may have the value, for schemas
+  KeyCase none_needed = {};        ///< the case in which none is missing
+};
+
+/// Keys that a map may not have in a case.
+struct KeyExclusion {
+  KeyCase when;
+  std::vector<const char*> keys;
+  const char* found;  ///< for errors
+  const char* allowed;
+  const char* remedy;
 };
 
 struct KeyNeed {
@@ -118,6 +136,8 @@ class FieldVisitor {
   }
   virtual void boolean(const FieldInfo& field, bool& /*value*/) { key(field); }
   virtual void text(const FieldInfo& field, std::string& /*value*/) { key(field); }
+  /// A list of texts.
+  virtual void texts(const FieldInfo& field, std::vector<std::string>& /*values*/) { key(field); }
   /// A path, seen from the folder of the file, or the name of a built-in model.
   virtual void path(const FieldInfo& field, std::string& /*value*/) { key(field); }
   /// One of the words; `value` is its index.
@@ -179,6 +199,8 @@ class FieldVisitor {
 
   /// Keys of which a map has at most one.
   virtual void at_most_one(const KeyChoice& /*choice*/) {}
+  /// Keys that a map may not have in a case.
+  virtual void excludes(const KeyExclusion& /*exclusion*/) {}
   /// A key that needs another one beside it.
   virtual void needs(const KeyNeed& /*need*/) {}
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/listener.hpp>
 
+#include <glidar/core/error.hpp>
+
 #include <fcntl.h>
 #include <linux/filter.h>
 #include <sys/resource.h>
@@ -10,7 +12,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace glidar::link {
 namespace {
@@ -72,6 +77,19 @@ int descriptor_limit() {
   constexpr rlim_t kMaxConnections = std::numeric_limits<int>::max();
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return static_cast<int>(kMaxConnections);
   return static_cast<int>(std::min(limit.rlim_cur, kMaxConnections));
+}
+
+void require_descriptors(int count) {
+  std::vector<UniqueFd> spare;
+  while (std::ssize(spare) < count) {
+    spare.push_back(open_spare());
+    if (spare.back()) continue;
+    throw Error({.where = "network",
+                 .found = std::string("no free file descriptors: ") + std::strerror(errno),
+                 .allowed = std::to_string(count) + " free ones; the limit of this process is " +
+                            std::to_string(descriptor_limit()),
+                 .remedy = "raise the limit, for example by 'ulimit -n 1024'"});
+  }
 }
 
 }  // namespace glidar::link

@@ -33,6 +33,9 @@ class Listener {
 /// Raises the process's limit of open files for these connections, as far as the system allows.
 void raise_descriptor_limit(std::int64_t connections);
 
+/// Throws Error unless the process can open this many more descriptors.
+void require_descriptors(int count);
+
 /// The maximum number of descriptors of this process.
 int descriptor_limit();
 

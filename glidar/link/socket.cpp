@@ -3,6 +3,7 @@
 #include <glidar/link/socket.hpp>
 
 #include <glidar/link/ipc_path.hpp>
+#include <glidar/link/listener.hpp>
 #include <glidar/link/socket_monitor.hpp>
 #include <glidar/link/subscription_table.hpp>
 
@@ -168,10 +169,18 @@ std::unique_ptr<SocketMonitor> make_monitor(zmq::context_t& context, zmq::socket
                                          std::move(guard));
 }
 
+/// Without descriptors for its threads, queues and the monitor, ZeroMQ would end the program.
+constexpr int kSocketDescriptors = 16;
+
+zmq::context_t& with_descriptors(zmq::context_t& context) {
+  require_descriptors(kSocketDescriptors);
+  return context;
+}
+
 }  // namespace
 
 Socket::Socket(Context& context, const SocketOptions& options)
-    : impl_(std::make_unique<Impl>(context.impl_->context, options)) {
+    : impl_(std::make_unique<Impl>(with_descriptors(context.impl_->context), options)) {
   zmq::socket_t& socket = impl_->socket;
   socket.set(zmq::sockopt::linger, static_cast<int>(millis(options.linger)));
   socket.set(zmq::sockopt::sndhwm, options.send_queue);

@@ -22,8 +22,8 @@ struct SpecialCase {
 
 /// Several instances 10 km and 100 km away and one nearby, a sensor 1.5 m above a planet, a scanner
 /// among bodies, a moving sensor and a moving target, sensors on vertices, beams at vertices and
-/// edges, beams beside silhouettes, and those of large_cases.hpp and measurement_cases.hpp. The
-/// shapes must outlive the cases.
+/// edges, beams beside silhouettes, large casts and scenes, and measurements. The shapes must
+/// outlive the cases.
 std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes);
 
 }  // namespace glidar

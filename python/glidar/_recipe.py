@@ -121,7 +121,7 @@ class Recipe:
 
     def key(self) -> object:
         """A hashable value that is equal for scenes with bit-identical measurements."""
-        sensors = [(name, core.document(), core.beam_table(), pose) for name, core, pose in self.core.rig()]
+        sensors = [(name, core.values(), core.beam_table(), pose) for name, core, pose in self.core.rig()]
         imus = [(name, core.document(), pose) for name, core, pose in self.core.imus()]
         parts = [_core.scene_digest(self.core), _core.placing_state(self.core), sensors]
         return key_of([*parts, imus, self.core.gravity_m_s2])

@@ -84,7 +84,7 @@ class Sensor(Immutable):
     def to_dict(self) -> dict[str, Any]:
         """All values with the keys of a sensor file: ``Sensor.from_dict(sensor.to_dict()) == sensor``.
 
-        Sources of values are omitted. Beams from a file are arrays (see ``from_dict``), copies that may be
+        Sources of values are omitted; notes are kept. Beams from a file are arrays (see ``from_dict``), copies that may be
         modified; all else is plain numbers, strings, lists and dicts, which YAML and JSON can represent."""
         document: dict[str, Any] = json.loads(self._core.document())
         table = self._core.beam_table()
@@ -162,10 +162,10 @@ class Sensor(Immutable):
         return self._core is other._core or self._key() == other._key()
 
     def __hash__(self) -> int:
-        return hash(self._core.document())
+        return hash(self._core.values())
 
     def _key(self) -> object:
-        return (self._core.document(), key_of(self._core.beam_table()))
+        return (self._core.values(), key_of(self._core.beam_table()))
 
     def __getstate__(self) -> dict[str, Any]:
         core = self._core

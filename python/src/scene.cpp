@@ -299,6 +299,22 @@ std::vector<std::string> files_read(const SceneHandle& handle) {
   return files;
 }
 
+void Turn::lock() {
+  if (holder_.load() == std::this_thread::get_id()) {
+    throw Error({.where = "scene",
+                 .found = "a signal handler uses the scene whose measurement it interrupts",
+                 .allowed = "another scene, or this one after the measurement",
+                 .remedy = "set a flag in the handler, and act on it after the measurement"});
+  }
+  mutex_.lock();
+  holder_.store(std::this_thread::get_id());
+}
+
+void Turn::unlock() {
+  holder_.store({});
+  mutex_.unlock();
+}
+
 std::shared_ptr<PreparedScene> unrendered(const SceneHandle& handle, const std::string& kind) {
   auto made = std::make_shared<PreparedScene>();
   made->kind = kind;

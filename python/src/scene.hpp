@@ -9,14 +9,29 @@
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/render/renderer.hpp>
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 namespace glidar::python {
+
+/// Measurements of a scene run one at a time. Python's signal handlers run within a measurement, in
+/// its thread, where another one of the scene would wait for it forever.
+class Turn {
+ public:
+  /// Throws Error in a signal handler that interrupts a measurement of the scene.
+  void lock();
+  void unlock();
+
+ private:
+  std::mutex mutex_;
+  std::atomic<std::thread::id> holder_;
+};
 
 /// A scene with its renderer, created once. Measurements share it and run one at a time.
 struct PreparedScene {
@@ -24,7 +39,7 @@ struct PreparedScene {
   std::shared_ptr<const Scene> scene;
   std::vector<std::string> files;      ///< all files that it was read from
   std::unique_ptr<Renderer> renderer;  ///< none: see unrendered()
-  std::mutex turn;
+  Turn turn;
 };
 
 /// A sensor on the rig of a scene file; a single one has no name.

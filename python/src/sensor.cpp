@@ -148,6 +148,13 @@ std::string description(const SensorHandle& handle) {
   return sensor_to_json(handle.sensor(), *handle.beams(0));
 }
 
+/// What equal sensors have in common: all numbers and the name.
+std::string values(const SensorHandle& handle) {
+  Sensor sensor = handle.sensor();
+  sensor.notes.clear();
+  return sensor_document(sensor);
+}
+
 /// One entry per preset: name, title, aliases, modes, default mode ("": none).
 nb::list presets(const std::string& text) {
   nb::list list;
@@ -207,6 +214,7 @@ void bind_sensor(nb::module_& module) {
       .def_prop_ro("files", [](const SensorHandle& self) { return self.sensor().files; })
       .def("description", description)
       .def("document", [](const SensorHandle& self) { return sensor_document(self.sensor()); })
+      .def("values", values)
       .def("beam_table", beam_table,
            nb::sig("def beam_table(self) -> dict[str, typing.Any] | None"))
       .def("changed", changed, nb::arg("options"))

@@ -85,6 +85,27 @@ class Lidars(Calibrated):
         self.assertEqual(self.files(), ["c.yaml"])
 
 
+class Scenes(Calibrated):
+    def elevations(self, *arguments):
+        self.succeed("render", *arguments, "--ground-truth", "--columns", "xyz,range", "-o", "a.npz")
+        cloud = self.arrays("a.npz")
+        return np.degrees(np.arcsin(cloud["xyz"][..., 2] / cloud["range"]))[:, 0]
+
+    def test_the_calibration_of_a_scenes_sensor_is_in_the_scene_or_an_option(self):
+        self.write("c.csv", "Channel,Elevation,Azimuth\n1,-3,0\n2,7,0\n")
+        sensor = "sensor: {optics: {type: spinning, columns_per_turn: 8, elevation_deg: [0, 1]}}\n"
+        room = "models: [{model: builtin:box}]\nsensor_pose: {position: [0, 0, 0]}\n" + sensor
+        self.write("plain.yaml", room)
+        self.write("own.yaml", room + "sensor_calibration_file: c.csv\n")
+        np.testing.assert_allclose(self.elevations("plain.yaml"), [1, 0], atol=1e-4)
+        np.testing.assert_allclose(self.elevations("own.yaml"), [7, -3], atol=1e-4)
+        np.testing.assert_allclose(self.elevations("plain.yaml", "--calibration", "c.csv"), [7, -3], atol=1e-4)
+        self.write("rig.yaml", "models: [{model: builtin:box}]\nsensors: [{name: a, sensor: VLP-16}]\n")
+        reported = self.refused("render", "rig.yaml", "--calibration", "c.csv", "-o", "b.npz")
+        self.assertIn("--calibration: given for a scene file with a rig of sensors", reported)
+        self.assertIn("calibration_file: ...", reported)
+
+
 class Cameras(Calibrated):
     def test_kalibr_selects_a_camera_by_its_name(self):
         self.write("camchain.yaml", CAMCHAIN)

@@ -6,6 +6,7 @@ command then gives the same bytes. The built program is found in PATH."""
 
 import itertools
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -115,6 +116,24 @@ class Render(FaultTest):
             self.assertEqual(self.contents(), whole | hidden)
 
         self.each_kill(RENDER, self.empty, check)
+
+
+    def test_a_kill_while_files_are_written_leaves_none(self):
+        if not self.has_unnamed_files():
+            self.skipTest("no files without names; use another file system")
+        for at in range(1, self.count(RENDER, "write") + 1):
+            self.empty()
+            with self.subTest(at=at):
+                done = self.with_fault(RENDER, "write", at, "kill")
+                self.assertEqual(done.returncode, -signal.SIGKILL, done.stderr)
+                self.assertEqual(self.contents(), {})
+
+    def has_unnamed_files(self):
+        try:
+            os.close(os.open(self.out, os.O_WRONLY | os.O_TMPFILE, 0o600))
+        except OSError:
+            return False
+        return True
 
 
 class Recording(FaultTest):

@@ -7,7 +7,7 @@ import resource
 import subprocess
 import unittest
 
-from cli_support import BOX, CliTest
+from cli_support import BOX, CliTest, free_ports
 
 
 class Refusals(CliTest):
@@ -185,6 +185,31 @@ class Refusals(CliTest):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("x.csv: cannot write: File too large", done.stderr)
         self.assertEqual(self.files(), [])
+
+    def test_a_stream_with_few_file_descriptors_is_refused(self):
+        found = {}
+        for limit in range(4, 65):  # with 3, the dynamic loader cannot open its libraries
+            done = subprocess.run(
+                ["glidar", "stream", "builtin:box", "--width", "4", "--height", "4", "--frames", "1", "--port",
+                 str(free_ports()), "--foxglove", "127.0.0.1:0", "--subscribers", "0", "--quiet"],
+                cwd=self.folder, env=self.environment, capture_output=True, text=True, check=False,
+                preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_NOFILE, (limit, limit)))  # fmt: skip
+            self.assertIn(done.returncode, (0, 2), f"{limit}: {done.stderr}")
+            if done.returncode == 2:
+                self.assertRegex(done.stderr, "^glidar: error: ")
+            found[limit] = done.returncode
+        self.assertEqual({found[limit] for limit in range(4, 20)}, {2})
+        self.assertEqual(found[64], 0)
+
+    def test_a_limit_on_file_size_does_not_blame_the_model(self):
+        self.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 20000)
+        limited = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536))}
+        done = subprocess.run(["glidar", "info", "a.obj"], cwd=self.folder, env=self.environment, capture_output=True,
+                              text=True, check=False, **limited)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("a.obj: its triangles and textures exceed the limit of this process on the size of files, 65536 "
+                      "bytes; raise the limit (ulimit -f)", done.stderr)
+        self.assertNotIn("corrupt", done.stderr)
 
     def test_an_error_while_loading_leaves_old_files_alone(self):
         self.write("x.pcd", "old")

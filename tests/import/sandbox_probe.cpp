@@ -5,7 +5,8 @@
 // Replaces glidar-import as if a hostile model had taken control of it: it enters the same sandbox,
 // attempts forbidden actions, and prints the result of each attempt: "NAME: 0" when it succeeded,
 // else the name of the error. The first line of MODEL is a file outside the model's
-// folder, the second a TCP port of this machine on which a test listens.
+// folder, the second a TCP port of this machine on which a test listens, the third, if any, the
+// newest version of Landlock's interface to use.
 
 #include <import/process_limits.hpp>
 #include <import/sandbox.hpp>
@@ -52,6 +53,7 @@ struct Attempts {
   std::string outside;
   std::uint16_t port = 0;
   pid_t parent = 0;
+  long newest_landlock = kNewestLandlock;
   std::string report;
 
   /// `result`: negative when it failed, with errno.
@@ -88,6 +90,7 @@ void change_files(Attempts& t) {
   t.add("write the model", ::open(model.c_str(), O_WRONLY));
   t.add("write the model by openat2", open2(model, O_WRONLY));
   t.add("write a file outside", ::open(t.outside.c_str(), O_RDWR));
+  t.add("truncate the model by openat2", open2(model, O_RDONLY | O_TRUNC));
   t.add("create a file", ::open(other.c_str(), O_WRONLY | O_CREAT, 0600));
   t.add("create a file by openat2", open2(other, O_WRONLY | O_CREAT));
   t.add("create a file by creat", ::creat(other.c_str(), 0600));
@@ -197,6 +200,7 @@ Attempts plan(const std::filesystem::path& model, pid_t parent) {
   std::ifstream file(model);
   std::getline(file, attempts.outside);
   file >> attempts.port;
+  if (long newest = 0; file >> newest) attempts.newest_landlock = newest;
   return attempts;
 }
 
@@ -205,7 +209,8 @@ int run(const char* const* argv) {
                              std::strtoll(argv[5], nullptr, 10)};
   if (!apply(limits)) return 2;
   Attempts attempts = plan(argv[1], static_cast<pid_t>(limits.parent));
-  for (const std::string& note : enter_sandbox(model_folder(argv[1]).root, kLastFd)) {
+  for (const std::string& note :
+       enter_sandbox(model_folder(argv[1]).root, kLastFd, attempts.newest_landlock)) {
     attempts.report += "note: " + note + "\n";
   }
   // Without its sandbox it would succeed in some.

@@ -28,8 +28,8 @@ const BadFile kBadScenes[] = {
     {"NoModels", "sensor: c.yaml\n", "s.yaml:1:1: the key 'models' is missing; add 'models: ...'"},
     {"UnknownTopKey", with_model("sensr: c.yaml"),
      "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_mode, "
-     "sensor_pose, sensor_motion, sensors, rig_pose, rig_motion, imus, gravity_m_s2; did you mean "
-     "'sensor'?"},
+     "sensor_calibration_file, sensor_fire_time_file, sensor_pose, sensor_motion, sensors, "
+     "rig_pose, rig_motion, imus, gravity_m_s2; did you mean 'sensor'?"},
     {"SensorBesideSensors", with_model("sensors: [{name: a, sensor: VLP-16}]\nsensor: VLP-16"),
      "s.yaml:3:9: sensor: given beside 'sensors'; allowed: sensors, rig_pose, rig_motion; a rig of "
      "sensors has poses of its own: rig_pose and the 'pose' of each sensor"},
@@ -50,8 +50,8 @@ const BadFile kBadScenes[] = {
      "s.yaml:2:45: sensors[1].name: the name 'a' is given twice; allowed: each name once; choose "
      "another name"},
     {"RigSensorUnknownKey", with_model("sensors: [{name: a, sensor: VLP-16, poes: {}}]"),
-     "s.yaml:2:37: sensors[0].poes: unknown key 'poes'; allowed: name, sensor, mode, pose; did "
-     "you mean 'pose'?"},
+     "s.yaml:2:37: sensors[0].poes: unknown key 'poes'; allowed: name, sensor, mode, "
+     "calibration_file, fire_time_file, pose; did you mean 'pose'?"},
     {"RigMotionWithoutStart",
      with_model(
          "sensors: [{name: a, sensor: VLP-16}]\nrig_motion: {spin: {rate_deg_s: [0, 0, 1]}}"),
@@ -264,6 +264,30 @@ TEST(SceneFileErrors, ModesThatDoNotFitTheSensorAreReportedWithTheirPlace) {
   EXPECT_EQ(error_of(folder, [&] { read_scene_plan(file, {}); }),
             "s.yaml:2:14: sensor_mode: given without 'sensor'; allowed: together with a sensor; "
             "add the sensor");
+}
+
+TEST(SceneFileErrors, CalibrationsThatDoNotFitAreReportedWithBothPlaces) {
+  const TestFolder folder;
+  (void)folder.write("c.csv", "Channel,Elevation,Azimuth\n1,3,0\n2,up,0\n");
+  (void)folder.write("d.csv", "Channel,Elevation,Azimuth\n1,3,0\n2,4,0\n");
+  const auto error = [&](const std::string& rest) {
+    const auto file = folder.write("s.yaml", with_model(rest));
+    return error_of(folder, [&] { read_scene_plan(file, {}); });
+  };
+  const std::string cell = "c.csv:3: 'up'; allowed: degrees from -90 to 90";
+  const std::string two = "optics: {type: spinning, columns_per_turn: 8, elevation_deg: [1, 2]";
+  EXPECT_EQ(error("sensors: [{name: a, sensor: {" + two + "}}, calibration_file: c.csv}]"),
+            "s.yaml:2:115: sensors[0].calibration_file: " + cell);
+  EXPECT_EQ(error("sensor: {" + two + ", calibration_file: c.csv}}"),
+            "s.yaml:2:96: sensor.optics.calibration_file: " + cell);
+  EXPECT_EQ(error("sensor: VLP-16\nsensor_calibration_file: d.csv"),
+            "s.yaml:3:26: sensor_calibration_file: d.csv: 2 channels; allowed: 16, as the sensor; "
+            "use the calibration of this sensor, or the sensor's preset");
+  EXPECT_EQ(error("sensor: VLP-16\nsensor_fire_time_file: no.csv").substr(0, 51),
+            "s.yaml:3:24: sensor_fire_time_file: no.csv: no such");
+  EXPECT_EQ(error("sensor_calibration_file: d.csv"),
+            "s.yaml:2:26: sensor_calibration_file: given without 'sensor'; allowed: together with "
+            "a sensor; add the sensor");
 }
 
 TEST(SceneFileErrors, WrongSizesOfBuiltInModelsAreReportedWithTheirPlace) {

@@ -91,6 +91,42 @@ def test_ctrl_c_stops_one_long_measurement(asteroid):
     glidar.simulate(asteroid, glidar.camera(), poses_around(1)[0])
 
 
+def test_a_signal_handler_measures_other_scenes_but_not_the_one_that_it_interrupts(asteroid):
+    core = glidar.Simulator(asteroid, glidar.camera(256, 256))._core
+    poses = glidar._core.constant(poses_around(3000), "poses")
+    hit_columns = glidar._core.hit_columns_for(["xyz"])
+    box, camera = glidar.Scene("builtin:box"), glidar.camera(8, 8)
+    errors, hits = [], []
+
+    def handle(_signal, _frame):
+        try:
+            glidar.simulate(asteroid, camera)
+        except glidar.Error as error:  # else it runs between two measurements
+            errors.append(str(error))
+            hits.append(glidar.simulate(box, camera).hits)
+            raise KeyboardInterrupt from None
+
+    def press():
+        while not errors:
+            os.kill(os.getpid(), signal.SIGUSR1)
+            let_time_pass(0.05)
+
+    before = signal.signal(signal.SIGUSR1, handle)
+    thread = threading.Thread(target=press)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            thread.start()
+            while True:
+                core.simulate(poses, None, keys(3000), hit_columns)
+        thread.join()
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+    assert errors == ["scene: a signal handler uses the scene whose measurement it interrupts; allowed: another scene, or "
+                      "this one after the measurement; set a flag in the handler, and act on it after the measurement"]
+    assert hits[0] > 0
+    assert glidar.simulate(asteroid, camera).hits > 0
+
+
 def test_ctrl_c_stops_the_import_of_a_model_and_its_process(tmp_path, monkeypatch):
     helper = tmp_path / "helper"
     helper.write_text(f"#!/bin/sh\necho $$ > {tmp_path}/new\nmv {tmp_path}/new {tmp_path}/pid\nexec sleep 3600\n")

@@ -31,8 +31,41 @@ def test_every_preset_survives_pickling_and_conversion_to_a_dict():
         sensor = glidar.load_sensor(name)
         for back in (again(sensor), glidar.Sensor.from_dict(sensor.to_dict())):
             assert back == sensor, name
+            assert back.notes == sensor.notes, name
             assert back.describe() == sensor.describe(), name
             assert back.ray_directions.tobytes() == sensor.ray_directions.tobytes(), name
+
+
+def test_notes_of_every_calibrated_preset_survive_pickling_and_conversion_to_a_dict(tmp_path):
+    tried = set()
+    for name in glidar.sensor_names():
+        sensor = glidar.load_sensor(name)
+        if sensor.kind not in ("camera", "spinning"):
+            continue
+        calibration = tmp_path / ("camera.yaml" if sensor.kind == "camera" else "times.csv")
+        if sensor.kind == "camera":
+            calibration.write_text("cam0: {camera_model: ds, intrinsics: [-0.18, 0.59, 30, 30, 16, 12], resolution: [32, 24], "
+                                   "T_cam_imu: 'a: \"text\" {x}'}\n", encoding="utf-8")
+        else:
+            channels = len(sensor.to_dict()["optics"]["elevation_deg"])
+            loops = len(sensor.to_dict()["optics"].get("firing_loops", [])) or 2
+            rows = [",".join([str(i + 1), *["1"] * loops]) for i in range(channels)]
+            calibration.write_text("\n".join(["Channel" + ",fire time(us)" * loops, *rows]), encoding="utf-8")
+        calibrated = sensor.replace(calibration=calibration)
+        tried.add((sensor.kind, len(calibrated.notes)))
+        for back in (again(calibrated), glidar.Sensor.from_dict(calibrated.to_dict())):
+            assert back.notes == calibrated.notes, name
+            assert back == calibrated, name
+    assert {("camera", 1), ("spinning", 1)} <= tried
+
+
+def test_sensors_are_equal_regardless_of_their_notes():
+    described = {"optics": {"width": 4, "height": 3, "fov_deg": 20}}
+    plain, noted = glidar.Sensor.from_dict(described), glidar.Sensor.from_dict({**described, "notes": ["a: b"]})
+    assert (plain.notes, noted.notes) == ([], ["a: b"])
+    assert plain == noted
+    assert hash(plain) == hash(noted)
+    assert "notes" not in plain.to_dict()
 
 
 def test_sensors_that_differ_in_one_number_are_not_equal():

@@ -3,6 +3,7 @@
 """The JSON Schemas by an independent validator."""
 
 import copy
+import itertools
 import json
 import pickle
 import re
@@ -297,3 +298,63 @@ def test_parts_of_scenes_have_schemas_of_their_own():
         motions.validate(model["motion"])
     assert not poses.is_valid({"positon": [0, 0, 0]})
     assert not motions.is_valid({"spin": {}})
+
+
+#: Of every kind of optics: keys that documents may have, each with a value that fits the others. A value is a list of
+#: alternatives; documents have any subset of the keys.
+PRISM = {"rotation_hz": 100, "apex_deg": 10, "refractive_index": 1.5}
+FACE = {"rotation_hz": 100, "tilt_deg": 10, "refractive_index": 1.5}
+OPTICS = {
+    "pinhole": {"calibration_file": ["camera.yaml"], "width": [8], "height": [6], "fov_deg": [20], "fov_x_deg": [30],
+                "fx": [9], "fy": [9], "cx": [3],
+                "distortion": [{"model": "equirectangular"}, {"model": "eucm", "alpha": 0.5, "beta": 1}, {"model": "fov"}]},
+    "spinning": {"calibration_file": ["ouster.json"], "fire_time_file": ["times.csv"], "elevation_deg": [[1, 2]],
+                 "columns_per_turn": [8], "firing_period_us": [50], "azimuth_left_deg": [1], "azimuth_right_deg": [1],
+                 "azimuth_range": [{"from_deg": 1, "to_deg": 9}, {"from_deg": 1}, {"from_rad": 1, "width_rad": 1},
+                                   {"from_rad": 1, "to_deg": 9}, {}]},
+    "line_scan": {"lines": ["vertical"], "elevation_deg": [5, {"from": 0, "to": 1}], "azimuth_deg": [[1, 2], []],
+                  "point_us": [1], "line_us": [9], "bidirectional": [True]},
+    "prism": {"pulse_hz": [1e4], "prisms": [[PRISM], [], [{"apex_deg": 10}]], "incidence_deg": [[1, 2]],
+              "incidence_roll_deg": [1]},
+    "wedge_mirror": {"pulse_hz": [1e4], "first_pulse_us": [1], "incidence_deg": [[-60]], "wedge": [FACE, {"tilt_deg": 1}],
+                     "mirror": [FACE]},
+    "table": {"file": ["rays.csv"], "rows": [1], "point_us": [5]},
+    "ouster": {"file": ["ouster.json"], "rows": [1]},
+}
+
+
+@pytest.fixture
+def optics_files(tmp_path, monkeypatch):
+    """The calibrations have all numbers of their optics: no schema knows the content of a file."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "camera.yaml").write_text("cam0: {camera_model: pinhole, intrinsics: [9, 9, 4, 3], resolution: [8, 6]}")
+    (tmp_path / "ouster.json").write_text(json.dumps({
+        "lidar_mode": "512x10", "prod_line": "OS-1-64", "beam_altitude_angles": [2, 1], "beam_azimuth_angles": [1, 1]}))
+    (tmp_path / "times.csv").write_text("Channel,fire time(us)\n1,1\n2,2\n")
+    (tmp_path / "rays.csv").write_text("Time/s,Azimuth/deg,Zenith/deg\n0,1,90\n0.001,2,90\n")
+
+
+def is_read(document):
+    try:
+        glidar.Sensor.from_dict(document)
+    except glidar.Error:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("kind", OPTICS)
+@pytest.mark.usefixtures("optics_files")
+def test_schema_and_reader_accept_the_same_documents(sensor_schema, kind):
+    accepted = {True: 0, False: 0}
+    for values in itertools.product(*([None, *values] for values in OPTICS[kind].values())):
+        given = {key: value for key, value in zip(OPTICS[kind], values, strict=True) if value is not None}
+        document = {"optics": {"type": kind, **given}}
+        is_valid = sensor_schema.is_valid(document)
+        assert is_valid == is_read(document), document
+        accepted[is_valid] += 1
+    assert min(accepted.values()) > 0
+
+
+def test_the_documents_have_every_kind_of_optics(sensor_schema):
+    kinds = {one["properties"]["type"]["const"] for one in sensor_schema.schema["else"]["properties"]["optics"]["oneOf"]}
+    assert kinds == set(OPTICS)

@@ -91,7 +91,7 @@ void add_sensor_options(CLI::App& command, SensorFlags& flags) {
   add_light_options(group, flags);
   const OptionNames camera = {"--width", "--height", "--fov", "--fx", "--fy", "--cx", "--cy"};
   forbid_together(command, {"--sensor"}, camera);
-  require_option(command, {"--mode", "--calibration"}, "--sensor");
+  require_option(command, {"--mode"}, "--sensor");
   forbid_together(command, {"--fov"}, {"--fx", "--fy"});
 }
 

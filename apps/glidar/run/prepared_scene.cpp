@@ -111,6 +111,11 @@ std::vector<ActiveSensor> make_active_sensors(const RenderFlags& flags,
     throw Error({"--sensor and camera options", "given for a scene file with a rig of sensors", "",
                  "leave them out; --sensor-name NAME chooses one of " + names_of(in_file)});
   }
+  if (!flags.sensor.calibration_files.empty()) {
+    throw Error({"--calibration", "given for a scene file with a rig of sensors",
+                 "a scene file with one sensor",
+                 "name the file in the scene: 'calibration_file: ...' beside 'sensor: ...'"});
+  }
   std::vector<ActiveSensor> sensors;
   for (std::uint32_t i = 0; i < in_file.size(); ++i) {
     sensors.push_back({.name = in_file[i].name,

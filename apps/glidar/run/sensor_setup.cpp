@@ -103,6 +103,14 @@ void apply_light(const SensorFlags& flags, Sensor& sensor) {
   validate(light);
 }
 
+void refuse_calibration_without_sensor(const SensorFlags& flags) {
+  if (flags.calibration_files.empty()) return;
+  throw Error({.where = "--calibration",
+               .found = "there is no --sensor, and no sensor of a scene file",
+               .allowed = "the calibration of a sensor preset or sensor file",
+               .remedy = "add '--sensor NAME'"});
+}
+
 /// --ground-truth removes the pulsed light, of which returns are a property.
 void refuse_returns_of_ground_truth(const SensorFlags& flags) {
   if (!flags.ground_truth || flags.returns.empty()) return;
@@ -129,6 +137,7 @@ Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file) {
   if (!flags.file.empty()) {
     sensor = load_sensor(flags.file, flags.mode);
   } else if (camera_given(flags) || from_scene_file == nullptr) {
+    refuse_calibration_without_sensor(flags);
     sensor.optics = make_pinhole(flags);
   } else {
     sensor = *from_scene_file;

@@ -27,6 +27,9 @@ class FieldWriter final : public FieldVisitor {
   void text(const FieldInfo& field, std::string& value) override {
     if (is_report() || !value.empty()) json_[field.key] = value;
   }
+  void texts(const FieldInfo& field, std::vector<std::string>& values) override {
+    if (is_report() || !values.empty()) json_[field.key] = values;
+  }
   void path(const FieldInfo& field, std::string& value) override { text(field, value); }
   void word(const FieldInfo& field, std::span<const char* const> words,
             std::size_t& value) override {

@@ -53,6 +53,21 @@ Schema range_schema(const NumberListRule& rule) {
           {"additionalProperties", false}};
 }
 
+/// One schema for each key: a map that has it.
+Schema requirements(const std::vector<const char*>& keys) {
+  Schema all = Schema::array();
+  for (const char* key : keys) all.push_back({{"required", Schema::array({key})}});
+  return all;
+}
+
+/// A map that has the case.
+Schema case_schema(const KeyCase& one) {
+  const Schema inner = {{"type", "object"},
+                        {"properties", {{one.inner, {{"const", one.word}}}}},
+                        {"required", Schema::array({one.inner})}};
+  return {{"properties", {{one.key, inner}}}, {"required", Schema::array({one.key})}};
+}
+
 class SchemaBuilder final : public FieldVisitor {
  public:
   [[nodiscard]] Mode mode() const override { return Mode::schema; }
@@ -88,6 +103,9 @@ class SchemaBuilder final : public FieldVisitor {
   }
   void text(const FieldInfo& field, std::string& /*value*/) override {
     add(field, {{"type", {"string", "number"}}});
+  }
+  void texts(const FieldInfo& field, std::vector<std::string>& /*values*/) override {
+    add(field, {{"type", "array"}, {"items", {{"type", {"string", "number"}}}}});
   }
   void path(const FieldInfo& field, std::string& /*value*/) override {
     add(field, {{"type", "string"}, {"minLength", 1}, {"x-allowed", "a path"}});
@@ -187,9 +205,18 @@ class SchemaBuilder final : public FieldVisitor {
       }
     }
     if (choice.missing == nullptr) return;
-    Schema any = Schema::array();
-    for (const char* key : choice.keys) any.push_back({{"required", Schema::array({key})}});
-    conditions_.push_back({{"anyOf", any}});
+    std::vector<const char*> sources = choice.keys;
+    if (choice.supplier != nullptr) sources.push_back(choice.supplier);
+    const Schema one = {{"anyOf", requirements(sources)}};
+    conditions_.push_back(choice.none_needed.key == nullptr
+                              ? one
+                              : Schema{{"if", case_schema(choice.none_needed)},
+                                       {"then", Schema::object()},
+                                       {"else", one}});
+  }
+  void excludes(const KeyExclusion& exclusion) override {
+    conditions_.push_back({{"if", case_schema(exclusion.when)},
+                           {"then", {{"not", {{"anyOf", requirements(exclusion.keys)}}}}}});
   }
   void needs(const KeyNeed& need) override { needs_[need.key] = Schema::array({need.needed}); }
 

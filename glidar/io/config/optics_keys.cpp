@@ -5,9 +5,11 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/io/config/ray_file.hpp>
 #include <glidar/io/config/sensor_calibration.hpp>
+#include <glidar/io/config/yaml_reader.hpp>
 #include <glidar/io/formats/ouster_file.hpp>
 
 #include <filesystem>
+#include <iterator>
 #include <type_traits>
 
 namespace glidar {
@@ -38,19 +40,16 @@ RayTable load_rays(const FieldVisitor& visitor, const std::filesystem::path& pat
 }
 
 /// The calibration is applied before the keys, unless they have `main_key`, because they may need
-/// what it contains, and after them, whose numbers it replaces. `second`: a further file, if any.
+/// what it contains, and after them, whose numbers it replaces.
 template <class Struct>
 void describe_calibrated(CalibratedKeys<Struct>& keys, FieldVisitor& visitor, const char* main_key,
-                         const char* text, const FieldInfo& second) {
+                         CalibrationFiles files) {
   if (visitor.is_writing()) return describe(keys.optics, visitor);
-  std::vector<std::string> files(2);
-  visitor.path({"calibration_file", text, kNoUnit, false, "none"}, files[0]);
-  if (second.key != nullptr) visitor.path(second, files[1]);
+  visit_calibration_files(visitor, files);
   const auto apply = [&] {
     Sensor sensor;
     sensor.optics = keys.optics;
-    for (const std::string& file : files)
-      if (!file.empty()) apply_calibration(file, sensor);
+    apply_calibration_files(visitor, files, sensor);
     keys.optics = std::get<Struct>(sensor.optics);
     keys.sources = {sensor.files, sensor.notes};
   };
@@ -69,6 +68,24 @@ void report_table(RayTableKeys& keys, FieldVisitor& visitor) {
 }
 
 }  // namespace
+
+void visit_calibration_files(FieldVisitor& visitor, CalibrationFiles& files) {
+  visitor.path(files.calibration, files.paths[0]);
+  if (files.fire_times.key != nullptr) visitor.path(files.fire_times, files.paths[1]);
+}
+
+void apply_calibration_files(const FieldVisitor& visitor, const CalibrationFiles& files,
+                             Sensor& sensor) {
+  const char* const keys[] = {files.calibration.key, files.fire_times.key};
+  for (std::size_t i = 0; i < std::size(keys); ++i) {
+    if (files.paths[i].empty()) continue;
+    try {
+      apply_calibration(files.paths[i], sensor);
+    } catch (const Error& error) {
+      reject_at(visitor.where(keys[i]), error);
+    }
+  }
+}
 
 OpticsKeys optics_keys(const Optics& optics) {
   return std::visit(
@@ -147,17 +164,20 @@ void describe(OusterKeys& keys, FieldVisitor& visitor) {
 void describe(SpinningKeys& keys, FieldVisitor& visitor) {
   describe_calibrated(
       keys, visitor, "elevation_deg",
-      "[calibration](spinning.md#calibrations) of one sensor, in a format of its "
-      "manufacturer; replaces the numbers that it contains",
-      {"fire_time_file", "a second such file: firing times of Hesai", kNoUnit, false, "none"});
+      {{"calibration_file",
+        "[calibration](spinning.md#calibrations) of one sensor, in a format of its manufacturer; "
+        "replaces the numbers that it contains",
+        kNoUnit, false, "none"},
+       {"fire_time_file", "a second such file: firing times of Hesai", kNoUnit, false, "none"}});
 }
 
 void describe(PinholeKeys& keys, FieldVisitor& visitor) {
-  describe_calibrated(
-      keys, visitor, "width",
-      "[calibration](optics.md#camera-calibrations) by Kalibr or ROS, in place of the "
-      "size, focal lengths, principal point, skew and distortion",
-      {});
+  describe_calibrated(keys, visitor, "width",
+                      {{"calibration_file",
+                        "[calibration](optics.md#camera-calibrations) by Kalibr or ROS, in place "
+                        "of the size, focal lengths, principal point, skew and distortion",
+                        kNoUnit, false, "none"},
+                       {}});
 }
 
 void describe(OpticsKeys& keys, FieldVisitor& visitor) {

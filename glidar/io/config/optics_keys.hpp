@@ -6,6 +6,7 @@
 
 #include <glidar/sensor/sensor.hpp>
 
+#include <array>
 #include <string>
 #include <utility>
 #include <variant>
@@ -67,6 +68,19 @@ template <class... Types>
 std::variant<typename FileForm<Types>::type..., OusterKeys> file_form(std::variant<Types...>);
 
 using OpticsKeys = decltype(file_form(std::declval<Optics>()));
+
+/// Calibration files of a sensor: the values of two keys of a file.
+struct CalibrationFiles {
+  FieldInfo calibration;
+  FieldInfo fire_times;  ///< a key of null: there is none
+  std::array<std::string, 2> paths = {};
+};
+
+void visit_calibration_files(FieldVisitor& visitor, CalibrationFiles& files);
+
+/// See apply_calibration(); errors have the place of the key, too.
+void apply_calibration_files(const FieldVisitor& visitor, const CalibrationFiles& files,
+                             Sensor& sensor);
 
 /// The keys of optics, of a table only its size.
 OpticsKeys optics_keys(const Optics& optics);

@@ -33,8 +33,9 @@ void add_entries(const YamlField& field, std::vector<DatasheetEntry>& sheet) {
       field.node.IsSequence() && field.node.size() > 0 && !field.node[0].IsScalar();
   if (field.node.IsMap()) {
     for (const auto& [key, value] : entries(field)) {
-      const bool is_provenance = field.path.empty() && (key == "source" || key == "unverified");
-      if (!is_provenance) add_entries(value, sheet);
+      const bool is_text =
+          field.path.empty() && (key == "source" || key == "unverified" || key == "notes");
+      if (!is_text) add_entries(value, sheet);
     }
   } else if (list_of_maps) {
     for (const YamlField& item : items(field)) add_entries(item, sheet);

@@ -19,6 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kCalibrationText =
+    "calibration of this unit: [LiDARs](spinning.md#calibrations), "
+    "[cameras](optics.md#camera-calibrations)";
+constexpr const char* kFireTimeText = "a second such file: firing times of Hesai";
 constexpr const char* kSensorForms = "a map, or the path of a sensor file";
 
 /// A sensor of a scene file, and the file that it was read from.
@@ -27,10 +31,11 @@ struct SensorPlan {
   std::string file;  ///< empty: it is part of the scene file, or a preset
 };
 
-/// The keys of a sensor and of its mode.
+/// The keys of a sensor, its mode and its calibration.
 struct SensorFields {
   FieldInfo sensor;
   FieldInfo mode;
+  CalibrationFiles files;
 };
 
 /// A preset.
@@ -84,9 +89,8 @@ SensorPlan find_sensor(FieldVisitor& visitor, const SensorFields& fields, const 
 }
 
 /// A sensor: a map, the path of a sensor file, or the name of a preset. The last two may have a
-/// mode, which writers do not need, since they write a map.
-bool visit_sensor(FieldVisitor& visitor, const SensorFields& fields, bool is_present,
-                  SensorPlan& plan) {
+/// mode. Writers write a map, with the numbers of the mode and of the calibration.
+bool visit_sensor(FieldVisitor& visitor, SensorFields fields, bool is_present, SensorPlan& plan) {
   const FieldInfo& field = fields.sensor;
   if (visitor.is_writing() && !is_present) return false;
   SensorKeys keys = visitor.is_writing() ? sensor_keys(plan.sensor) : SensorKeys{};
@@ -94,8 +98,12 @@ bool visit_sensor(FieldVisitor& visitor, const SensorFields& fields, bool is_pre
   std::string mode;
   const auto body = [&](FieldVisitor& nested) { describe(keys, nested); };
   visitor.text_or_object(field, kSensorForms, name, FieldVisitor::Describe(body));
-  if (!visitor.is_writing()) visitor.text(fields.mode, mode);
-  visitor.needs({fields.mode.key, field.key, "together with a sensor", "add the sensor"});
+  if (!visitor.is_writing()) {
+    visitor.text(fields.mode, mode);
+    visit_calibration_files(visitor, fields.files);
+  }
+  for (const FieldInfo& key : {fields.mode, fields.files.calibration, fields.files.fire_times})
+    visitor.needs({key.key, field.key, "together with a sensor", "add the sensor"});
   if (!visitor.is_reading() || !visitor.has(field.key)) return is_present;
   if (name.empty() && !mode.empty()) {
     visitor.reject(fields.mode.key, "a mode, but the sensor is a map",
@@ -103,6 +111,7 @@ bool visit_sensor(FieldVisitor& visitor, const SensorFields& fields, bool is_pre
   }
   plan = name.empty() ? SensorPlan{std::move(keys.sensor), ""}
                       : find_sensor(visitor, fields, name, mode);
+  apply_calibration_files(visitor, fields.files, plan.sensor);
   return true;
 }
 
@@ -123,7 +132,9 @@ void describe(RigSensorPlan& plan, FieldVisitor& visitor) {
   visit_sensor(
       visitor,
       {{"sensor", "as the key `sensor` of a scene", kNoUnit, kRequired},
-       {"mode", "[mode](sensor-families.md) of the sensor", kNoUnit, false, "its default mode"}},
+       {"mode", "[mode](sensor-families.md) of the sensor", kNoUnit, false, "its default mode"},
+       {{"calibration_file", kCalibrationText, kNoUnit, false, "none"},
+        {"fire_time_file", kFireTimeText, kNoUnit, false, "none"}}},
       true, plan.sensor);
   visit_pose(visitor,
              {"pose", "rig_from_sensor, a [pose](motion.md#poses)", kNoUnit, false, "identity"},
@@ -187,7 +198,9 @@ void visit_single_sensor(FieldVisitor& visitor, bool is_present, ScenePlan& plan
         "as `VLP-16`",
         kNoUnit, false, "none"},
        {"sensor_mode", "[mode](sensor-families.md) of the sensor, such as `2048x10`", kNoUnit,
-        false, "its default mode"}},
+        false, "its default mode"},
+       {{"sensor_calibration_file", kCalibrationText, kNoUnit, false, "none"},
+        {"sensor_fire_time_file", kFireTimeText, kNoUnit, false, "none"}}},
       has_sensor, sensor);
   if (visitor.is_reading() && is_given) add(std::move(sensor), "", Pose::Identity(), plan);
   const BodyKeys fields = {
@@ -205,10 +218,9 @@ void visit_sensors(FieldVisitor& visitor, ScenePlan& plan) {
   for (const RigSensor& one : plan.sensors) {
     if (visitor.is_writing()) sensors.push_back({one.name, {one.sensor, ""}, one.rig_from_sensor});
   }
-  visit_list(
-      visitor,
-      {"sensors", "sensors on one rig, instead of the three keys above", kNoUnit, false, "none"},
-      {1, 256}, "1 to 256 sensors", sensors);
+  visit_list(visitor,
+             {"sensors", "sensors on one rig, instead of the keys above", kNoUnit, false, "none"},
+             {1, 256}, "1 to 256 sensors", sensors);
   if (!visitor.is_reading()) return;
   require_unique_names(sensors);
   for (RigSensorPlan& one : sensors) {
@@ -233,7 +245,8 @@ std::string visit_rig_name(FieldVisitor& visitor, std::string& name) {
 }
 
 void visit_rig(FieldVisitor& visitor, ScenePlan& plan) {
-  for (const char* key : {"sensor", "sensor_mode", "sensor_pose", "sensor_motion"}) {
+  for (const char* key : {"sensor", "sensor_mode", "sensor_calibration_file",
+                          "sensor_fire_time_file", "sensor_pose", "sensor_motion"}) {
     visitor.at_most_one({.keys = {"sensors", key},
                          .allowed = "sensors, rig_pose, rig_motion",
                          .conflict_remedy = "a rig of sensors has poses of its own: rig_pose and "

@@ -11,7 +11,8 @@ namespace glidar {
 /// All numbers of a sensor as a JSON text with the keys of a sensor file (docs/files.md):
 /// parse_sensor() makes the same sensor from it, to the last bit. A sensor whose optics is a
 /// RayTable has no `optics` in it, because a table can be large; pass the table to parse_sensor().
-/// Sources of numbers and the names of the files that the sensor was read from are not part of it.
+/// It has the sensor's notes, but not the sources of numbers and the names of the files that the
+/// sensor was read from.
 /// Throws Error naming the key when no number in the file's unit gives a number of the sensor.
 std::string sensor_document(const Sensor& sensor);
 

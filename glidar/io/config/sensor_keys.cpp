@@ -152,6 +152,14 @@ void visit_depth_camera(Sensor& sensor, FieldVisitor& visitor) {
   if (sensor.depth_camera) load_pattern(sensor);
 }
 
+/// Documents have what was reported when the sensor was read from other files.
+void visit_notes(Sensor& sensor, FieldVisitor& visitor) {
+  if (visitor.is_report()) return;
+  visitor.texts(
+      {"notes", "what the program reports when it loads the sensor", kNoUnit, false, "none"},
+      sensor.notes);
+}
+
 /// Readers of files merge these keys before; only a map inside another file still has them.
 void visit_family(FieldVisitor& visitor) {
   const auto visit = [&](const FieldInfo& field, FamilyKey key) {
@@ -212,6 +220,7 @@ void describe(SensorKeys& keys, FieldVisitor& visitor) {
   visitor.provenance({"source", "where the numbers come from: text for keys of this file"}, true);
   visitor.provenance(
       {"unverified", "keys that were not checked against the manufacturer's documents"}, false);
+  visit_notes(sensor, visitor);
   visit_family(visitor);
 }
 

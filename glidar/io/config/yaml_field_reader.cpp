@@ -68,6 +68,11 @@ class FieldReader final : public FieldVisitor {
   void text(const FieldInfo& field, std::string& value) override {
     if (const auto given = value_of(field)) value = glidar::text(*given);
   }
+  void texts(const FieldInfo& field, std::vector<std::string>& values) override {
+    const auto given = value_of(field);
+    if (!given) return;
+    for (const YamlField& item : items(*given)) values.push_back(glidar::text(item));
+  }
   void path(const FieldInfo& field, std::string& value) override {
     const auto given = value_of(field);
     if (!given) return;
@@ -112,6 +117,11 @@ class FieldReader final : public FieldVisitor {
     if (has(field.key)) (is_map ? check_sources : check_unverified)(map_);
   }
   void at_most_one(const KeyChoice& choice) override;
+  void excludes(const KeyExclusion& exclusion) override {
+    if (!is_case(exclusion.when)) return;
+    for (const char* key : exclusion.keys)
+      if (has(key)) reject(key, exclusion.found, exclusion.allowed, exclusion.remedy);
+  }
   void needs(const KeyNeed& need) override {
     if (!has(need.key) || has(need.needed)) return;
     reject(need.key, "given without '" + std::string(need.needed) + "'", need.allowed, need.remedy);
@@ -131,6 +141,11 @@ class FieldReader final : public FieldVisitor {
  private:
   [[nodiscard]] std::optional<YamlField> value_of(const FieldInfo& field) const {
     return field.is_required ? need(map_, field.key) : find(map_, field.key);
+  }
+  [[nodiscard]] bool is_case(const KeyCase& one) const {
+    const auto outer = one.key == nullptr ? std::nullopt : find(map_, one.key);
+    const auto inner = outer && outer->node.IsMap() ? find(*outer, one.inner) : std::nullopt;
+    return inner && inner->node.IsScalar() && inner->node.Scalar() == one.word;
   }
   [[nodiscard]] YamlField place_of(const std::string& key) const {
     return find(map_, key).value_or(map_);
@@ -246,7 +261,7 @@ void FieldReader::at_most_one(const KeyChoice& choice) {
     }
     chosen = key;
   }
-  if (chosen == nullptr && choice.missing != nullptr) {
+  if (chosen == nullptr && choice.missing != nullptr && !is_case(choice.none_needed)) {
     glidar::reject(map_, choice.missing, choice.allowed,
                    choice.remedy != nullptr ? choice.remedy : "");
   }

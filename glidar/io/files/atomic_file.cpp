@@ -28,8 +28,12 @@ constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
   const std::string reason = std::generic_category().message(code);
   std::string remedy;
-  if (code == ENOSPC || code == EDQUOT || code == EFBIG)
+  if (code == ENOSPC || code == EDQUOT)
     remedy = "make room or write to another folder; no part of this file remains";
+  if (code == EFBIG)
+    remedy =
+        "raise the limit on the size of files (ulimit -f), or write to a file system for "
+        "larger files; no part of this file remains";
   if (code == ENOENT) remedy = "create the folder first";
   if (code == EACCES || code == EPERM || code == EROFS) remedy = "write to another folder";
   throw Error({path.string(), fmt::format("cannot {}: {}", what, reason), "", remedy});
@@ -49,45 +53,82 @@ struct Temporary {
   int slot = -1;  ///< in the list; -1: the list is full
 };
 
-/// A new, exclusively opened file in `folder`. It is listed before it exists, so that a
-/// signal at any moment leaves no file.
-Temporary open_temporary(const std::filesystem::path& folder, const std::filesystem::path& wanted,
-                         mode_t mode) {
-  // Another thread soon disconnects clients that use up all descriptors.
+/// Calls make(), which returns -1 and sets errno if it fails, and again while other files use up
+/// the descriptors: another thread soon disconnects clients that do.
+template <class Make>
+int with_descriptors(const Make& make) {
   constexpr unsigned kMaxWaits = 200;
   constexpr std::chrono::milliseconds kWait{10};
-  unsigned waits = 0;
+  for (unsigned waits = 0;; ++waits) {
+    const int made = make();
+    const bool is_full = made < 0 && (errno == EMFILE || errno == ENFILE) && waits < kMaxWaits;
+    if (!is_full && (made >= 0 || errno != EINTR)) return made;
+    if (is_full) std::this_thread::sleep_for(kWait);
+  }
+}
+
+/// A name that make(name) gave to a file in `folder`. It is listed before the file has it, so that
+/// a signal at any moment leaves no file.
+template <class Make>
+Temporary make_temporary(const std::filesystem::path& folder, const std::filesystem::path& wanted,
+                         const Make& make) {
   for (unsigned attempt = 0;; ++attempt) {
     std::filesystem::path name = folder / fmt::format(".glidar-{}-{}.tmp", ::getpid(), attempt);
     std::error_code ignored;
     if (std::filesystem::exists(name, ignored)) continue;  // another file of this process
     const int slot = list_unfinished(name.native());
-    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    const int made = with_descriptors([&] { return make(name); });
     const int code = errno;
-    if (descriptor >= 0) return {std::move(name), descriptor, slot};
+    if (made >= 0) return {std::move(name), made, slot};
     unlist_unfinished(slot);
-    if ((code == EMFILE || code == ENFILE) && waits++ < kMaxWaits) {
-      std::this_thread::sleep_for(kWait);
-      continue;
-    }
-    if (code != EEXIST && code != EINTR) fail(wanted, "create a file in this folder", code);
+    if (code != EEXIST) fail(wanted, "create a file in this folder", code);
   }
 }
 
+/// A file without a name, which disappears however the program ends; -1: this file system has none.
+int open_unnamed(const std::filesystem::path& folder, const std::filesystem::path& wanted,
+                 mode_t mode) {
+  if (::access("/proc/self/fd", X_OK) != 0) return -1;  // it gets its name through this folder
+  const int descriptor = with_descriptors(
+      [&] { return ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, mode); });
+  const bool is_known = errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL;
+  if (descriptor < 0 && is_known) fail(wanted, "create a file in this folder", errno);
+  return descriptor;
+}
+
+/// Where a file of this name is written: a symbolic link stays, and its target is written.
+std::filesystem::path followed(const std::filesystem::path& path) {
+  constexpr int kMaxLinks = 40;
+  std::filesystem::path at = std::filesystem::absolute(path);
+  std::error_code failure;
+  for (int links = 0; std::filesystem::is_symlink(at, failure); ++links) {
+    if (links == kMaxLinks) fail(path, "follow this symbolic link", ELOOP);
+    at = at.parent_path() / std::filesystem::read_symlink(at, failure);
+    if (failure) fail(path, "follow this symbolic link", failure.value());
+  }
+  return at;
+}
+
+/// Files without a name stay open until they get one, but only while there are few descriptors.
+constexpr int kMaxUnnamed = 128;
+
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& path, Permissions permissions) : path_(path) {
+AtomicFile::AtomicFile(const std::filesystem::path& path, Permissions permissions)
+    : path_(path), destination_(followed(path)) {
   std::error_code ignored;  // an inaccessible path fails below with the reason
   if (std::filesystem::is_directory(path, ignored))
     throw Error({path.string(), "is a folder", "a file name"});
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     throw Error({path.string(), "is a device, pipe or socket", "a regular file, or a new name"});
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  const std::filesystem::path folder = destination_.parent_path();
   buffer_.resize(kPieceBytes);
-  constexpr mode_t kDefault = 0666;
-  constexpr mode_t kOwner = 0600;
-  Temporary made =
-      open_temporary(folder, path, permissions == Permissions::owner_only ? kOwner : kDefault);
+  const mode_t mode = permissions == Permissions::owner_only ? 0600 : 0666;
+  descriptor_ = open_unnamed(folder, path, mode);
+  if (descriptor_ >= 0) return;
+  Temporary made = make_temporary(folder, path, [&](const std::filesystem::path& name) {
+    return ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  });
   temporary_ = std::move(made.name);
   descriptor_ = made.descriptor;
   slot_ = made.slot;
@@ -141,18 +182,33 @@ void AtomicFile::seek(std::uint64_t offset) {
 }
 
 void AtomicFile::finish() {
-  if (descriptor_ < 0) return;
   if (failure_ != 0) fail(path_, "write", failure_);
+  if (descriptor_ < 0) return;
   flush();
   if (target_ >= 0) return;  // to be read from
+  if (!temporary_.empty() || descriptor_ >= kMaxUnnamed) close_named();
+}
+
+void AtomicFile::close_named() {
+  if (temporary_.empty()) {
+    const std::string own = fmt::format("/proc/self/fd/{}", descriptor_);
+    Temporary made =
+        make_temporary(destination_.parent_path(), path_, [&](const std::filesystem::path& name) {
+          return ::linkat(AT_FDCWD, own.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+        });
+    temporary_ = std::move(made.name);
+    slot_ = made.slot;
+  }
   // Some file systems report a full disk or quota only on closing.
-  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(path_, "close", errno);
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)
+    fail(path_, "close", failure_ = errno);
 }
 
 void AtomicFile::commit() {
   finish();
   if (target_ >= 0) return send();
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "rename", errno);
+  if (descriptor_ >= 0) close_named();
+  if (std::rename(temporary_.c_str(), destination_.c_str()) != 0) fail(path_, "rename", errno);
   temporary_.clear();
   unlist_unfinished(std::exchange(slot_, -1));
 }
@@ -162,7 +218,7 @@ void AtomicFile::commit_durably() {
   flush();
   sync_file(descriptor_, path_);
   commit();
-  sync_folder_of(path_);
+  sync_folder_of(destination_);
 }
 
 void AtomicFile::send() const {

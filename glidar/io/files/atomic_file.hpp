@@ -20,8 +20,10 @@ class ClosedPipe : public Error {
 };
 
 /// A file that appears under its name only when it is complete: bytes are written to a temporary
-/// file in the same folder, which commit() renames. Without commit() the destructor removes the
-/// temporary file and an existing file stays unchanged. Writes are buffered and flushed in large
+/// file in the same folder, which commit() renames. It has no name until then where the file system
+/// has such files, so that a program that is killed leaves nothing. Without commit() the destructor
+/// removes the temporary file and an existing file stays unchanged. Of a symbolic link, the target
+/// is written and the link stays. Writes are buffered and flushed in large
 /// blocks at multiples of the block size, which is fastest for file systems.
 class AtomicFile {
  public:
@@ -52,8 +54,8 @@ class AtomicFile {
   void seek(std::uint64_t offset);
   [[nodiscard]] std::uint64_t position() const { return position_; }
 
-  /// Writes everything and closes the temporary file, so that several files can all
-  /// be complete before the first one is renamed. Throws Error when a byte could not be stored.
+  /// Writes everything, so that several files can all be complete before the first one is renamed.
+  /// Throws Error when a byte could not be stored.
   void finish();
 
   /// finish(), then renames the file, which replaces an existing one atomically. Throws Error;
@@ -74,20 +76,23 @@ class AtomicFile {
   void write_whole_pieces();
   void write_through(std::span<const std::byte> bytes);
   void send() const;
+  void close_named();
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< absolute; empty once committed
-  int descriptor_ = -1;              ///< -1 once finished
-  int target_ = -1;                  ///< where commit() writes the bytes; -1: none, it renames
-  int failure_ = 0;                  ///< errno of the first write that failed
-  int slot_ = -1;                    ///< in the list for remove_unfinished_files, -1: not in it
+  std::filesystem::path destination_;  ///< absolute; not a symbolic link
+  std::filesystem::path temporary_;    ///< absolute; empty: it has no name, or it is committed
+  int descriptor_ = -1;                ///< -1 once closed
+  int target_ = -1;                    ///< where commit() writes the bytes; -1: none, it renames
+  int failure_ = 0;                    ///< errno of the first write that failed
+  int slot_ = -1;                      ///< in the list for remove_unfinished_files, -1: not in it
   std::uint64_t position_ = 0;
   std::vector<std::byte> buffer_;  ///< a block, and space for bytes beyond its end
   std::size_t filled_ = 0;         ///< bytes of the buffer in use
 };
 
 /// Removes the temporary files of every AtomicFile that is not committed. For a program that is
-/// about to end because of a signal: it is async-signal-safe. Afterwards commit() of those fails.
+/// about to end because of a signal: it is async-signal-safe. Afterwards commit() of those with a
+/// temporary name fails.
 /// Covers the first 128 files open at a time with paths below 4096 bytes.
 void remove_unfinished_files() noexcept;
 

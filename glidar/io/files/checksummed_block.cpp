@@ -23,6 +23,8 @@ void write_all(int fd, const void* data, std::size_t size) {
   while (size > 0) {
     const ssize_t put = ::write(fd, at, size);
     if (put < 0 && errno == EINTR) continue;
+    if (put < 0 && errno == EFBIG)
+      throw FileSizeLimit({.where = "imported data", .found = std::strerror(EFBIG)});
     if (put <= 0) reject_imported_data(std::string("writing failed: ") + std::strerror(errno));
     at += put;
     size -= static_cast<std::size_t>(put);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/files/content_hash.hpp>
 
 #include <cstddef>
@@ -27,8 +28,14 @@ struct BlockHead {
 /// Throws Error for malformed data of the import process or the model cache.
 [[noreturn]] void reject_imported_data(const std::string& found);
 
+/// A file would exceed the limit on the size of files (RLIMIT_FSIZE).
+class FileSizeLimit : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Writes one block at the file's position. finish() completes the header.
-/// Throws Error when the file cannot be written.
+/// Throws Error when the file cannot be written; FileSizeLimit if that is the reason.
 class BlockWriter {
  public:
   BlockWriter(int fd, BlockKind kind);

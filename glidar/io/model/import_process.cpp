@@ -34,6 +34,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
 constexpr double kQuietSeconds = 0.5;    // shorter loads report no progress
 constexpr int kSliceMilliseconds = 100;  // between checks of the time limit
+constexpr int kEndMilliseconds = 1;      // the same once the progress is closed, as at the end
 constexpr int kAnswerFd = 3;
 constexpr int kProgressFd = 4;
 
@@ -129,25 +130,25 @@ bool has_ended(pid_t child) {
   return info.si_pid == child;
 }
 
-/// Reads percent bytes until the process ends, which closes the pipe.
-/// False when the time limit was exceeded.
+/// Reads percent bytes until the process ends. It may close the pipe earlier, and another fork may
+/// hold the pipe's other end, so only the end of the process counts. False when the time limit was
+/// exceeded.
 bool wait_for_end(pid_t child, const ProgressPipe& pipe, const ImportRequest& request,
                   const Report& report) {
   const Clock::time_point start = Clock::now();
   const std::string task = "loading " + request.model.filename().string();
   double fraction = -1.0;
+  pollfd watched{pipe.read_end.get(), POLLIN, 0};
   for (;;) {
     const double left_s = request.time_limit_s - seconds_since(start);
     if (left_s <= 0.0) return false;
-    pollfd watched{pipe.read_end.get(), POLLIN, 0};
-    const int slice = std::min(kSliceMilliseconds, static_cast<int>(left_s * 1000.0) + 1);
-    const int ready = ::poll(&watched, 1, slice);
-    // Another fork may hold the pipe's other end, so the end of the process is checked too.
+    const int most = watched.fd < 0 ? kEndMilliseconds : kSliceMilliseconds;
+    const int ready = ::poll(&watched, 1, std::min(most, static_cast<int>(left_s * 1000.0) + 1));
     if (ready == 0 && has_ended(child)) return true;
     if (ready > 0) {
       std::array<unsigned char, 256> percents{};
-      const ssize_t got = ::read(pipe.read_end.get(), percents.data(), percents.size());
-      if (got == 0 || (got < 0 && errno != EINTR)) return true;
+      const ssize_t got = ::read(watched.fd, percents.data(), percents.size());
+      if (got == 0 || (got < 0 && errno != EINTR)) watched.fd = -1;
       if (got > 0) fraction = std::min(1.0, percents[static_cast<std::size_t>(got) - 1] / 100.0);
     }
     if (report.progress && seconds_since(start) > kQuietSeconds) report.progress(task, fraction);
@@ -183,17 +184,39 @@ Ending end(pid_t child, bool is_killed) {
 
 /// Exit status of the import program when it has no memory left to report this in a block.
 constexpr int kExitNoMemory = 3;
+/// The same when its answer exceeds the limit on the size of files, which holds for memory too.
+constexpr int kExitFileSize = 4;
+
+ImportEnd ending_of(int exit_code) {
+  switch (exit_code) {
+    case 0:
+      return ImportEnd::answered;
+    case kExitNoMemory:
+      return ImportEnd::out_of_memory;
+    case kExitFileSize:
+      return ImportEnd::over_file_size;
+    default:
+      return ImportEnd::crashed;
+  }
+}
+
+rlim_t max_file_bytes() {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_FSIZE, &limit) == 0 ? limit.rlim_max : RLIM_INFINITY;
+}
 
 void classify(ImportRun& run, int status) {
   if (WIFEXITED(status)) {
-    const int code = WEXITSTATUS(status);
-    run.end = code == 0               ? ImportEnd::answered
-              : code == kExitNoMemory ? ImportEnd::out_of_memory
+    run.end = ending_of(WEXITSTATUS(status));
+  } else {
+    run.signal = WTERMSIG(status);
+    run.end = run.signal == SIGXCPU   ? ImportEnd::out_of_time
+              : run.signal == SIGXFSZ ? ImportEnd::over_file_size
                                       : ImportEnd::crashed;
-    return;
   }
-  run.signal = WTERMSIG(status);
-  run.end = run.signal == SIGXCPU ? ImportEnd::out_of_time : ImportEnd::crashed;
+  // the process limits itself to its memory, unless this process has a lower limit
+  if (run.end == ImportEnd::over_file_size && max_file_bytes() >= run.memory_limit_bytes)
+    run.end = ImportEnd::out_of_memory;
 }
 
 }  // namespace
@@ -257,6 +280,12 @@ ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
            fmt::format("reading it needs more memory than {} MiB", run.memory_limit_bytes >> 20U),
            "the file may be corrupt; otherwise save the model in another format, or make it "
            "smaller");
+    case ImportEnd::over_file_size:
+      fail(request,
+           fmt::format("its triangles and textures exceed the limit of this process on the size of "
+                       "files, {} bytes",
+                       max_file_bytes()),
+           "raise the limit (ulimit -f)");
     case ImportEnd::crashed:
       fail(request,
            run.signal != 0 ? "the import process crashed (" + signal_name(run.signal) + ")"

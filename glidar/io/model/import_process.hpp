@@ -24,7 +24,13 @@ struct ImportRequest {
 };
 
 /// How the process ended.
-enum class ImportEnd : std::uint8_t { answered, crashed, out_of_time, out_of_memory };
+enum class ImportEnd : std::uint8_t {
+  answered,
+  crashed,
+  out_of_time,
+  out_of_memory,
+  over_file_size
+};
 
 struct ImportRun {
   ImportEnd end = ImportEnd::crashed;

@@ -5,18 +5,58 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/point_rows.hpp>
+#include <glidar/io/packets/hesai_packet.hpp>
 #include <glidar/io/ros/firing_order.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <utility>
 #include <variant>
 
 namespace glidar::ros {
 namespace {
+
+/// The columns that a scanner's driver receives in one packet: those of the maker's format, or
+/// about 384 points.
+std::size_t columns_per_packet(const Sensor& sensor, const Beams& beams) {
+  constexpr std::size_t kPacketPoints = 384;  // of all models of Velodyne
+  if (const HesaiModel* model = find_hesai_model(sensor))
+    return model->blocks / std::max<std::size_t>(1, beams.returns);
+  return std::max<std::size_t>(1, kPacketPoints / std::max<std::size_t>(1, beams.rows));
+}
+
+/// The entries of the beams of a grid in an order other than PointOrder::firing and rows.
+std::vector<std::uint32_t> ordered_entries(const Sensor& sensor, const Beams& beams,
+                                           PointOrder order) {
+  std::vector<std::uint32_t> entries;
+  entries.reserve(beams.size());
+  const auto entry = [&](std::size_t row, std::size_t col) {
+    entries.push_back(static_cast<std::uint32_t>(row * beams.cols + col));
+  };
+  if (order == PointOrder::destaggered) {
+    const std::vector<std::size_t> shifts = row_shifts(sensor, beams);
+    for (std::size_t row = 0; row < beams.rows; ++row)
+      for (std::size_t col = 0; col < beams.cols; ++col)
+        entry(row, (col + beams.cols - shifts[row]) % beams.cols);
+    return entries;
+  }
+  std::vector<std::size_t> rows(beams.rows);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  const std::size_t channels = beams.rows / beams.returns;
+  if (order == PointOrder::rings) {
+    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(a / channels, ring_of(beams, a * beams.cols)) <
+             std::pair(b / channels, ring_of(beams, b * beams.cols));
+    });
+  }
+  for (std::size_t col = 0; col < beams.cols; ++col)
+    for (const std::size_t row : rows) entry(row, col);
+  return entries;
+}
 
 /// Since the start of the frame.
 std::uint32_t first_time_ns(const Beams& beams) {
@@ -370,6 +410,25 @@ CustomMsg to_custom_msg(const PointCloud& cloud, const CloudSource& source,
   for (std::size_t i = 0; i < chosen.size(); ++i)
     message.points.push_back({times[i], x[i], y[i], z[i], reflectivity[i], tag[i], line[i]});
   return message;
+}
+
+std::vector<std::size_t> row_shifts(const Sensor& sensor, const Beams& beams) {
+  std::vector<std::size_t> shifts(beams.rows, 0);
+  const auto* spinning = std::get_if<Spinning>(&sensor.optics);
+  if (spinning == nullptr || spinning->columns_per_turn != beams.cols) return shifts;
+  const auto columns = static_cast<long>(beams.cols);
+  std::vector<const SpinningChannel*> by_row;
+  for (const SpinningChannel& channel : spinning->channels) by_row.push_back(&channel);
+  std::stable_sort(by_row.begin(), by_row.end(), [](const auto* a, const auto* b) {
+    return a->elevation_rad > b->elevation_rad;
+  });
+  for (std::size_t row = 0; row < shifts.size(); ++row) {
+    const SpinningChannel& channel = *by_row[row % by_row.size()];
+    const double turns = -channel.azimuth_offset_rad / (2.0 * std::numbers::pi);
+    const long shift = std::lround(turns * static_cast<double>(columns));
+    shifts[row] = static_cast<std::size_t>((shift % columns + columns) % columns);
+  }
+  return shifts;
 }
 
 }  // namespace glidar::ros

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/beams.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/ros/messages.hpp>
-#include <glidar/io/ros/point_order.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/sensor/sensor.hpp>
 
@@ -29,6 +29,15 @@ enum class Misses : std::uint8_t {
   omitted,
   nan,   ///< their coordinates are NaN
   zero,  ///< their coordinates are 0
+};
+
+/// The order of points. A column is what a scanner fires at one azimuth, once for each return.
+enum class PointOrder : std::uint8_t {
+  firing,       ///< by firing time, stably; one row
+  rows,         ///< as the beams: height = channels; one row without misses
+  destaggered,  ///< the same, each row shifted so that columns have one azimuth (Ouster)
+  columns,      ///< height = columns, width = channels in the order of the beams
+  rings,        ///< the same, channels by their ring
 };
 
 /// The stamp of a cloud, from which relative times count.
@@ -80,5 +89,8 @@ PointCloud2 to_point_cloud2(const PointCloud& cloud, const CloudSource& source,
 /// options.layout is ignored. Throws Error as above, and for stamps before 1970.
 CustomMsg to_custom_msg(const PointCloud& cloud, const CloudSource& source,
                         const CloudMessageOptions& options = {});
+
+/// The columns by which the rows of an Ouster's images are shifted: pixel_shift_by_row.
+std::vector<std::size_t> row_shifts(const Sensor& sensor, const Beams& beams);
 
 }  // namespace glidar::ros

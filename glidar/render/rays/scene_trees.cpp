@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace glidar::rays {
@@ -47,7 +48,7 @@ void SceneTrees::place(const CastRequest& request, const Resolver& resolver,
   if (refit(request)) {
     find_reaches(resolver);
   } else {
-    store_poses(request);
+    store_poses(request, resolver);
     origin_m_ = request.world_from_sensor.translation();
     find_reaches(resolver);
     group_instances();
@@ -61,7 +62,7 @@ void SceneTrees::place(const CastRequest& request, const Resolver& resolver,
 }
 
 void SceneTrees::find_reaches(const Resolver& resolver) {
-  for (const std::uint32_t i : instances_) {
+  for (std::uint32_t i = 0; i < reach_m_.size(); ++i) {
     const InstanceView& view = resolver.view(i);
     reach_m_[i] =
         view.scale * (mesh_reach_[scene_.instances[i].mesh] + view.sensor_in_object.norm());
@@ -85,6 +86,9 @@ bool SceneTrees::refit(const CastRequest& request) {
     if (poses_[i].matrix() != pose_of(scene_, request, i).matrix()) moved_.push_back(i);
   }
   if (kMovedDivisor * moved_.size() > instances_.size()) return false;
+  // a copy appears where the instance that hid it moved, and the other way round
+  if (std::any_of(moved_.begin(), moved_.end(), [&](std::uint32_t i) { return copies_[i] != 0; }))
+    return false;
   for (const std::uint32_t i : moved_) {
     poses_[i] = pose_of(scene_, request, i);
     if (enabled_[i] == 0 || of_instance(i).nodes.empty()) continue;
@@ -110,21 +114,50 @@ bool SceneTrees::is_sensor_near(const CastRequest& request) const {
   });
 }
 
-void SceneTrees::store_poses(const CastRequest& request) {
+void SceneTrees::store_poses(const CastRequest& request, const Resolver& resolver) {
   poses_.resize(scene_.instances.size());
   enabled_.resize(scene_.instances.size());
   instances_.clear();
-  double largest_m = -1.0;
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
     poses_[i] = pose_of(scene_, request, i);
     enabled_[i] = static_cast<std::uint8_t>(is_enabled(request, i));
-    if (enabled_[i] == 0 || of_instance(i).nodes.empty()) continue;
-    instances_.push_back(i);
+    if (enabled_[i] != 0 && !of_instance(i).nodes.empty()) instances_.push_back(i);
+  }
+  remove_copies(resolver);
+  double largest_m = -1.0;
+  for (const std::uint32_t i : instances_) {
     const double size_m = scene_.instances[i].scale * of_instance(i).sphere.radius;
     if (!(size_m > largest_m)) continue;
     largest_m = size_m;
     tree_from_world_ = poses_[i].linear().transpose();
   }
+}
+
+/// Every triangle of a copy is as far as that of the original, which is lower.
+void SceneTrees::remove_copies(const Resolver& resolver) {
+  copies_.assign(poses_.size(), 0);
+  if (instances_.size() < 2) return;
+  const auto order = [&](std::uint32_t a, std::uint32_t b) {
+    const Instance& one = scene_.instances[a];
+    const Instance& other = scene_.instances[b];
+    if (one.mesh != other.mesh) return one.mesh < other.mesh ? -1 : 1;
+    if (one.scale != other.scale) return one.scale < other.scale ? -1 : 1;
+    return std::memcmp(poses_[a].data(), poses_[b].data(), sizeof(double) * 16);
+  };
+  std::vector<std::uint32_t> sorted = instances_;
+  std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const int found = order(a, b);
+    return found != 0 ? found < 0 : a < b;
+  });
+  const auto may_differ = [&](std::uint32_t i) { return resolver.is_masked(i); };
+  std::vector<std::uint8_t> is_copy(poses_.size(), 0);
+  for (std::size_t k = 1, first = 0; k < sorted.size(); ++k) {
+    if (order(sorted[first], sorted[k]) != 0) first = k;
+    if (first == k || may_differ(sorted[first]) || may_differ(sorted[k])) continue;
+    is_copy[sorted[k]] = 1;
+    copies_[sorted[k]] = copies_[sorted[first]] = 1;
+  }
+  std::erase_if(instances_, [&](std::uint32_t i) { return is_copy[i] != 0; });
 }
 
 BoxReference SceneTrees::reference_of(std::uint32_t instance) const {

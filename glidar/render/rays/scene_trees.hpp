@@ -45,7 +45,8 @@ class SceneTrees {
     return mesh_reach_[scene_.instances[instance].mesh];
   }
 
-  /// Enabled instances with triangles.
+  /// Enabled instances with triangles. Of instances of one mesh at the same place without alpha
+  /// masks it has the lowest only, which is the one that the hit rule reports.
   [[nodiscard]] const std::vector<std::uint32_t>& instances() const { return instances_; }
 
   /// instances() by increasing reach: few groups, mostly one.
@@ -66,7 +67,8 @@ class SceneTrees {
   [[nodiscard]] bool refit(const CastRequest& request);
   [[nodiscard]] bool has_same_instances(const CastRequest& request) const;
   [[nodiscard]] bool is_sensor_near(const CastRequest& request) const;
-  void store_poses(const CastRequest& request);
+  void store_poses(const CastRequest& request, const Resolver& resolver);
+  void remove_copies(const Resolver& resolver);
   void group_instances();
   void build_boxes(ThreadPool& thread_pool, InstanceGroup& group) const;
   [[nodiscard]] BoxReference reference_of(std::uint32_t instance) const;
@@ -78,8 +80,9 @@ class SceneTrees {
   std::vector<double> reach_m_;  ///< per instance
   double max_reach_m_ = 0.0;
 
-  std::vector<Pose> poses_;                             ///< per instance, as the trees have them
-  std::vector<std::uint8_t> enabled_;                   ///< per instance
+  std::vector<Pose> poses_;            ///< per instance, as the trees have them
+  std::vector<std::uint8_t> enabled_;  ///< per instance
+  std::vector<std::uint8_t> copies_;   ///< per instance: another one is at the same place
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the trees' frame, in the world
   Eigen::Matrix3d tree_from_world_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();

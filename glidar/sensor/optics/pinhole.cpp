@@ -57,21 +57,21 @@ constexpr const char* kFocalLengths = "one of fov_deg, fov_x_deg, or fx with fy"
 
 /// fy, cx and cy belong to fx: with a field of view the pixels are square and the principal point
 /// is in the middle.
-void reject_beside_fov(const FieldVisitor& visitor, const std::string& fov) {
-  for (const char* key : {"fy", "cx", "cy"}) {
-    if (!visitor.has(key)) continue;
-    visitor.reject(key, "given beside '" + fov + "'", "fy, cx and cy only together with fx",
-                   "remove it, or give fx and fy instead of " + fov);
-  }
+void exclude_beside_fov(FieldVisitor& visitor, const std::string& fov) {
+  const std::string remedy = "remove it, or give fx and fy instead of " + fov;
+  for (const char* key : {"fy", "cx", "cy"})
+    visitor.at_most_one({.keys = {fov.c_str(), key},
+                         .allowed = "fy, cx and cy only together with fx",
+                         .conflict_remedy = remedy.c_str()});
 }
 
 /// The focal length of an image with this many pixels along the side that a field of view spans.
 void visit_field_of_view(FieldVisitor& visitor, const FieldInfo& field, std::uint32_t side,
                          PinholeIntrinsics& k) {
   double fov_rad = 0.0;
+  exclude_beside_fov(visitor, field.key);
   visitor.number(field, {0.0, 180.0, true, "degrees above 0 and below 180"}, fov_rad);
   if (!visitor.is_reading() || !visitor.has(field.key)) return;
-  reject_beside_fov(visitor, field.key);
   k.fx = k.fy = focal_length_px(side, fov_rad);
   if (k.fx > 0.0 && k.fx < kFarthestPixel) return;
   visitor.reject(field.key, "{}, a focal length of " + number_text(k.fx) + " pixels",
@@ -82,18 +82,18 @@ void visit_field_of_view(FieldVisitor& visitor, const FieldInfo& field, std::uin
 void visit_focal_length(FieldVisitor& visitor, Pinhole& pinhole) {
   constexpr NumberRule kFocalLength = {0.0, kFarthestPixel, true, "pixels above 0 and below 1e9"};
   PinholeIntrinsics& k = pinhole.intrinsics;
-  const bool is_panorama =
-      visitor.is_reading() && std::holds_alternative<Equirectangular>(pinhole.distortion);
-  const bool is_known = is_panorama || (visitor.is_reading() && k.fx > 0.0);
-  visitor.at_most_one({{kCalibrationFile, "fov_deg", "fov_x_deg", "fx"},
-                       kFocalLengths,
-                       is_known ? nullptr : "the focal length is missing",
-                       "add 'fov_deg: ...'"});
-  if (is_panorama) {
-    for (const char* key : {"fov_deg", "fov_x_deg"})
-      if (visitor.has(key))
-        visitor.reject(key, "given for an equirectangular image", "fx and fy, pixels per radian",
-                       "leave it out: the image has the whole sphere");
+  constexpr KeyCase kPanorama = {"distortion", "model", Equirectangular::kType.name};
+  visitor.at_most_one({.keys = {kCalibrationFile, "fov_deg", "fov_x_deg", "fx"},
+                       .allowed = kFocalLengths,
+                       .missing = "the focal length is missing",
+                       .remedy = "add 'fov_deg: ...'",
+                       .none_needed = kPanorama});
+  visitor.excludes({kPanorama,
+                    {"fov_deg", "fov_x_deg"},
+                    "given for an equirectangular image",
+                    "fx and fy, pixels per radian",
+                    "leave it out: the image has the whole sphere"});
+  if (visitor.is_reading() && std::holds_alternative<Equirectangular>(pinhole.distortion)) {
     k.fx = k.width / kTwoPi;
     k.fy = k.height / std::numbers::pi;
   }
@@ -103,11 +103,12 @@ void visit_focal_length(FieldVisitor& visitor, Pinhole& pinhole) {
     visit_field_of_view(visitor, {"fov_x_deg", "horizontal field of view", kUnitDegree, false, ""},
                         k.width, k);
   }
-  const bool is_required = visitor.is_reading() && visitor.has("fx");
-  visitor.number({"fx", "focal length, together with `fy`", kUnitPixel, is_required, ""},
-                 kFocalLength, k.fx);
-  visitor.number({"fy", "focal length, together with `fx`", kUnitPixel, is_required, ""},
-                 kFocalLength, k.fy);
+  visitor.needs({"fx", "fy", kFocalLengths, "add 'fy: ...'"});
+  visitor.needs({"fy", "fx", kFocalLengths, "add 'fx: ...'"});
+  visitor.number({"fx", "focal length, together with `fy`", kUnitPixel, false, ""}, kFocalLength,
+                 k.fx);
+  visitor.number({"fy", "focal length, together with `fx`", kUnitPixel, false, ""}, kFocalLength,
+                 k.fy);
 }
 
 }  // namespace

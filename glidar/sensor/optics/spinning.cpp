@@ -282,10 +282,11 @@ void visit_start_azimuth(FieldVisitor& visitor, Spinning& s) {
 /// What starts a firing sequence: the encoder or a clock.
 void visit_column_timing(FieldVisitor& visitor, Spinning& s) {
   const bool is_known = visitor.is_reading() && s.columns_per_turn > 0;  // by a calibration
-  visitor.at_most_one({{"columns_per_turn", "firing_period_us"},
-                       "one of columns_per_turn and firing_period_us",
-                       is_known ? nullptr : "the time between columns is missing",
-                       "add 'columns_per_turn: ...'"});
+  visitor.at_most_one({.keys = {"columns_per_turn", "firing_period_us"},
+                       .allowed = "one of columns_per_turn and firing_period_us",
+                       .missing = is_known ? nullptr : "the time between columns is missing",
+                       .remedy = "add 'columns_per_turn: ...'",
+                       .supplier = "calibration_file"});
   visitor.whole_number(
       {"columns_per_turn", "columns at equal angles", kNoUnit, false, "this or `firing_period_us`"},
       {1, kMaxColumnsPerTurn}, s.columns_per_turn);

@@ -64,6 +64,11 @@ void visit_elevations(FieldVisitor& visitor, std::vector<SpinningChannel>& chann
   const bool is_required = visitor.is_reading() && channels.empty();  // not after a calibration
   const FieldInfo field = {"elevation_deg", "elevation of each channel", kUnitDegree, is_required,
                            "this or `calibration_file`"};
+  if (visitor.mode() == FieldVisitor::Mode::schema)
+    visitor.at_most_one({.keys = {field.key},
+                         .allowed = "",
+                         .missing = "the elevations are missing",
+                         .supplier = "calibration_file"});
   const NumberRule rule = {-90.0, 90.0, false, "degrees from -90 to 90"};
   std::vector<double> values;
   for (const SpinningChannel& channel : channels) values.push_back(channel.elevation_rad);

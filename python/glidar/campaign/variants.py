@@ -22,7 +22,7 @@ ANCHOR = re.compile(r"(?:[&!]\S*\s+)*")
 MAX_DIGITS = 9  # of an element's index
 # keys whose values may be paths
 FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "noise_texture", "picture", "calibration_file",
-             "fire_time_file"}
+             "fire_time_file", "sensor_calibration_file", "sensor_fire_time_file"}
 
 
 @dataclass(frozen=True)

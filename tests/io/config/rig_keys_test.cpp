@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/scene_builder.hpp>
+#include <glidar/math/constants.hpp>
 
 #include "io/yaml_files.hpp"
 
@@ -61,6 +62,41 @@ TEST(RigKeys, ASensorHasTheModeAndVariantThatTheSceneNames) {
   EXPECT_EQ(std::get<Spinning>(rig.sensors.at(0).sensor.optics).columns_per_turn, 512U);
   EXPECT_EQ(rig.sensors.at(0).sensor.rate_hz, 20.0);
   EXPECT_EQ(rig.sensors.at(1).sensor.mode, "1024x10");
+}
+
+/// Angles of two channels, as Hesai's CSV.
+std::string angles_csv(double first_deg) {
+  return "Channel,Elevation,Azimuth\n1," + std::to_string(first_deg) + ",0\n2,5,-2\n";
+}
+
+TEST(RigKeys, CalibrationsApplyToTheSensorsBesideWhichTheyAreNamed) {
+  const TestFolder folder;
+  (void)folder.write("two.yaml",
+                     "optics: {type: spinning, columns_per_turn: 8, elevation_deg: [1, 2]}\n");
+  (void)folder.write("a.csv", angles_csv(3.0));
+  (void)folder.write("b.csv", angles_csv(4.0));
+  (void)folder.write("t.csv", "Channel,fire time(us)\n1,10\n2,20\n");
+  const auto first = [](const RigSensor& one) {
+    return std::get<Spinning>(one.sensor.optics).channels.at(0);
+  };
+  const std::string models = "models: [{model: a}]\n";
+  const ScenePlan rig = planned(
+      folder, models +
+                  "sensors:\n- {name: a, sensor: two.yaml, calibration_file: a.csv}\n"
+                  "- {name: b, sensor: two.yaml, calibration_file: b.csv, fire_time_file: t.csv}\n"
+                  "- {name: c, sensor: two.yaml}\n"
+                  "- name: d\n  sensor: {optics: {type: spinning, columns_per_turn: 8, "
+                  "calibration_file: b.csv}}\n");
+  const std::vector<double> elevations_deg = {3.0, 4.0, 1.0, 4.0};
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_DOUBLE_EQ(first(rig.sensors.at(i)).elevation_rad, elevations_deg[i] * kDegree) << i;
+  EXPECT_DOUBLE_EQ(first(rig.sensors.at(1)).fire_time_ns, 1e4);
+  EXPECT_EQ(rig.sensors.at(1).sensor.files.size(), 3U);
+  const ScenePlan single = planned(folder, models +
+                                               "sensor: two.yaml\nsensor_calibration_file: a.csv\n"
+                                               "sensor_fire_time_file: t.csv\n");
+  EXPECT_DOUBLE_EQ(first(single.sensors.at(0)).elevation_rad, 3.0 * kDegree);
+  EXPECT_DOUBLE_EQ(first(single.sensors.at(0)).fire_time_ns, 1e4);
 }
 
 }  // namespace

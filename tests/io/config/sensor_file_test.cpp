@@ -176,7 +176,7 @@ const BadFile kBadFiles[] = {
      "wavelength_nm, limits, light, lidar_equation, footprint, receiver, weather, "
      "projector_origin_m, doppler, noise, depth_model, depth_camera, cull_back_faces, "
      "source, "
-     "unverified, variants, modes, default_mode, aliases"},
+     "unverified, notes, variants, modes, default_mode, aliases"},
     {"DuplicateKey", optics("width: 4, height: 2, width: 5, fov_deg: 20"),
      "s.yaml:1:31: optics.width: the key is given twice; allowed: each key once; remove one of "
      "them"},
@@ -184,7 +184,8 @@ const BadFile kBadFiles[] = {
     {"MissingWidth", optics("height: 2, fov_deg: 20"),
      "s.yaml:1:9: optics: the key 'width' is missing; add 'width: ...'"},
     {"MissingFy", optics("width: 4, height: 2, fx: 3"),
-     "s.yaml:1:9: optics: the key 'fy' is missing; add 'fy: ...'"},
+     "s.yaml:1:46: optics.fx: given without 'fy'; allowed: one of fov_deg, fov_x_deg, or fx with "
+     "fy; add 'fy: ...'"},
     {"NoFocalLength", optics("width: 4, height: 2"),
      "s.yaml:1:9: optics: the focal length is missing; allowed: " + kFocal +
          "; add 'fov_deg: ...'"},
@@ -302,7 +303,7 @@ const BadFile kBadFiles[] = {
      "wavelength_nm, limits, light, lidar_equation, footprint, receiver, weather, "
      "projector_origin_m, doppler, noise, depth_model, depth_camera, cull_back_faces, "
      "source, "
-     "unverified, variants, modes, default_mode, aliases"},
+     "unverified, notes, variants, modes, default_mode, aliases"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SensorFileError, ::testing::ValuesIn(kBadFiles), bad_file_name);

@@ -3,6 +3,7 @@
 #include <glidar/io/files/atomic_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/unique_fd.hpp>
 
 #include <io/cloud_fixture.hpp>
 #include <support/error_text.hpp>
@@ -12,8 +13,13 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
+#include <fstream>
 #include <thread>
+#include <vector>
 
 namespace glidar {
 namespace {
@@ -52,6 +58,71 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   file.commit();
   EXPECT_EQ(file_bytes(folder / "a.txt"), "whole");
   EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+/// So many that files get a temporary name when they are finished.
+class ManyDescriptors {
+ public:
+  ManyDescriptors() {
+    for (int i = 0; i < 128; ++i) copies_.emplace_back(::fcntl(0, F_DUPFD_CLOEXEC, 3));
+  }
+
+ private:
+  std::vector<UniqueFd> copies_;
+};
+
+TEST(AtomicFile, HasNoNameThatCouldStayUntilItIsCommitted) {
+  const testing::TestFolder folder;
+  if (!UniqueFd(::open(folder.path().c_str(), O_WRONLY | O_TMPFILE, 0600)))
+    GTEST_SKIP() << "no files without names; use another file system";
+  AtomicFile file(folder / "a.txt");
+  file.write(std::string(1'000'000, 'a'));
+  file.finish();
+  EXPECT_THAT(folder.names(), IsEmpty());
+  const ManyDescriptors many;
+  AtomicFile other(folder / "b.txt");
+  other.finish();
+  EXPECT_EQ(folder.names().size(), 1U);  // its temporary name
+  file.commit();
+  other.commit();
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt", "b.txt"));
+}
+
+TEST(AtomicFile, WritesTheTargetOfASymbolicLink) {
+  const testing::TestFolder folder;
+  std::filesystem::create_directory(folder / "real");
+  std::ofstream(folder / "real/old.txt") << "old";
+  std::filesystem::create_symlink("real/old.txt", folder / "link");
+  std::filesystem::create_symlink("link", folder / "chain");
+  std::filesystem::create_symlink("real/new.txt", folder / "dangling");
+  std::filesystem::create_symlink("loop", folder / "loop");
+  for (const char* name : {"link", "chain", "dangling"}) {
+    AtomicFile file(folder / name);
+    file.write(name);
+    file.commit();
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << name;
+    EXPECT_EQ(file_bytes(folder / name), name);
+  }
+  EXPECT_EQ(file_bytes(folder / "real/old.txt"), "chain");
+  EXPECT_EQ(file_bytes(folder / "real/new.txt"), "dangling");
+  EXPECT_THAT(error_text([&] { AtomicFile file(folder / "loop"); }),
+              HasSubstr("loop: cannot follow this symbolic link"));
+}
+
+TEST(AtomicFile, IsNotRenamedAfterAFailedClose) {
+  const testing::TestFolder folder;
+  AtomicFile file(folder / "a.txt");
+  file.write("whole");
+  file.seek(5);  // flushes
+  for (int descriptor = 3; descriptor < 4096; ++descriptor) {
+    std::error_code ignored;
+    const auto own = std::filesystem::path("/proc/self/fd") / std::to_string(descriptor);
+    const std::string name = std::filesystem::read_symlink(own, ignored);
+    if (!ignored && name.starts_with(folder.path().string() + "/")) ::close(descriptor);
+  }
+  EXPECT_THROW(file.commit(), Error);
+  EXPECT_THROW(file.commit(), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
 }
 
 TEST(AtomicFile, LeavesTheOldFileWhenNotCommitted) {
@@ -187,8 +258,11 @@ TEST(AtomicFile, RemovesUnfinishedFilesForASignalHandler) {
   const testing::TestFolder folder;
   AtomicFile done(folder / "done.txt");
   done.commit();
+  const ManyDescriptors many;
   AtomicFile first(folder / "first.txt");
   AtomicFile second(folder / "second.txt");
+  first.finish();
+  second.finish();
   EXPECT_EQ(folder.names().size(), 3U);
   remove_unfinished_files();
   EXPECT_THAT(folder.names(), ElementsAre("done.txt"));

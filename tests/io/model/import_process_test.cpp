@@ -7,10 +7,13 @@
 
 #include <gmock/gmock.h>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 #include <thread>
 #include <utility>
@@ -57,11 +60,41 @@ TEST_F(ImportProcess, AHangingProcessIsKilled) {
   EXPECT_THAT(error(request), HasSubstr("took longer than 0.3 s"));
 }
 
+TEST_F(ImportProcess, AProcessThatClosesItsProgressIsKilledAtTheDeadline) {
+  ImportRequest request = with_script("exec 4>&-\nexec sleep 3600");
+  request.time_limit_s = 0.3;
+  EXPECT_EQ(run_import(request, {}).end, ImportEnd::out_of_time);
+}
+
+TEST_F(ImportProcess, AnAnswerAfterTheEndOfTheProgressCounts) {
+  const std::string pipe = (temp_.path() / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
+  const ImportRequest request = with_script("exec 4>&-\nread line < " + pipe + "\nexit 3");
+  std::thread writer([&] { std::ofstream(pipe) << "\n"; });
+  EXPECT_EQ(run_import(request, {}).end, ImportEnd::out_of_memory);
+  writer.join();
+}
+
 TEST_F(ImportProcess, MissingAndMalformedAnswersAreErrors) {
   EXPECT_THAT(error(with_script("exit 0")), HasSubstr("malformed answer"));
   EXPECT_THAT(error(with_script("head -c 500 /dev/zero >&3")), HasSubstr("malformed answer"));
   EXPECT_THAT(error(with_script("exit 2")), HasSubstr("without an answer"));
   EXPECT_THAT(error(with_script("exit 3")), HasSubstr("more memory than 1024 MiB"));
+}
+
+/// The limit holds for this process too, so a child has it.
+TEST_F(ImportProcess, TheLimitOnTheSizeOfFilesIsNamedAndNotTheModel) {
+  const ImportRequest request = with_script("exit 4");
+  EXPECT_THAT(error(request), HasSubstr("needs more memory than 1024 MiB"));
+  const auto under_limit = [&] {
+    const rlimit limit{65536, 65536};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::cerr << error(request);
+    std::exit(0);
+  };
+  EXPECT_EXIT(under_limit(), ::testing::ExitedWithCode(0),
+              "a.obj: its triangles and textures exceed the limit of this process on the size of "
+              "files, 65536 bytes; raise the limit .ulimit -f.");
 }
 
 TEST_F(ImportProcess, ItsOutputIsDiscarded) {

@@ -64,6 +64,8 @@ class Stage {
 
   /// The groups of instances of the last search.
   std::size_t groups() const { return search_.trees().groups().size(); }
+  /// The instances that the last search could meet.
+  std::size_t searched() const { return search_.trees().instances().size(); }
 
   std::size_t hits(const std::vector<PrimitiveRef>& found) const {
     return found.size() -
@@ -112,7 +114,8 @@ class Stage {
         (beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[beam]);
     const Eigen::Vector3d direction = world_from_sensor.linear() * beams.directions[beam];
     std::vector<Candidate> all;
-    for (const std::uint32_t instance : search_.trees().instances()) {
+    for (std::uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
+      if (!present.empty() && present[instance] == 0) continue;
       if (is_beside(spheres[instance], start_m, direction)) continue;
       const Mesh& mesh = resolver_.mesh(instance);
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -377,6 +380,46 @@ TEST(BeamSearch, FollowsFewMovingInstancesAmongMany) {
       stage.scene.instances[moved].world_from_object =
           turned(6.0 * draws.next(), draws.direction(), far_m * draws.direction());
     }
+  }
+}
+
+TEST(BeamSearch, CopiesAtOnePlaceAreSearchedOnceAndAppearWhenTheyMove) {
+  constexpr std::size_t kCopies = 50'000;
+  Scene scene = crowd(12, 17, Eigen::Vector3d::Zero());
+  const Instance copied = scene.instances[5];
+  scene.instances.insert(scene.instances.end(), kCopies, copied);
+  Stage stage(std::move(scene), some_beams(64, false, true, 18), Pose::Identity());
+  const std::vector<PrimitiveRef> found = stage.search();
+  EXPECT_EQ(stage.searched(), 12U);
+  const auto is_on = [&](std::uint32_t instance) {
+    return std::count_if(found.begin(), found.end(),
+                         [&](const PrimitiveRef& f) { return f.instance == instance; });
+  };
+  EXPECT_GT(is_on(5), 0);
+  stage.present.assign(stage.scene.instances.size(), 1);
+  stage.present[5] = 0;
+  std::vector<PrimitiveRef> without = stage.search();
+  EXPECT_EQ(stage.searched(), 12U);
+  for (PrimitiveRef& f : without) f.instance = f.instance == 12 ? 5 : f.instance;
+  EXPECT_EQ(without, found);
+}
+
+/// An instance moves away from its copies, then one of these, then an instance to another.
+TEST(BeamSearch, CopiesThatMoveAreFollowed) {
+  Scene scene = crowd(40, 19, Eigen::Vector3d::Zero());
+  for (const std::size_t i : {7U, 7U, 9U}) {
+    const Instance copied = scene.instances[i];
+    scene.instances.push_back(copied);
+  }
+  Stage stage(std::move(scene), some_beams(160, false, true, 20), Pose::Identity());
+  const std::array<std::pair<std::size_t, std::size_t>, 4> moves = {
+      {{7, 3}, {41, 5}, {42, 7}, {1, 2}}};
+  EXPECT_EQ(stage.search(), stage.search_by_rule());
+  EXPECT_EQ(stage.searched(), 40U);
+  for (const auto& [moved, to] : moves) {
+    std::vector<Instance>& all = stage.scene.instances;
+    all[moved].world_from_object = all[to].world_from_object;
+    EXPECT_EQ(stage.search(), stage.search_by_rule()) << moved;
   }
 }
 
