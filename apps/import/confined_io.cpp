@@ -80,10 +80,6 @@ std::string shown(std::string name, const ModelFolder& folder) {
 
 }  // namespace
 
-void add_once(std::vector<std::string>& list, std::string item) {
-  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(std::move(item));
-}
-
 ConfinedIo::ConfinedIo(ModelFolder folder, ModelFiles& files, FileLog& log)
     : folder_(std::move(folder)), files_(files), log_(log) {}
 

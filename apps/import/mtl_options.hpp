@@ -3,7 +3,7 @@
 #pragma once
 
 #include <import/model_files.hpp>
-#include <import/texture_use.hpp>
+#include <import/source_model.hpp>
 
 #include <Eigen/Core>
 #include <optional>

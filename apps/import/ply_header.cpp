@@ -3,7 +3,7 @@
 #include <import/ply_header.hpp>
 
 #include <glidar/core/text.hpp>
-#include <import/scene_walk.hpp>
+#include <import/source_model.hpp>
 
 #include <assimp/material.h>
 #include <assimp/scene.h>
