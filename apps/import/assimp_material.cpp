@@ -167,12 +167,9 @@ std::optional<NamedTexture> texture_of(const aiMaterial& material, aiTextureType
 }
 
 std::optional<NamedTexture> first_of(const aiMaterial& source,
-                                     std::initializer_list<aiTextureType> types, bool gltf,
-                                     const MtlOptions& mtl) {
+                                     std::initializer_list<aiTextureType> types, bool gltf) {
   for (const aiTextureType type : types) {
-    auto named = texture_of(source, type, gltf);
-    mtl.refine(source.GetName().C_Str(), type, named);
-    if (named) return named;
+    if (auto named = texture_of(source, type, gltf)) return named;
   }
   return std::nullopt;
 }
@@ -212,18 +209,17 @@ float bump_strength(const aiMaterial& source) {
 
 }  // namespace
 
-SourceMaterial assimp_material(const aiMaterial& source, bool gltf, const MtlOptions& mtl) {
+SourceMaterial assimp_material(const aiMaterial& source, bool gltf) {
   SourceMaterial material;
   const aiString name = source.GetName();
   if (name.length > 0) material.material.name.assign(name.data, name.length);
   read_colours(source, material.material);
-  material.diffuse = first_of(source, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, gltf, mtl);
-  material.specular = first_of(source, {aiTextureType_SPECULAR}, gltf, mtl);
-  material.opacity = first_of(source, {aiTextureType_OPACITY}, gltf, mtl);
-  material.normals =
-      first_of(source, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT},
-               gltf, mtl);
-  if (material.normals && !material.normals->bump) material.normals->bump = bump_strength(source);
+  material.diffuse = first_of(source, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, gltf);
+  material.specular = first_of(source, {aiTextureType_SPECULAR}, gltf);
+  material.opacity = first_of(source, {aiTextureType_OPACITY}, gltf);
+  material.normals = first_of(
+      source, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT}, gltf);
+  if (material.normals) material.normals->bump = bump_strength(source);
   material.alpha = alpha_mode(source, gltf);
   material.cutoff =
       within(number(source, key_of(AI_MATKEY_GLTF_ALPHACUTOFF)).value_or(0.5F), 0.0F, 1.0F);

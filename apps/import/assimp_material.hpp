@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <import/mtl_options.hpp>
 #include <import/source_model.hpp>
 
 struct aiMaterial;
@@ -17,6 +16,6 @@ namespace glidar::import {
 ///    reference, 2013), 0..128;
 ///  - non-finite numbers become 0, others are clamped to their range.
 /// `gltf`: the transforms of uvs are glTF's (KHR_texture_transform), which Assimp rewrites.
-SourceMaterial assimp_material(const aiMaterial& material, bool gltf, const MtlOptions& mtl);
+SourceMaterial assimp_material(const aiMaterial& material, bool gltf);
 
 }  // namespace glidar::import

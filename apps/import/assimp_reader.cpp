@@ -7,7 +7,6 @@
 #include <import/declared_frame.hpp>
 #include <import/gltf_extensions.hpp>
 #include <import/gltf_transforms.hpp>
-#include <import/ply_header.hpp>
 #include <import/polygons.hpp>
 
 #include <glidar/io/model/mesh_blob.hpp>
@@ -90,7 +89,7 @@ Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
   return result;
 }
 
-void copy_vertices(const aiMesh& from, bool with_normals, SourceMesh& mesh) {
+void copy_vertices(const aiMesh& from, SourceMesh& mesh) {
   const std::size_t count = from.mNumVertices;
   const auto copy = [count](const aiVector3D* values, auto& to) {
     to.reserve(count);
@@ -105,7 +104,7 @@ void copy_vertices(const aiMesh& from, bool with_normals, SourceMesh& mesh) {
   for (unsigned set = 0; set < mesh.uvs.size(); ++set) {
     if (from.HasTextureCoords(set)) copy(from.mTextureCoords[set], mesh.uvs[set]);
   }
-  if (with_normals && from.HasNormals()) copy(from.mNormals, mesh.normals);
+  if (from.HasNormals()) copy(from.mNormals, mesh.normals);
   for (std::size_t v = 0; v < count && from.HasVertexColors(0); ++v) {
     const aiColor4D& c = from.mColors[0][v];
     mesh.colours.emplace_back(c.r, c.g, c.b);
@@ -177,14 +176,13 @@ std::uint64_t copy_faces(const aiMesh& from, SourceMesh& mesh, Left& left) {
 
 /// Converts the meshes, with the same indices.
 std::vector<std::uint64_t> copy_meshes(const aiScene& scene, SourceModel& source) {
-  const bool facet_normals = source.format.find("(STL)") != std::string::npos;
   Left left;
   std::vector<std::uint64_t> lines;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     const aiMesh& from = *scene.mMeshes[i];
     SourceMesh& mesh = source.meshes.emplace_back();
     mesh.material = from.mMaterialIndex;
-    copy_vertices(from, !facet_normals, mesh);
+    copy_vertices(from, mesh);
     lines.push_back(copy_faces(from, mesh, left));
   }
   note_intersecting(source, left.intersecting);
@@ -275,10 +273,10 @@ EmbeddedImage image_of(const aiTexture& texture) {
   return image;
 }
 
-void copy_materials(const aiScene& scene, bool gltf, const MtlOptions& mtl, SourceModel& source) {
+void copy_materials(const aiScene& scene, bool gltf, SourceModel& source) {
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     const SourceMaterial& material =
-        source.materials.emplace_back(assimp_material(*scene.mMaterials[i], gltf, mtl));
+        source.materials.emplace_back(assimp_material(*scene.mMaterials[i], gltf));
     for (const auto* texture :
          {&material.diffuse, &material.specular, &material.opacity, &material.normals}) {
       if (!*texture || source.images.contains((*texture)->name)) continue;
@@ -294,7 +292,6 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
                              ModelFiles& files, FileLog& log,
                              const std::function<void(double)>& progress) {
   const auto own = files.content(model.string());
-  const PlyHeader ply = read_ply_header(*own);
   replace_gltf_extensions(model, folder, files, log);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
@@ -303,7 +300,6 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
   if (importer.ReadFile(model.string(), kSteps) == nullptr) refuse(importer.GetErrorString(), log);
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene& scene = *importer.GetOrphanedScene();
-  add_ply_texture(ply, scene);
   SourceModel source;
   source.format = importer_name(importer);
   source.is_single_precision = true;
@@ -311,7 +307,7 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
   const bool gltf = source.format.find("glTF") != std::string::npos;
   const NodeTransforms transforms = gltf ? gltf_transforms(own->whole(), scene) : NodeTransforms{};
   Tree(scene, transforms, copy_meshes(scene, source), source).place();
-  copy_materials(scene, gltf, read_mtl_options(files), source);
+  copy_materials(scene, gltf, source);
   return source;
 }
 

@@ -5,6 +5,7 @@
 #include <import/assimp_reader.hpp>
 #include <import/bake_mesh.hpp>
 #include <import/loaded_libraries.hpp>
+#include <import/own_readers.hpp>
 #include <import/read_materials.hpp>
 
 #include <limits>
@@ -49,9 +50,13 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   ModelFolder folder = model_folder(canonical_model);
   ModelFiles files(folder);
   FileLog log;
-  const auto own = files.content(canonical_model.string());  // the first of the files
-  if (own == nullptr) throw Refusal{"cannot be opened", "check its read permission"};
-  SourceModel source = read_with_assimp(canonical_model, folder, files, log, progress);
+  if (files.content(canonical_model.string()) == nullptr) {  // the first of the files
+    throw Refusal{"cannot be opened", "check its read permission"};
+  }
+  const ReaderInput input{canonical_model, folder, files, log};
+  const Reader reader = own_reader(input);
+  SourceModel source =
+      reader ? reader(input) : read_with_assimp(canonical_model, folder, files, log, progress);
   check_size(source);
   ImportedModel imported;
   Model& model = imported.model;
