@@ -130,7 +130,8 @@ void MtlReader::begin_material(std::string_view name) {
   current_ = &entry->second;
   if (!is_new) return;
   current_->number = source_.materials.size();
-  source_.materials.emplace_back().material.name = std::string(name);
+  SourceMaterial& added = source_.materials.emplace_back();
+  if (!name.empty()) added.material.name = std::string(name);
 }
 
 void MtlReader::read_colour(std::string_view text, const std::string& keyword,

@@ -17,6 +17,7 @@
 #include <charconv>
 #include <map>
 #include <set>
+#include <span>
 #include <tuple>
 
 namespace glidar::import {
@@ -335,6 +336,38 @@ class ObjReader {
     for (std::uint32_t& index : indices) index = index >= count ? kNoIndex : index;
   }
 
+  /// Faces whose corners have no normals, or not all, get a part beside those with normals, because
+  /// its normals are made by the crease angle.
+  void part_without_normals() {
+    FaceLists& faces = lists_.faces;
+    if (faces.normals.empty()) return;
+    const auto normals_of = [&faces](std::size_t f) {
+      return std::span(faces.normals)
+          .subspan(faces.begin_of(f), faces.end_of(f) - faces.begin_of(f));
+    };
+    std::vector<bool> lacks(faces.size());
+    std::vector<bool> has_some(lists_.parts.size(), false);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto normals = normals_of(f);
+      const auto missing = std::count(normals.begin(), normals.end(), kNoIndex);
+      lacks[f] = missing > 0;
+      if (missing == 0) has_some[faces.parts.empty() ? 0 : faces.parts[f]] = true;
+      if (missing == 0 || missing == static_cast<std::ptrdiff_t>(normals.size())) continue;
+      note_once("normals of faces that name them for some corners only are not used");
+      std::fill(normals.begin(), normals.end(), kNoIndex);
+    }
+    std::map<std::uint32_t, std::uint32_t> others;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const std::uint32_t part = faces.parts.empty() ? 0 : faces.parts[f];
+      if (!lacks[f] || !has_some[part]) continue;
+      const auto [other, is_new] =
+          others.try_emplace(part, static_cast<std::uint32_t>(lists_.parts.size()));
+      if (is_new) lists_.parts.push_back(FilePart(lists_.parts[part]));
+      faces.parts.resize(faces.size(), 0);
+      faces.parts[f] = other->second;
+    }
+  }
+
   void check_indices() {
     if (const auto* missing = forward_.beyond(lists_.positions.size())) {
       refuse_line(missing->second, fmt::format("a face names vertex {} of {}", missing->first + 1,
@@ -345,6 +378,7 @@ class ObjReader {
     drop_beyond("vn", forward_normals_, lists_.corner_normals.size(), faces.normals);
     if (!faces.uvs.empty()) faces.uvs.resize(faces.vertices.size(), kNoIndex);
     if (!faces.normals.empty()) faces.normals.resize(faces.vertices.size(), kNoIndex);
+    part_without_normals();
     const bool lacks_normals =
         faces.normals.empty() ||
         std::find(faces.normals.begin(), faces.normals.end(), kNoIndex) != faces.normals.end();

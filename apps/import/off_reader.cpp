@@ -310,7 +310,13 @@ SourceModel read_off(const ReaderInput& input) {
   FileLists lists;
   if (!text.find_word()) refuse_line(1, "the file is empty");
   TextCursor ahead = text;
-  const OffKind kind = kind_of(ahead.word(), ahead.line());
+  const std::string_view word = ahead.word();
+  OffKind kind = kind_of(word, ahead.line());
+  if (word.size() > 3 && word.starts_with("OFF") && integer_in(word.substr(3))) {  // "OFF8 6 12"
+    kind.is_header = true;
+    ahead = text;
+    ahead.skip(3);
+  }
   // The word may be missing.
   if (kind.is_header) text = ahead;
   if (kind.is_header && ahead.word() == "BINARY") {

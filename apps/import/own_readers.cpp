@@ -47,7 +47,14 @@ std::shared_ptr<FileContent> ReaderInput::companion(const std::string& name) con
     if (tried.empty()) continue;
     const ConfinedFile file = confine(tried, folder);
     if (file.access == Access::granted) {
-      if (auto content = files.content(file.path.string())) return content;
+      if (auto content = files.content(file.path.string())) {
+        if (access == Access::outside) {
+          add_once(log.notes,
+                   fmt::format("'{}' is outside the model's folder: '{}' is read instead",
+                               shown(name), shown(tried)));
+        }
+        return content;
+      }
       add_once(log.notes, fmt::format("'{}' cannot be opened", shown(name)));
       return nullptr;
     }

@@ -37,7 +37,7 @@ double origin_near(double middle, double half) {
   if (std::abs(rounded - middle) <= kNear * half || half <= 0.0) {
     return half > 0.0 ? rounded : middle;
   }
-  const double step = std::exp2(std::floor(std::log2(kNear * half)));
+  const double step = std::ldexp(1.0, std::ilogb(kNear * half));
   return std::round(middle / step) * step;
 }
 

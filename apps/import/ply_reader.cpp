@@ -5,6 +5,7 @@
 #include <import/own_readers.hpp>
 
 #include <import/face_lists.hpp>
+#include <import/ply_header.hpp>
 #include <import/text_cursor.hpp>
 
 #include <glidar/core/text.hpp>
@@ -24,176 +25,6 @@
 namespace glidar::import {
 namespace {
 
-enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
-
-std::size_t size_of(PlyType type) {
-  constexpr std::array<std::size_t, 10> kSizes = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
-
-std::optional<PlyType> type_named(std::string_view name) {
-  static const std::map<std::string_view, PlyType> kTypes = {
-      {"char", PlyType::i8},      {"int8", PlyType::i8},      {"uchar", PlyType::u8},
-      {"uint8", PlyType::u8},     {"short", PlyType::i16},    {"int16", PlyType::i16},
-      {"ushort", PlyType::u16},   {"uint16", PlyType::u16},   {"int", PlyType::i32},
-      {"int32", PlyType::i32},    {"uint", PlyType::u32},     {"uint32", PlyType::u32},
-      {"long", PlyType::i64},     {"int64", PlyType::i64},    {"ulong", PlyType::u64},
-      {"uint64", PlyType::u64},   {"float", PlyType::f32},    {"float32", PlyType::f32},
-      {"double", PlyType::f64},   {"float64", PlyType::f64},  {"long64", PlyType::i64},
-      {"longlong", PlyType::i64}, {"ulonglong", PlyType::u64}};
-  const auto found = kTypes.find(name);
-  return found == kTypes.end() ? std::nullopt : std::optional(found->second);
-}
-
-struct PlyProperty {
-  std::string name;
-  PlyType type = PlyType::f32;
-  std::optional<PlyType> count;  ///< of a list
-};
-
-struct PlyElement {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<PlyProperty> properties;
-  std::uint64_t line = 0;
-
-  [[nodiscard]] bool has_lists() const {
-    return std::any_of(properties.begin(), properties.end(),
-                       [](const PlyProperty& p) { return p.count.has_value(); });
-  }
-  [[nodiscard]] std::size_t find(std::initializer_list<std::string_view> names) const {
-    for (const std::string_view wanted : names) {
-      for (std::size_t i = 0; i < properties.size(); ++i) {
-        if (properties[i].name == wanted) return i;
-      }
-    }
-    return kNone;
-  }
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-};
-
-enum class Encoding : std::uint8_t { ascii, little, big };
-
-struct PlyHeader {
-  Encoding encoding = Encoding::ascii;
-  std::vector<PlyElement> elements;
-  std::vector<std::string> textures;  ///< of "comment TextureFile NAME"
-  std::size_t size = 0;               ///< bytes
-  std::uint64_t lines = 0;
-};
-
-/// Reads the lines up to 'end_header'.
-class HeaderReader {
- public:
-  explicit HeaderReader(std::string_view file) : file_(file) {
-    const std::size_t end = file.find_first_of("\r\n");
-    const bool has_both = end != std::string_view::npos && file.substr(end, 2) == "\r\n";
-    line_end_ = end == std::string_view::npos ? "" : file.substr(end, has_both ? 2 : 1);
-  }
-
-  PlyHeader read() {
-    if (trimmed(next_line()) != "ply") refuse_line(1, "not 'ply': not a PLY file");
-    for (;;) {
-      const std::string_view line = trimmed(next_line());
-      if (line == "end_header") break;
-      read_line(line);
-    }
-    if (!has_format_) refuse_line(header_.lines, "the header has no line 'format'");
-    header_.size = at_;
-    return std::move(header_);
-  }
-
- private:
-  /// The end of every line is that of the first one, because the first byte of binary data may look
-  /// like an end.
-  std::string_view next_line() {
-    const std::size_t end = file_.find_first_of("\r\n", at_);
-    if (end == std::string_view::npos) {
-      throw Refusal{"the header of the PLY file has no line 'end_header': the file ends too early",
-                    "the file is damaged; copy or export it again"};
-    }
-    const std::string_view line = file_.substr(at_, end - at_);
-    ++header_.lines;
-    const bool has_both = file_.substr(end, 2) == "\r\n" && line_end_ != "\r";
-    at_ = end + (has_both ? 2 : 1);
-    return line;
-  }
-
-  void read_line(std::string_view line) {
-    TextCursor words(line, false, false);
-    const std::string_view keyword = words.word();
-    if (keyword == "comment") {
-      if (words.word() == "TextureFile") header_.textures.emplace_back(words.rest());
-    } else if (keyword == "format") {
-      read_format(words);
-    } else if (keyword == "element") {
-      read_element(words);
-    } else if (keyword == "property") {
-      read_property(words);
-    } else if (keyword != "obj_info" && !keyword.empty()) {
-      refuse_line(header_.lines, "'" + shown(keyword) + "' is no statement of a PLY header");
-    }
-  }
-
-  void read_format(TextCursor& words) {
-    const std::string_view name = words.word();
-    const std::string_view version = words.word();
-    if (name == "ascii") {
-      header_.encoding = Encoding::ascii;
-    } else if (name == "binary_little_endian") {
-      header_.encoding = Encoding::little;
-    } else if (name == "binary_big_endian") {
-      header_.encoding = Encoding::big;
-    } else {
-      refuse_line(header_.lines, "unknown format '" + shown(name) + "'");
-    }
-    if (version != "1.0") refuse_line(header_.lines, "unknown version '" + shown(version) + "'");
-    has_format_ = true;
-  }
-
-  void read_element(TextCursor& words) {
-    PlyElement element;
-    element.name = words.word();
-    element.line = header_.lines;
-    const std::string_view number = words.word();
-    const auto count = integer_in(number);
-    if (element.name.empty() || !count || *count < 0 || !words.word().empty()) {
-      refuse_line(header_.lines, "'element' has no name and count from 0");
-    }
-    element.count = static_cast<std::uint64_t>(*count);
-    header_.elements.push_back(std::move(element));
-  }
-
-  PlyType read_type(TextCursor& words) const {
-    const std::string_view name = words.word();
-    const auto type = type_named(name);
-    if (!type) refuse_line(header_.lines, "unknown type '" + shown(name) + "'");
-    return *type;
-  }
-
-  void read_property(TextCursor& words) {
-    if (header_.elements.empty()) refuse_line(header_.lines, "'property' before 'element'");
-    PlyProperty property;
-    TextCursor ahead = words;
-    if (ahead.word() == "list") {
-      words = ahead;
-      property.count = read_type(words);
-    }
-    property.type = read_type(words);
-    property.name = words.word();
-    if (property.name.empty() || !words.word().empty()) {
-      refuse_line(header_.lines, "'property' has no type and name");
-    }
-    header_.elements.back().properties.push_back(std::move(property));
-  }
-
-  std::string_view file_;
-  std::string_view line_end_;
-  std::size_t at_ = 0;
-  bool has_format_ = false;
-  PlyHeader header_;
-};
-
 /// Values of binary data.
 class BinaryValues {
  public:
@@ -204,7 +35,8 @@ class BinaryValues {
     element_ = &element;
     entry_ = entry;
   }
-  void end_entry() {}
+  /// Whether there is more in it than the header states.
+  static bool end_entry() { return false; }
 
   double next(PlyType type) {
     if (left() < size_of(type)) fail("the file ends too early");
@@ -280,10 +112,11 @@ class TextValues {
     has_values_ = false;
   }
 
-  void end_entry() {
-    if (!has_values_) return;
-    const std::string_view more = text_.word();
-    if (!more.empty()) fail("'" + shown(more) + "' is more than the header states");
+  /// Whether there is more in it than the header states; it is skipped.
+  bool end_entry() {
+    if (!has_values_ || text_.word().empty()) return false;
+    text_.rest();
+    return true;
   }
 
   double next(PlyType) {
@@ -323,7 +156,7 @@ class TextValues {
   bool has_values_ = false;
 };
 
-/// What integers stand for as colours: their largest value.
+/// The largest value of integers that are colours.
 double full_scale(PlyType type) {
   switch (type) {
     case PlyType::u8:
@@ -404,7 +237,7 @@ class PlyReader {
     for (std::uint64_t i = 0; i < element.count; ++i) {
       values_.begin_entry(element, i);
       for (const PlyProperty& property : element.properties) skip_value(property);
-      values_.end_entry();
+      end_entry();
     }
     if (element.name == "edge") {
       lines_and_points_ += element.count;
@@ -487,7 +320,11 @@ class PlyReader {
         entry[i] = values_.next(property.type);
       }
     }
-    values_.end_entry();
+    end_entry();
+  }
+
+  void end_entry() {
+    if (values_.end_entry()) values_.fail("more numbers than the header states");
   }
 
   static Eigen::Vector3f colour_of(const PlyElement& element, const std::array<std::size_t, 3>& rgb,
@@ -572,7 +409,7 @@ class PlyReader {
           entry[i] = values_.next(property.type);
         }
       }
-      values_.end_entry();
+      excess_ += values_.end_entry() ? 1 : 0;
       add_face(element, wanted, entry, uvs);
     }
   }
@@ -656,7 +493,7 @@ class PlyReader {
           skip_value(element.properties[i]);
         }
       }
-      values_.end_entry();
+      end_entry();
       add_strip(strip);
     }
   }
@@ -688,6 +525,13 @@ class PlyReader {
     }
     if (!faces.uvs.empty()) faces.uvs.resize(faces.vertices.size(), kNoIndex);
     if (!faces.parts.empty()) faces.parts.resize(faces.size(), 0);
+    if (excess_ > 0) {  // MeshLab writes other colours than its header states
+      notes_.push_back(fmt::format(
+          "faces with more numbers than the header states: {}; their last numbers, and colours of "
+          "faces, are not used",
+          excess_));
+      faces.colours.clear();
+    }
     if (!faces.colours.empty() && !lists_.colours.empty()) {
       notes_.emplace_back("colours of faces are not used: the vertices have colours too");
       faces.colours.clear();
@@ -712,6 +556,7 @@ class PlyReader {
   std::size_t vertex_count_ = 0;
   std::uint64_t lines_and_points_ = 0;
   std::uint64_t face_ = 0;
+  std::uint64_t excess_ = 0;      ///< faces with more numbers than the header states
   std::uint32_t limit_ = 0;       ///< one more than the largest index
   std::uint64_t limit_face_ = 0;  ///< that has it
   bool has_vertices_ = false;
@@ -743,10 +588,11 @@ template <class Values>
 void read_body(const ReaderInput& input, const PlyHeader& header, Values values,
                SourceModel& source) {
   PlyReader<Values> reader(header, values);
-  reader.is_text_ = header.encoding == Encoding::ascii;
+  reader.is_text_ = header.encoding == PlyEncoding::ascii;
   reader.read();
   input.release();
   FileLists lists = reader.take_lists();
+  for (const std::string& note : header.notes) add_note(source, note);
   for (const std::string& note : reader.notes()) add_note(source, note);
   source.lines_and_points = reader.lines_and_points();
   source.is_single_precision = reader.single_precision_;
@@ -768,11 +614,11 @@ SourceModel read_ply(const ReaderInput& input) {
   source.format = "Stanford Polygon Library (PLY)";
   std::string_view file = input.bytes();
   if (file.starts_with("\xEF\xBB\xBF")) file.remove_prefix(3);
-  const PlyHeader header = HeaderReader(file).read();
-  if (header.encoding == Encoding::ascii) {
+  const PlyHeader header = read_ply_header(file);
+  if (header.encoding == PlyEncoding::ascii) {
     read_body(input, header, TextValues(file.substr(header.size), header.lines), source);
   } else {
-    read_body(input, header, BinaryValues(file, header.size, header.encoding == Encoding::big),
+    read_body(input, header, BinaryValues(file, header.size, header.encoding == PlyEncoding::big),
               source);
   }
   return source;

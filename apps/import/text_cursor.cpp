@@ -147,7 +147,13 @@ void TextCursor::skip_blanks() {
 std::string_view TextCursor::word() {
   skip_blanks();
   const char* const from = at_;
-  while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && !(comments_ && *at_ == '#') &&
+  // "1.#IND" is a number of Windows' C library.
+  const auto is_comment = [&] {
+    const bool is_number = at_ != from && at_[-1] == '.' && at_ + 1 != end_ &&
+                           std::string_view("IQS").find(at_[1]) != std::string_view::npos;
+    return comments_ && *at_ == '#' && !is_number;
+  };
+  while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && !is_comment() &&
          continuation(at_) == nullptr) {
     ++at_;
   }

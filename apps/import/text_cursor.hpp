@@ -44,6 +44,9 @@ class TextCursor {
   /// Goes to the next line with a word, if this one has none left. False at the end of the text.
   bool find_word();
 
+  /// Skips characters of this line.
+  void skip(std::size_t count) { at_ += count; }
+
   [[nodiscard]] std::uint64_t line() const { return line_; }  ///< from 1
   [[nodiscard]] const char* at() const { return at_; }
 

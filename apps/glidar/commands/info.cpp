@@ -116,13 +116,15 @@ std::string box_text(const Eigen::AlignedBox3d& box) {
 /// What the file states next to what was loaded, in the file's own units and axes.
 void print_content(const ModelContent& stated, const ModelContent& loaded) {
   if (!stated.vertices && !stated.faces && stated.bounds.isEmpty()) return;
-  const auto both = [](const std::string& of_file, const std::string& of_model) {
-    return fmt::format("{} stated, {} loaded", of_file, of_model);
+  const auto both = [](const char* what, const std::string& of_file, const std::string& of_model) {
+    line("content", fmt::format("{}: {} stated, {} loaded", what, of_file, of_model));
   };
-  line("vertices", both(count_text(stated.vertices), count_text(loaded.vertices)));
-  line("faces", both(count_text(stated.faces), count_text(loaded.faces)));
-  line("instances", both(count_text(stated.instances), count_text(loaded.instances)));
-  line("bounds", both(box_text(stated.bounds), box_text(loaded.bounds)));
+  both("vertices", count_text(stated.vertices), count_text(loaded.vertices));
+  both("faces", count_text(stated.faces), count_text(loaded.faces));
+  if (stated.instances) {
+    both("instances", count_text(stated.instances), count_text(loaded.instances));
+  }
+  both("bounds", box_text(stated.bounds), box_text(loaded.bounds));
   const std::string difference = content_difference(stated, loaded);
   if (!difference.empty()) line("DIFFERENT", difference);
 }
