@@ -36,7 +36,8 @@ void read_model_file(const fs::path& file) {
   import::ModelFiles files(folder);
   import::FileLog log;
   const import::ReaderInput input{canonical, folder, files, log};
-  if (files.content(canonical.string()) == nullptr) throw Error({.where = file.string()});
+  if (files.content(canonical.string()) == nullptr)
+    throw Error({.where = file.string(), .found = "cannot be opened"});
   try {
     check(import::own_reader(input)(input));
   } catch (const import::Refusal& refusal) {
