@@ -24,7 +24,14 @@ void join(std::vector<T>& all, const std::vector<T>& part, std::size_t before, s
   }
 }
 
-void append(Mesh& mesh, const Mesh& part, std::uint16_t slot) {
+void append(Mesh& mesh, Mesh part, std::uint16_t slot) {
+  if (mesh.positions_m.empty()) {  // often the only one, and large
+    part.origins = std::move(mesh.origins);
+    part.origin_m = mesh.origin_m;
+    mesh = std::move(part);
+    mesh.material_slots.resize(mesh.triangles.size(), slot);
+    return;
+  }
   const std::size_t before = mesh.positions_m.size();
   const std::size_t added = part.positions_m.size();
   join(mesh.positions_m, part.positions_m, before, added, Eigen::Vector3f::Zero().eval());
@@ -52,20 +59,22 @@ void note(Model& model, std::uint64_t count, const char* text) {
   if (count > 0) model.notes.push_back(fmt::format(fmt::runtime(text), count));
 }
 
-void note_repairs(const Walk& walk, const Repairs& repairs, Model& model) {
-  note(model, walk.lines_and_points, "{} points and lines are left out");
+void note_repairs(const SourceModel& source, const Repairs& repairs, Model& model) {
+  note(model, source.lines_and_points, "{} points and lines are left out");
   note(model, repairs.not_finite, "{} triangles touch coordinates that are not finite: left out");
   note(model, repairs.bad_normals, "{} normals are zero or not finite: recomputed");
-  note(model, repairs.unused_vertices, "{} vertices belong to no triangle: left out");
-  note(model, walk.skinned, "{} meshes have a skeleton: shown in their rest pose");
+  if (!source.stated.vertices) {
+    note(model, repairs.unused_vertices, "{} vertices belong to no triangle: left out");
+  }
 }
 
-/// Formats store single precision, which is coarse far from zero and may lose detail.
-void note_precision(const Eigen::AlignedBox3d& box, Model& model) {
+/// Single precision in the file or its importer is coarse far from zero and may lose detail.
+void note_precision(const Eigen::AlignedBox3d& box, bool is_single, Model& model) {
   if (box.sizes().maxCoeff() == 0.0) {
     model.notes.emplace_back("the model has no extent: all its triangles are at one point");
     return;
   }
+  if (!is_single) return;
   const double far = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   const double step = far * std::ldexp(1.0, -23);
   constexpr double kCoarse = 1e-4;
@@ -80,22 +89,29 @@ void note_precision(const Eigen::AlignedBox3d& box, Model& model) {
 
 }  // namespace
 
-void bake(const Walk& walk, const BakeOptions& options, Model& model) {
-  const std::vector<Eigen::Vector3d> origins = part_origins(walk);
+void bake(SourceModel& source, double crease_angle_rad,
+          const std::vector<std::uint16_t>& slot_of_material, Model& model) {
+  const std::vector<Eigen::Vector3d> origins = part_origins(source);
+  const Eigen::AlignedBox3d box = box_of(source);
+  std::vector<std::size_t> last_use(source.meshes.size(), 0);
+  for (std::size_t i = 0; i < source.placed.size(); ++i) last_use[source.placed[i].mesh] = i;
   Repairs repairs;
   Mesh& mesh = model.mesh;
-  mesh.triangles.reserve(walk.triangles);
-  for (std::size_t i = 0; i < walk.placed.size(); ++i) {
-    const Placed& placed = walk.placed[i];
-    const std::uint16_t slot = options.slot_of_material.at(material_of(placed));
+  for (std::size_t i = 0; i < source.placed.size(); ++i) {
+    const Placed& placed = source.placed[i];
+    SourceMesh& from = source.meshes[placed.mesh];
+    const std::uint16_t slot = slot_of_material.at(from.material);
+    const TextureUse& normals = model.materials.at(slot).normal_texture;
     const auto first = static_cast<std::uint32_t>(mesh.triangles.size());
-    Mesh part = make_part(placed, origins[i], options, options.needs.at(slot), repairs);
+    Mesh part = make_part(
+        from, placed, origins[i],
+        {crease_angle_rad, normals.used(), normals.uv_set, last_use[placed.mesh] == i}, repairs);
     const auto count = static_cast<std::uint32_t>(part.triangles.size());
     begin_run(mesh, origins[i]);
-    append(mesh, part, slot);
+    append(mesh, std::move(part), slot);
     model.parts.push_back({placed.name, first, count});
   }
-  note_repairs(walk, repairs, model);
+  note_repairs(source, repairs, model);
   if (mesh.triangles.empty()) {
     throw Refusal{fmt::format("all {} triangles touch coordinates that are not finite (NaN or "
                               "infinity)",
@@ -103,8 +119,10 @@ void bake(const Walk& walk, const BakeOptions& options, Model& model) {
                   "repair the file"};
   }
   if (mesh.origins.size() == 1) mesh.origins.clear();
-  note_precision(box_of(walk), model);
+  note_precision(box, source.is_single_precision, model);
   if (model.materials.size() == 1) mesh.material_slots.clear();
+  model.stated = source.stated;
+  model.loaded = {source.used_vertices, repairs.whole_faces, source.placed.size(), bounds(mesh)};
 }
 
 }  // namespace glidar::import

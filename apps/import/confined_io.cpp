@@ -70,7 +70,7 @@ class ReadStream : public Assimp::IOStream {
 };
 
 /// The path for messages: relative to the model's folder, and limited in length.
-std::string shown(std::string name, const ModelFolder& folder) {
+std::string shown_name(std::string name, const ModelFolder& folder) {
   const std::string prefix = folder.folder.string() + "/";
   if (name.starts_with(prefix)) name.erase(0, prefix.size());
   constexpr std::size_t kLongest = 120;
@@ -79,10 +79,6 @@ std::string shown(std::string name, const ModelFolder& folder) {
 }
 
 }  // namespace
-
-void add_once(std::vector<std::string>& list, std::string item) {
-  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(std::move(item));
-}
 
 ConfinedIo::ConfinedIo(ModelFolder folder, ModelFiles& files, FileLog& log)
     : folder_(std::move(folder)), files_(files), log_(log) {}
@@ -109,7 +105,7 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
   const ConfinedFile file = find(path);
   if (file.access != Access::granted) {
     add_once(log_.notes,
-             fmt::format("'{}' is not read: {}", shown(path, folder_), reason(file.access)));
+             fmt::format("'{}' is not read: {}", shown_name(path, folder_), reason(file.access)));
     return nullptr;
   }
   if (const std::string* text = files_.replacement(file.path.string())) {
@@ -117,7 +113,7 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
   }
   std::shared_ptr<FileContent> content = files_.content(file.path.string());
   if (content == nullptr) {
-    add_once(log_.notes, fmt::format("'{}' cannot be opened", shown(path, folder_)));
+    add_once(log_.notes, fmt::format("'{}' cannot be opened", shown_name(path, folder_)));
     add_once(log_.absent, path);
     return nullptr;
   }

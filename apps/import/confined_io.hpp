@@ -13,14 +13,6 @@
 
 namespace glidar::import {
 
-/// Files that were requested and not read, each once, in the order of requests.
-struct FileLog {
-  std::vector<std::string> absent;  ///< missing, or not allowed to be read
-  std::vector<std::string> notes;   ///< messages for the user about them
-};
-
-void add_once(std::vector<std::string>& list, std::string item);
-
 /// Assimp's access to files: read-only, regular files inside the model's root only, from private
 /// copies.
 class ConfinedIo : public Assimp::IOSystem {

@@ -4,7 +4,6 @@
 
 #include <import/image_size.hpp>
 
-#include <assimp/texture.h>
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
@@ -122,26 +121,15 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
   return decoded;
 }
 
-Decoded decode_embedded(const aiTexture& texture, std::uint64_t budget) {
-  if (texture.pcData == nullptr) return no_image("empty");
-  if (texture.mHeight == 0) {
-    return decode_image({reinterpret_cast<const std::uint8_t*>(texture.pcData), texture.mWidth},
-                        budget);
-  }
-  std::string refused = too_large(texture.mWidth, texture.mHeight, 4, budget);
+Decoded decode_embedded(const EmbeddedImage& image, std::uint64_t budget) {
+  if (image.bytes.empty()) return no_image("empty");
+  if (image.width == 0) return decode_image(image.bytes, budget);
+  std::string refused = too_large(image.width, image.height, 4, budget);
   if (!refused.empty()) return no_image(std::move(refused));
+  if (image.bytes.size() != std::size_t{4} * image.width * image.height) return no_image("broken");
   Decoded decoded;
-  Texture& t = decoded.texture;
-  t.width = texture.mWidth;
-  t.height = texture.mHeight;
-  t.channels = 4;
-  const std::size_t texels = std::size_t{t.width} * t.height;
-  t.texels.reserve(texels * 4);
-  for (std::size_t i = 0; i < texels; ++i) {
-    const aiTexel& texel = texture.pcData[i];
-    t.texels.insert(t.texels.end(), {texel.r, texel.g, texel.b, texel.a});
-  }
-  drop_opaque_alpha(t);
+  decoded.texture = {"", image.width, image.height, 4, image.bytes};
+  drop_opaque_alpha(decoded.texture);
   return decoded;
 }
 

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <import/source_model.hpp>
+
 #include <glidar/core/material.hpp>
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
-
-struct aiTexture;
 
 namespace glidar::import {
 
@@ -25,7 +25,7 @@ struct Decoded {
 Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget);
 
 /// An image inside the model file: compressed bytes, or raw texels.
-Decoded decode_embedded(const aiTexture& texture, std::uint64_t budget);
+Decoded decode_embedded(const EmbeddedImage& image, std::uint64_t budget);
 
 /// The content of "data:...;base64,..."; may be empty.
 std::vector<std::uint8_t> data_uri_bytes(const std::string& uri);

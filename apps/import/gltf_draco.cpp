@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/gltf_draco.hpp>
 
-#include <import/scene_walk.hpp>
+#include <import/source_model.hpp>
 
 #include <draco/compression/decode.h>
 #include <draco/mesh/mesh.h>

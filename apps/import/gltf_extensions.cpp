@@ -5,7 +5,7 @@
 #include <import/decode_image.hpp>
 #include <import/gltf_draco.hpp>
 #include <import/gltf_file.hpp>
-#include <import/scene_walk.hpp>
+#include <import/source_model.hpp>
 
 #include <glidar/core/text.hpp>
 #include <glidar/io/model/texture_search.hpp>

@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <import/scene_walk.hpp>
-
 #include <Eigen/Core>
 #include <string_view>
+#include <unordered_map>
+
+struct aiNode;
+struct aiScene;
 
 namespace glidar::import {
+
+/// parent_from_node of nodes with transforms in more than the importer's single precision.
+using NodeTransforms = std::unordered_map<const aiNode*, Eigen::Matrix4d>;
 
 /// The transforms of a glTF file's nodes (.gltf or .glb, glTF 2.0 section 3.5.3) in double: Assimp
 /// keeps single precision, with errors of 5e-4 m at 10 km. Nodes of the file and of the importer's

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <import/scene_walk.hpp>
+#include <import/source_model.hpp>
 
 #include <glidar/io/model/imported_model.hpp>
 
@@ -11,7 +11,7 @@
 
 namespace glidar::import {
 
-/// Reads a model file with Assimp. Throws Refusal with the importer's text; the caller reports
+/// Reads a model file. Throws Refusal with what is wrong; the caller reports
 /// other errors (memory, invalid data).
 ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
                            const std::function<void(double)>& progress);

@@ -14,6 +14,7 @@
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/model_folder.hpp>
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -55,6 +56,9 @@ int answer(const char* const* arguments) {
 int run(int argc, const char* const* argv) {
   constexpr int kArguments = 6;
   if (argc != kArguments) return kExitFailed;
+  // A fixed threshold returns every large block to the system: glibc's own adapts and keeps some.
+  constexpr int kLarge_bytes = 1 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
   const ProcessLimits limits{std::strtoull(argv[3], nullptr, 10), std::strtod(argv[4], nullptr),
                              std::strtoll(argv[5], nullptr, 10)};
   if (!apply(limits)) return kExitFailed;

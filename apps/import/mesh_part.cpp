@@ -6,20 +6,14 @@
 #include <glidar/io/model/tangents.hpp>
 #include <glidar/io/model/vertex_weld.hpp>
 
-#include <assimp/mesh.h>
-
 #include <algorithm>
 #include <cmath>
 
 namespace glidar::import {
 namespace {
 
-Eigen::Vector3d vector(const aiVector3D& v) {
-  return {v.x, v.y, v.z};
-}
-
-Eigen::Vector3d moved(const Placed& placed, const aiVector3D& v) {
-  return placed.model_from_mesh.topLeftCorner<3, 3>() * vector(v) +
+Eigen::Vector3d moved(const Placed& placed, const Eigen::Vector3d& v) {
+  return placed.model_from_mesh.topLeftCorner<3, 3>() * v +
          placed.model_from_mesh.topRightCorner<3, 1>();
 }
 
@@ -28,19 +22,13 @@ bool is_representable(const Eigen::Vector3d& p) {
   return p.cast<float>().allFinite();
 }
 
-/// Whether a face is a triangle with valid vertices.
-bool is_triangle(const aiFace& face, unsigned vertices) {
-  return face.mNumIndices == 3 && face.mIndices[0] < vertices && face.mIndices[1] < vertices &&
-         face.mIndices[2] < vertices;
-}
-
 /// Replaces -0 by +0, because positions are compared by their bits later.
 Eigen::Vector3f plain(const Eigen::Vector3d& v) {
   return (v.cast<float>().array() + 0.0F).matrix();
 }
 
-Eigen::Vector2f finite_uv(const aiVector3D& uv) {
-  return {std::isfinite(uv.x) ? uv.x : 0.0F, std::isfinite(uv.y) ? uv.y : 0.0F};
+Eigen::Vector2f finite_uv(const Eigen::Vector2f& uv) {
+  return {std::isfinite(uv.x()) ? uv.x() : 0.0F, std::isfinite(uv.y()) ? uv.y() : 0.0F};
 }
 
 float unit_range(float value) {
@@ -74,12 +62,12 @@ Linear linear_part(const Placed& placed) {
 
 /// Computes positions relative to the origin. False for vertices that are not finite in any of the
 /// three frames.
-std::vector<bool> copy_positions(const Placed& placed, const Eigen::Vector3d& origin, Mesh& part) {
-  const aiMesh& mesh = *placed.mesh;
-  std::vector<bool> finite(mesh.mNumVertices);
-  part.positions_m.resize(mesh.mNumVertices);
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const Eigen::Vector3d in_model = moved(placed, mesh.mVertices[v]);
+std::vector<bool> copy_positions(const SourceMesh& mesh, const Placed& placed,
+                                 const Eigen::Vector3d& origin, Mesh& part) {
+  std::vector<bool> finite(mesh.positions.size());
+  part.positions_m.resize(mesh.positions.size());
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Eigen::Vector3d in_model = moved(placed, mesh.positions[v]);
     const Eigen::Vector3f p = plain(in_model - origin);
     finite[v] = is_representable(in_model) && p.allFinite();
     part.positions_m[v] = finite[v] ? p : Eigen::Vector3f::Zero();
@@ -87,57 +75,57 @@ std::vector<bool> copy_positions(const Placed& placed, const Eigen::Vector3d& or
   return finite;
 }
 
-void copy_triangles(const aiMesh& mesh, const std::vector<bool>& finite, bool mirrored, Mesh& part,
-                    Repairs& repairs) {
-  part.triangles.reserve(mesh.mNumFaces);
-  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-    const aiFace& face = mesh.mFaces[f];
-    if (!is_triangle(face, mesh.mNumVertices)) continue;
-    const unsigned a = face.mIndices[0];
-    const unsigned b = face.mIndices[mirrored ? 2 : 1];
-    const unsigned c = face.mIndices[mirrored ? 1 : 2];
+/// Counts the faces with all their triangles.
+std::uint64_t copy_triangles(const SourceMesh& mesh, const std::vector<bool>& finite, bool mirrored,
+                             Mesh& part) {
+  part.triangles.reserve(mesh.triangles.size());
+  std::uint64_t faces = 0;
+  std::size_t next_face = 0;
+  bool is_whole = true;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const bool begins = mesh.first_of_face.empty() || (next_face < mesh.first_of_face.size() &&
+                                                       mesh.first_of_face[next_face] == t);
+    if (begins) {
+      faces += t > 0 && is_whole ? 1 : 0;
+      is_whole = true;
+      ++next_face;
+    }
+    const auto& [a, b, c] = mesh.triangles[t];
     if (finite[a] && finite[b] && finite[c]) {
-      part.triangles.push_back({a, b, c});
+      part.triangles.push_back({a, mirrored ? c : b, mirrored ? b : c});
     } else {
-      ++repairs.not_finite;
+      is_whole = false;
     }
   }
+  return faces + (!mesh.triangles.empty() && is_whole ? 1 : 0);
 }
 
-void copy_normals(const aiMesh& mesh, const Linear& linear, Mesh& part) {
-  part.normals.resize(mesh.mNumVertices);
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    part.normals[v] = unit_or_zero(linear.normals * vector(mesh.mNormals[v]));
+void copy_normals(const SourceMesh& mesh, const Linear& linear, Mesh& part) {
+  part.normals.resize(mesh.normals.size());
+  for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+    part.normals[v] = unit_or_zero(linear.normals * mesh.normals[v].cast<double>());
   }
 }
 
 /// The file's tangents; w is the handedness of their bitangents.
-void copy_tangents(const aiMesh& mesh, const Linear& linear, Mesh& part) {
-  part.tangents.resize(mesh.mNumVertices);
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const Eigen::Vector3d t = vector(mesh.mTangents[v]);
-    const Eigen::Vector3d b = vector(mesh.mBitangents[v]);
-    const double side = vector(mesh.mNormals[v]).cross(t).dot(b) < 0.0 ? -1.0 : 1.0;
-    Eigen::Vector3f u = unit_or_zero(linear.directions * t);
+void copy_tangents(const SourceMesh& mesh, const Linear& linear, Mesh& part) {
+  part.tangents.resize(mesh.tangents.size());
+  for (std::size_t v = 0; v < mesh.tangents.size(); ++v) {
+    const Eigen::Vector4f& t = mesh.tangents[v];
+    Eigen::Vector3f u = unit_or_zero(linear.directions * t.head<3>().cast<double>());
     if (u.isZero(0.0F)) u = Eigen::Vector3f::UnitX();
+    const double side = t.w() < 0.0F ? -1.0 : 1.0;
     part.tangents[v] = {u.x(), u.y(), u.z(), static_cast<float>(side * linear.handedness)};
   }
 }
 
-void copy_uvs_and_colours(const aiMesh& mesh, Mesh& part) {
-  for (unsigned set = 0; set < part.uvs.size(); ++set) {
-    if (!mesh.HasTextureCoords(set)) continue;
-    part.uvs[set].resize(mesh.mNumVertices);
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-      part.uvs[set][v] = finite_uv(mesh.mTextureCoords[set][v]);
-    }
+void copy_uvs_and_colours(const SourceMesh& mesh, Mesh& part) {
+  for (std::size_t set = 0; set < part.uvs.size(); ++set) {
+    part.uvs[set].reserve(mesh.uvs[set].size());
+    for (const Eigen::Vector2f& uv : mesh.uvs[set]) part.uvs[set].push_back(finite_uv(uv));
   }
-  if (!mesh.HasVertexColors(0)) return;
-  part.colours.resize(mesh.mNumVertices);
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const aiColor4D& c = mesh.mColors[0][v];
-    part.colours[v] = {unit_range(c.r), unit_range(c.g), unit_range(c.b)};
-  }
+  part.colours.reserve(mesh.colours.size());
+  for (const Eigen::Vector3f& c : mesh.colours) part.colours.push_back(c.unaryExpr(&unit_range));
 }
 
 /// Replaces unusable normals by those of the adjacent faces.
@@ -163,8 +151,9 @@ void mend_normals(Mesh& part, Repairs& repairs) {
   }
 }
 
-std::uint64_t unused(const aiMesh& mesh, const Mesh& part) {
-  std::vector<bool> used(mesh.mNumVertices, false);
+/// Vertices that no triangle uses.
+std::uint64_t unused(const Mesh& part) {
+  std::vector<bool> used(part.positions_m.size(), false);
   for (const Triangle& t : part.triangles) {
     for (const std::uint32_t v : t) used[v] = true;
   }
@@ -173,43 +162,38 @@ std::uint64_t unused(const aiMesh& mesh, const Mesh& part) {
 
 }  // namespace
 
-std::size_t material_of(const Placed& placed) {
-  return placed.mesh->mMaterialIndex;
-}
-
-void for_used_vertices(const Placed& placed,
+void for_used_vertices(const SourceMesh& mesh, const Placed& placed,
                        const std::function<void(const Eigen::Vector3d&)>& visit) {
-  const aiMesh& mesh = *placed.mesh;
-  std::vector<bool> used(mesh.mNumVertices, false);
-  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-    const aiFace& face = mesh.mFaces[f];
-    if (!is_triangle(face, mesh.mNumVertices)) continue;
-    for (unsigned k = 0; k < 3; ++k) used[face.mIndices[k]] = true;
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) used[v] = true;
   }
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if (!used[v]) continue;
-    const Eigen::Vector3d p = moved(placed, mesh.mVertices[v]);
+    const Eigen::Vector3d p = moved(placed, mesh.positions[v]);
     if (is_representable(p)) visit(p);
   }
 }
 
-Mesh make_part(const Placed& placed, const Eigen::Vector3d& origin, const BakeOptions& options,
-               const SlotNeeds& needs, Repairs& repairs) {
-  const aiMesh& mesh = *placed.mesh;
+Mesh make_part(SourceMesh& mesh, const Placed& placed, const Eigen::Vector3d& origin,
+               const BakeNeeds& needs, Repairs& repairs) {
   const Linear linear = linear_part(placed);
-  const bool file_normals = mesh.HasNormals() && !options.facet_normals;
   Mesh part;
-  const std::vector<bool> finite = copy_positions(placed, origin, part);
-  copy_triangles(mesh, finite, linear.handedness < 0.0, part, repairs);
-  repairs.unused_vertices += unused(mesh, part);
+  {
+    const std::vector<bool> finite = copy_positions(mesh, placed, origin, part);
+    repairs.whole_faces += copy_triangles(mesh, finite, linear.handedness < 0.0, part);
+  }
+  repairs.not_finite += mesh.triangles.size() - part.triangles.size();
+  repairs.unused_vertices += unused(part);
   copy_uvs_and_colours(mesh, part);
-  if (file_normals) copy_normals(mesh, linear, part);
-  if (file_normals && mesh.HasTangentsAndBitangents()) copy_tangents(mesh, linear, part);
+  copy_normals(mesh, linear, part);
+  if (!mesh.normals.empty()) copy_tangents(mesh, linear, part);
+  if (needs.is_last) mesh = {};
   weld_vertices(part);
-  if (file_normals) {
+  if (!part.normals.empty()) {
     mend_normals(part, repairs);
   } else {
-    make_normals(part, options.crease_angle_rad);
+    make_normals(part, needs.crease_angle_rad);
   }
   const bool can_have_tangents = needs.tangents && !part.uvs[needs.normal_uv].empty();
   if (can_have_tangents && part.tangents.empty()) make_tangents(part, needs.normal_uv);

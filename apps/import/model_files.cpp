@@ -21,6 +21,10 @@ constexpr std::size_t kFirstPiece = std::size_t{1} << 20U;
 
 }  // namespace
 
+void add_once(std::vector<std::string>& list, std::string item) {
+  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(std::move(item));
+}
+
 /// Returns the number of bytes read, less than `size` only at the end of the file.
 std::size_t FileContent::read_some(char* to, std::size_t size) {
   std::size_t have = 0;

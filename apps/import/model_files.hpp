@@ -14,6 +14,14 @@
 
 namespace glidar::import {
 
+/// Files that were requested and not read, each once, in the order of requests.
+struct FileLog {
+  std::vector<std::string> absent;  ///< missing, or not allowed to be read
+  std::vector<std::string> notes;   ///< messages for the user about them
+};
+
+void add_once(std::vector<std::string>& list, std::string item);
+
 /// A private copy of a file, read as far as needed. Every byte is read from the file once, so that
 /// the parser and the hash see the same bytes even if the file changes.
 class FileContent {

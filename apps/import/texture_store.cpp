@@ -2,14 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/texture_store.hpp>
 
-#include <import/confined_io.hpp>
 #include <import/decode_image.hpp>
 
 #include <glidar/io/model/height_map.hpp>
 #include <glidar/io/model/texture_search.hpp>
-
-#include <assimp/scene.h>
-#include <assimp/texture.h>
 
 #include <filesystem>
 #include <string_view>
@@ -37,9 +33,9 @@ constexpr std::size_t kMaxNameLength = 1024;  // for messages and lists
 
 }  // namespace
 
-TextureStore::TextureStore(const aiScene& scene, ModelFolder folder, ModelFiles& files,
+TextureStore::TextureStore(const SourceModel& source, ModelFolder folder, ModelFiles& files,
                            ImportedModel& imported)
-    : scene_(scene), folder_(std::move(folder)), files_(files), imported_(imported) {}
+    : source_(source), folder_(std::move(folder)), files_(files), imported_(imported) {}
 
 std::int32_t TextureStore::keep(Texture texture) {
   budget_ -= texture.texels.size();
@@ -50,8 +46,8 @@ std::int32_t TextureStore::keep(Texture texture) {
 std::int32_t TextureStore::decode(const std::string& name) {
   Decoded decoded;
   std::string file;
-  if (const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str())) {
-    decoded = decode_embedded(*embedded, budget_);
+  if (const auto image = source_.images.find(name); image != source_.images.end()) {
+    decoded = decode_embedded(image->second, budget_);
   } else if (name.starts_with("data:")) {
     decoded = decode_data_uri(name, budget_);
   } else {

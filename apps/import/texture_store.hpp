@@ -3,6 +3,7 @@
 #pragma once
 
 #include <import/model_files.hpp>
+#include <import/source_model.hpp>
 
 #include <glidar/io/model/imported_model.hpp>
 
@@ -10,14 +11,12 @@
 #include <map>
 #include <string>
 
-struct aiScene;
-
 namespace glidar::import {
 
 /// Finds and decodes the textures of materials, each once, into the model.
 class TextureStore {
  public:
-  TextureStore(const aiScene& scene, ModelFolder folder, ModelFiles& files,
+  TextureStore(const SourceModel& source, ModelFolder folder, ModelFiles& files,
                ImportedModel& imported);
 
   /// Index of the texture; TextureUse::kNone if it is missing, which is then listed.
@@ -34,7 +33,7 @@ class TextureStore {
   std::int32_t keep(Texture texture);
   std::int32_t decode(const std::string& name);
 
-  const aiScene& scene_;
+  const SourceModel& source_;
   ModelFolder folder_;
   ModelFiles& files_;
   ImportedModel& imported_;

@@ -70,7 +70,8 @@ void visit(A& archive, T& text) {
 }
 
 template <class A, class T>
-requires Is<T, std::optional<double>> || Is<T, std::optional<Axis>>
+requires Is<T, std::optional<double>> || Is<T, std::optional<Axis>> ||
+    Is<T, std::optional<std::uint64_t>>
 void visit(A& archive, T& value) {
   std::uint8_t is_there = value.has_value() ? 1 : 0;
   visit(archive, is_there);
@@ -136,6 +137,11 @@ auto fields(Is<ModelFrame> auto& frame) {
   return std::tie(frame.metres_per_unit, frame.up);
 }
 
+auto fields(Is<ModelContent> auto& content) {
+  return std::tie(content.vertices, content.faces, content.instances, content.bounds.min(),
+                  content.bounds.max());
+}
+
 auto fields(Is<ModelPart> auto& part) {
   return std::tie(part.name, part.first_triangle, part.triangle_count);
 }
@@ -151,9 +157,9 @@ auto fields(Is<TextureLookup> auto& lookup) {
 auto fields(Is<ImportedModel> auto& imported) {
   auto& model = imported.model;
   return std::tie(model.format, model.mesh, model.materials, model.textures, model.parts,
-                  model.missing_textures, model.notes, model.declared, imported.files,
-                  imported.absent, imported.texture_folders, imported.lookups, imported.libraries,
-                  imported.hashes, imported.sandbox_notes);
+                  model.missing_textures, model.notes, model.stated, model.loaded, model.declared,
+                  imported.files, imported.absent, imported.texture_folders, imported.lookups,
+                  imported.libraries, imported.hashes, imported.sandbox_notes);
 }
 
 auto fields(Is<ImportFailure> auto& failure) {

@@ -9,6 +9,8 @@
 #include <glidar/io/model/mesh_transform.hpp>
 #include <glidar/io/model/model_cache.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -142,7 +144,30 @@ void drop_unused(Scene& scene, std::uint32_t mesh) {
   for (MeshSource& source : scene.sources) move_up(source.unstretched);
 }
 
+/// ", vertices 4 stated, 3 loaded"; empty: equal or not stated.
+std::string count_difference(const char* what, const std::optional<std::uint64_t>& stated,
+                             const std::optional<std::uint64_t>& loaded) {
+  if (!stated || !loaded || *stated == *loaded) return "";
+  return fmt::format("; {} {} stated, {} loaded", what, *stated, *loaded);
+}
+
+std::string sides_text(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return "empty";
+  const Eigen::Vector3d sides = box.sizes();
+  return fmt::format("{:.6g} x {:.6g} x {:.6g}", sides.x(), sides.y(), sides.z());
+}
+
+bool are_equal(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+  if (a.isEmpty() || b.isEmpty()) return a.isEmpty() == b.isEmpty();
+  constexpr double kTolerance = 1e-6;
+  const double allowed = kTolerance * std::max(a.sizes().maxCoeff(), b.sizes().maxCoeff());
+  return ((a.min() - b.min()).array().abs() <= allowed).all() &&
+         ((a.max() - b.max()).array().abs() <= allowed).all();
+}
+
 void report_contents(const Model& model, const Report& report) {
+  const std::string difference = content_difference(model.stated, model.loaded);
+  if (!difference.empty()) report.info(model.source + ": differs from its file: " + difference);
   for (const std::string& note : model.notes) report.info(model.source + ": " + note);
   if (model.missing_textures.empty()) return;
   std::string text = model.source + ": textures missing:";
@@ -156,6 +181,17 @@ void report_contents(const Model& model, const Report& report) {
 }
 
 }  // namespace
+
+std::string content_difference(const ModelContent& stated, const ModelContent& loaded) {
+  std::string text = count_difference("vertices", stated.vertices, loaded.vertices) +
+                     count_difference("faces", stated.faces, loaded.faces) +
+                     count_difference("instances", stated.instances, loaded.instances);
+  if (!stated.bounds.isEmpty() && !are_equal(stated.bounds, loaded.bounds)) {
+    text += fmt::format("; size {} stated, {} loaded", sides_text(stated.bounds),
+                        sides_text(loaded.bounds));
+  }
+  return text.empty() ? text : text.substr(2);
+}
 
 Model load_model(const std::string& source, const ModelOptions& options, const Report& report) {
   check(options);

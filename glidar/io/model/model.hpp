@@ -5,6 +5,7 @@
 #include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -48,6 +49,18 @@ struct MissingTexture {
   std::string reason;  ///< not found, outside the model's folder, corrupt, too large ...
 };
 
+/// What a file contains, by its own statements or as loaded. No value: it states nothing.
+struct ModelContent {
+  std::optional<std::uint64_t> vertices;   ///< of the file's own lists
+  std::optional<std::uint64_t> faces;      ///< polygons
+  std::optional<std::uint64_t> instances;  ///< of its meshes
+  Eigen::AlignedBox3d bounds;              ///< of all its vertices, in its own units and axes
+};
+
+/// "vertices 4 stated, 3 loaded; ...": where what was loaded differs from what the file states;
+/// empty: nowhere. Boxes differ if it is by more than 1e-6 of their size.
+std::string content_difference(const ModelContent& stated, const ModelContent& loaded);
+
 /// A loaded model: all its meshes with node transforms applied, in one object frame.
 /// Triangles keep the order of a depth-first walk over the file's nodes.
 struct Model {
@@ -61,6 +74,8 @@ struct Model {
   std::vector<ModelPart> parts;
   std::vector<MissingTexture> missing_textures;
   std::vector<std::string> notes;  ///< omitted or repaired parts, in words
+  ModelContent stated = {};        ///< by the file
+  ModelContent loaded = {};        ///< of what it states, in the same units and axes
   ModelFrame declared = {};        ///< by the file or by the standard of its format
   ModelFrame applied = {};  ///< by load_model(); no unit: 1 was assumed; no up: axes as in the file
   bool from_cache = false;

@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/assimp_reader.hpp>
+
+#include <import/assimp_material.hpp>
+#include <import/confined_io.hpp>
+#include <import/declared_frame.hpp>
+#include <import/gltf_extensions.hpp>
+#include <import/gltf_transforms.hpp>
+#include <import/polygons.hpp>
+
+#include <glidar/io/model/mesh_blob.hpp>
+
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <string_view>
+
+namespace glidar::import {
+namespace {
+
+// Identical vertices are merged later, exactly: Assimp's own step merges nearly equal ones.
+// Polygons are split later, in double.
+constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_GenUVCoords;
+constexpr std::uint64_t kMaxNodes = 10'000'000;
+
+class AssimpProgress : public Assimp::ProgressHandler {
+ public:
+  explicit AssimpProgress(std::function<void(double)> report) : report_(std::move(report)) {}
+  bool Update(float fraction) override {
+    if (fraction < fraction_) return true;
+    fraction_ = fraction;
+    report_(fraction);
+    return true;
+  }
+
+ private:
+  std::function<void(double)> report_;
+  float fraction_ = 0.0F;  ///< the largest one; the second group of steps starts again
+};
+
+std::string importer_name(const Assimp::Importer& importer) {
+  const int index = importer.GetPropertyInteger("importerIndex", -1);
+  const aiImporterDesc* about =
+      index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+  std::string name = about == nullptr ? "unknown" : about->mName;
+  for (const std::string_view tail : {" Importer", " importer", " Reader", " Mesh", "\n"}) {
+    if (name.ends_with(tail)) name.resize(name.size() - tail.size());
+  }
+  return name;
+}
+
+[[noreturn]] void refuse(std::string why, const FileLog& log) {
+  if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+  for (const char* empty : {"contains no faces", "contains no vertices", "mNumMeshes is 0"}) {
+    if (why.find(empty) != std::string::npos) throw no_triangles("");
+  }
+  std::replace(why.begin(), why.end(), '\n', ' ');
+  for (const std::string& note : log.notes) why += "; " + note;
+  if (why.find("No suitable reader") != std::string::npos) {
+    throw Refusal{"not a model file of a known format",
+                  "GLIDAR reads PLY, OBJ, STL, glTF, GLB, COLLADA, FBX, 3DS, OFF, LWO, X, 3MF and "
+                  "other 3D formats"};
+  }
+  throw Refusal{"cannot be read: " + (why.empty() ? "unknown error" : why),
+                "the file is damaged or of a kind that the importer does not know"};
+}
+
+Eigen::Vector3f vector(const aiVector3D& v) {
+  return {v.x, v.y, v.z};
+}
+
+struct Visit {
+  const aiNode* node;
+  Eigen::Matrix4d model_from_parent;
+};
+
+Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
+  Eigen::Matrix4d result;
+  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2,
+      m.d3, m.d4;
+  return result;
+}
+
+void copy_vertices(const aiMesh& from, SourceMesh& mesh) {
+  const std::size_t count = from.mNumVertices;
+  const auto copy = [count](const aiVector3D* values, auto& to) {
+    to.reserve(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      const Eigen::Vector3f value = vector(values[v]);
+      to.emplace_back(
+          value.head<std::decay_t<decltype(to)>::value_type::RowsAtCompileTime>()
+              .template cast<typename std::decay_t<decltype(to)>::value_type::Scalar>());
+    }
+  };
+  copy(from.mVertices, mesh.positions);
+  for (unsigned set = 0; set < mesh.uvs.size(); ++set) {
+    if (from.HasTextureCoords(set)) copy(from.mTextureCoords[set], mesh.uvs[set]);
+  }
+  if (from.HasNormals()) copy(from.mNormals, mesh.normals);
+  for (std::size_t v = 0; v < count && from.HasVertexColors(0); ++v) {
+    const aiColor4D& c = from.mColors[0][v];
+    mesh.colours.emplace_back(c.r, c.g, c.b);
+  }
+  if (mesh.normals.empty() || !from.HasTangentsAndBitangents()) return;
+  for (std::size_t v = 0; v < count; ++v) {
+    const Eigen::Vector3f t = vector(from.mTangents[v]);
+    const Eigen::Vector3f b = vector(from.mBitangents[v]);
+    const float side = mesh.normals[v].cross(t).dot(b) < 0.0F ? -1.0F : 1.0F;
+    mesh.tangents.emplace_back(t.x(), t.y(), t.z(), side);
+  }
+}
+
+/// What several meshes add to.
+struct Left {
+  std::uint64_t intersecting = 0;
+  std::uint64_t outside = 0;  ///< faces with a corner that is no vertex
+};
+
+/// Removes vertices that only points and lines use.
+void drop_vertices_of_lines(const std::vector<bool>& of_lines, SourceMesh& mesh) {
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) used[v] = true;
+  }
+  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> renumbered(used.size(), 0);
+  for (std::uint32_t v = 0; v < used.size(); ++v) {
+    if (of_lines[v] && !used[v]) continue;
+    renumbered[v] = static_cast<std::uint32_t>(kept.size());
+    kept.push_back(v);
+  }
+  const auto keep = [&kept](auto& values) {
+    if (values.empty()) return;
+    for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
+    values.resize(kept.size());
+  };
+  keep(mesh.positions);
+  keep(mesh.normals);
+  keep(mesh.tangents);
+  keep(mesh.uvs[0]);
+  keep(mesh.uvs[1]);
+  keep(mesh.colours);
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) v = renumbered[v];
+  }
+}
+
+/// Returns the number of points and lines.
+std::uint64_t copy_faces(const aiMesh& from, SourceMesh& mesh, Left& left) {
+  std::uint64_t lines = 0;
+  std::vector<bool> of_lines(from.mNumVertices, false);
+  for (unsigned f = 0; f < from.mNumFaces; ++f) {
+    const std::span<const unsigned> corners(from.mFaces[f].mIndices, from.mFaces[f].mNumIndices);
+    const bool is_inside = std::all_of(corners.begin(), corners.end(),
+                                       [&](unsigned v) { return v < from.mNumVertices; });
+    if (!is_inside) {
+      ++left.outside;
+    } else if (corners.size() >= 3) {
+      left.intersecting += add_face(mesh, corners) ? 0 : 1;
+    } else {
+      ++lines;
+      for (const unsigned v : corners) of_lines[v] = true;
+    }
+  }
+  if (lines > 0) drop_vertices_of_lines(of_lines, mesh);
+  return lines;
+}
+
+/// Converts the meshes, with the same indices.
+std::vector<std::uint64_t> copy_meshes(const aiScene& scene, SourceModel& source) {
+  Left left;
+  std::vector<std::uint64_t> lines;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& from = *scene.mMeshes[i];
+    SourceMesh& mesh = source.meshes.emplace_back();
+    mesh.material = from.mMaterialIndex;
+    copy_vertices(from, mesh);
+    lines.push_back(copy_faces(from, mesh, left));
+  }
+  note_intersecting(source, left.intersecting);
+  if (left.outside > 0) {
+    source.notes.push_back(
+        fmt::format("faces that name missing vertices are left out: {}", left.outside));
+  }
+  return lines;
+}
+
+/// The tree with the meshes of its nodes.
+class Tree {
+ public:
+  Tree(const aiScene& scene, const NodeTransforms& transforms, std::vector<std::uint64_t> lines,
+       SourceModel& source)
+      : scene_(scene), transforms_(transforms), lines_(std::move(lines)), source_(source) {}
+
+  /// Nodes depth first, parents first.
+  void place() {
+    // An explicit stack, because hostile trees are deep.
+    std::vector<Visit> stack;
+    if (scene_.mRootNode != nullptr) {
+      stack.push_back({scene_.mRootNode, Eigen::Matrix4d::Identity()});
+    }
+    for (std::uint64_t visited = 0; !stack.empty(); ++visited) {
+      if (visited > kMaxNodes) {
+        throw Refusal{fmt::format("its tree has more than {} nodes", kMaxNodes),
+                      "make the model smaller"};
+      }
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const auto known = transforms_.find(visit.node);
+      const Eigen::Matrix4d model_from_node =
+          visit.model_from_parent *
+          (known == transforms_.end() ? matrix(visit.node->mTransformation) : known->second);
+      place_meshes(*visit.node, model_from_node);
+      for (unsigned child = visit.node->mNumChildren; child-- > 0;) {
+        stack.push_back({visit.node->mChildren[child], model_from_node});
+      }
+    }
+    if (skinned_ > 0) {
+      source_.notes.push_back(
+          fmt::format("{} meshes have a skeleton: shown in their rest pose", skinned_));
+    }
+  }
+
+ private:
+  void place_meshes(const aiNode& node, const Eigen::Matrix4d& model_from_node) {
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const std::size_t index = node.mMeshes[i];
+      if (index >= source_.meshes.size()) continue;
+      source_.lines_and_points += lines_[index];
+      if (source_.meshes[index].triangles.empty()) continue;
+      const aiMesh& mesh = *scene_.mMeshes[index];
+      skinned_ += mesh.mNumBones > 0 ? 1 : 0;
+      triangles_ += source_.meshes[index].triangles.size();
+      const aiString& name = mesh.mName.length > 0 ? mesh.mName : node.mName;
+      source_.placed.push_back({index, model_from_node, std::string(name.C_Str())});
+      // A small file can place a mesh very often.
+      if (triangles_ > kMaxTriangles || source_.placed.size() > kMaxRecords) check_size(source_);
+    }
+  }
+
+  const aiScene& scene_;
+  const NodeTransforms& transforms_;
+  std::vector<std::uint64_t> lines_;  ///< of each mesh
+  SourceModel& source_;
+  std::uint64_t triangles_ = 0;
+  std::uint64_t skinned_ = 0;
+};
+
+EmbeddedImage image_of(const aiTexture& texture) {
+  EmbeddedImage image;
+  if (texture.pcData == nullptr) return image;
+  if (texture.mHeight == 0) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.pcData);
+    image.bytes.assign(bytes, bytes + texture.mWidth);
+    return image;
+  }
+  image.width = texture.mWidth;
+  image.height = texture.mHeight;
+  const std::size_t texels = std::size_t{texture.mWidth} * texture.mHeight;
+  image.bytes.reserve(texels * 4);
+  for (std::size_t i = 0; i < texels; ++i) {
+    const aiTexel& texel = texture.pcData[i];
+    image.bytes.insert(image.bytes.end(), {texel.r, texel.g, texel.b, texel.a});
+  }
+  return image;
+}
+
+void copy_materials(const aiScene& scene, bool gltf, SourceModel& source) {
+  for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+    const SourceMaterial& material =
+        source.materials.emplace_back(assimp_material(*scene.mMaterials[i], gltf));
+    for (const auto* texture :
+         {&material.diffuse, &material.specular, &material.opacity, &material.normals}) {
+      if (!*texture || source.images.contains((*texture)->name)) continue;
+      const aiTexture* image = scene.GetEmbeddedTexture((*texture)->name.c_str());
+      if (image != nullptr) source.images.emplace((*texture)->name, image_of(*image));
+    }
+  }
+}
+
+}  // namespace
+
+SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFolder& folder,
+                             ModelFiles& files, FileLog& log,
+                             const std::function<void(double)>& progress) {
+  const auto own = files.content(model.string());
+  replace_gltf_extensions(model, folder, files, log);
+  // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
+  auto& importer = *new Assimp::Importer;
+  importer.SetIOHandler(new ConfinedIo(folder, files, log));
+  importer.SetProgressHandler(new AssimpProgress(progress));
+  if (importer.ReadFile(model.string(), kSteps) == nullptr) refuse(importer.GetErrorString(), log);
+  // Owned here, because the importer's own scene is const; the importer keeps its files open.
+  aiScene& scene = *importer.GetOrphanedScene();
+  SourceModel source;
+  source.format = importer_name(importer);
+  source.is_single_precision = true;
+  source.declared = extract_declared_frame(scene, source.format, *own, source.notes);
+  const bool gltf = source.format.find("glTF") != std::string::npos;
+  const NodeTransforms transforms = gltf ? gltf_transforms(own->whole(), scene) : NodeTransforms{};
+  Tree(scene, transforms, copy_meshes(scene, source), source).place();
+  copy_materials(scene, gltf, source);
+  return source;
+}
+
+}  // namespace glidar::import

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/model/model.hpp>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar::import {
+
+/// What every reader makes of a file, and all that the steps after it know of it: positions in
+/// double, in the file's own units and axes.
+
+/// Thrown if a file cannot become a model; the texts become part of the user's error.
+struct Refusal {
+  std::string found;
+  std::string remedy;
+};
+
+/// The error for a file without surfaces; `instead`: its content, "" or ", only ...".
+Refusal no_triangles(const std::string& instead);
+
+inline constexpr std::uint64_t kMaxTriangles = 100'000'000;  ///< of all instances
+
+/// A mesh with one material, V vertices, T triangles.
+struct SourceMesh {
+  std::vector<Eigen::Vector3d> positions;           ///< V
+  std::vector<Eigen::Vector3f> normals;             ///< V, of any length; empty: none
+  std::vector<Eigen::Vector4f> tangents;            ///< V, w: sign of the bitangent; empty: none
+  std::array<std::vector<Eigen::Vector2f>, 2> uvs;  ///< V each, v upwards; empty: none
+  std::vector<Eigen::Vector3f> colours;             ///< V, rgb; empty: none
+  std::vector<Triangle> triangles;                  ///< T, each corner < V
+  /// The first triangle of each face of the file; empty: every triangle is a face.
+  std::vector<std::uint32_t> first_of_face;
+  std::size_t material = 0;  ///< index into SourceModel::materials
+};
+
+/// A reference to a texture in a material of the file.
+struct NamedTexture {
+  std::string name;           ///< of a file, a key of SourceModel::images, or a data URI
+  TextureUse use;             ///< all but the texture's index
+  std::optional<float> bump;  ///< of normals: their strength
+};
+
+/// What the opacity of a material does.
+enum class AlphaMode : std::uint8_t {
+  factor,   ///< opacity texture: cut out at 0.5; an opacity below 1 is shown solid, with a note
+  opaque,   ///< nothing (glTF's OPAQUE)
+  cut_out,  ///< opacity times the diffuse texture's alpha, cut out at `cutoff` (glTF's MASK)
+  blend     ///< is shown solid, with a note (glTF's BLEND)
+};
+
+struct SourceMaterial {
+  /// Name, colours, shininess and opacity; without textures. Without a colour in the file: white.
+  Material material = white_material();
+  std::optional<NamedTexture> diffuse;
+  std::optional<NamedTexture> specular;
+  std::optional<NamedTexture> opacity;
+  std::optional<NamedTexture> normals;  ///< normal or height map
+  AlphaMode alpha = AlphaMode::factor;
+  float cutoff = 0.5F;              ///< of AlphaMode::cut_out
+  bool uses_diffuse_alpha = false;  ///< of AlphaMode::factor: the diffuse texture is an opacity too
+
+  /// Surfaces without a material, in all formats.
+  static Material white_material();
+};
+
+/// An instance of a mesh, parents applied.
+struct Placed {
+  std::size_t mesh = 0;  ///< index into SourceModel::meshes
+  Eigen::Matrix4d model_from_mesh = Eigen::Matrix4d::Identity();
+  std::string name;  ///< of the part
+};
+
+/// An image inside the model file.
+struct EmbeddedImage {
+  std::vector<std::uint8_t> bytes;  ///< an image file (PNG, JPEG ...), or rgba texels
+  std::uint32_t width = 0;          ///< of rgba texels; 0: an image file
+  std::uint32_t height = 0;
+};
+
+struct SourceModel {
+  std::string format;        ///< e.g. "Stanford Polygon Library (PLY)"
+  ModelFrame declared = {};  ///< by the file or by the standard of its format
+  std::vector<SourceMesh> meshes;
+  std::vector<SourceMaterial> materials;  ///< at least one
+  std::vector<Placed> placed;             ///< in the order of the model's parts
+  std::map<std::string, EmbeddedImage> images;
+  std::uint64_t lines_and_points = 0;  ///< left out
+  bool is_single_precision = false;    ///< positions or transforms were rounded before
+  ModelContent stated = {};  ///< by the file: its lists and headers; none where it states nothing
+  /// Vertices of `stated` that faces use; none where `stated` has none.
+  std::optional<std::uint64_t> used_vertices;
+  std::vector<std::string> notes;
+};
+
+/// Throws Refusal if it has no triangles, or too many.
+void check_size(const SourceModel& source);
+
+/// Adds a note once.
+void add_note(SourceModel& source, const std::string& note);
+
+}  // namespace glidar::import
