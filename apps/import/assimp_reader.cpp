@@ -5,8 +5,7 @@
 #include <import/assimp_material.hpp>
 #include <import/confined_io.hpp>
 #include <import/declared_frame.hpp>
-#include <import/gltf_extensions.hpp>
-#include <import/gltf_transforms.hpp>
+#include <import/mend_model.hpp>
 #include <import/ply_header.hpp>
 #include <import/polygons.hpp>
 
@@ -198,9 +197,8 @@ std::vector<std::uint64_t> copy_meshes(const aiScene& scene, SourceModel& source
 /// The tree with the meshes of its nodes.
 class Tree {
  public:
-  Tree(const aiScene& scene, const NodeTransforms& transforms, std::vector<std::uint64_t> lines,
-       SourceModel& source)
-      : scene_(scene), transforms_(transforms), lines_(std::move(lines)), source_(source) {}
+  Tree(const aiScene& scene, std::vector<std::uint64_t> lines, SourceModel& source)
+      : scene_(scene), lines_(std::move(lines)), source_(source) {}
 
   /// Nodes depth first, parents first.
   void place() {
@@ -216,10 +214,8 @@ class Tree {
       }
       const Visit visit = stack.back();
       stack.pop_back();
-      const auto known = transforms_.find(visit.node);
       const Eigen::Matrix4d model_from_node =
-          visit.model_from_parent *
-          (known == transforms_.end() ? matrix(visit.node->mTransformation) : known->second);
+          visit.model_from_parent * matrix(visit.node->mTransformation);
       place_meshes(*visit.node, model_from_node);
       for (unsigned child = visit.node->mNumChildren; child-- > 0;) {
         stack.push_back({visit.node->mChildren[child], model_from_node});
@@ -249,7 +245,6 @@ class Tree {
   }
 
   const aiScene& scene_;
-  const NodeTransforms& transforms_;
   std::vector<std::uint64_t> lines_;  ///< of each mesh
   SourceModel& source_;
   std::uint64_t triangles_ = 0;
@@ -275,10 +270,10 @@ EmbeddedImage image_of(const aiTexture& texture) {
   return image;
 }
 
-void copy_materials(const aiScene& scene, bool gltf, const MtlOptions& mtl, SourceModel& source) {
+void copy_materials(const aiScene& scene, const MtlOptions& mtl, SourceModel& source) {
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     const SourceMaterial& material =
-        source.materials.emplace_back(assimp_material(*scene.mMaterials[i], gltf, mtl));
+        source.materials.emplace_back(assimp_material(*scene.mMaterials[i], mtl));
     for (const auto* texture :
          {&material.diffuse, &material.specular, &material.opacity, &material.normals}) {
       if (!*texture || source.images.contains((*texture)->name)) continue;
@@ -295,11 +290,14 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
                              const std::function<void(double)>& progress) {
   const auto own = files.content(model.string());
   const PlyHeader ply = read_ply_header(*own);
-  replace_gltf_extensions(model, folder, files, log);
+  std::vector<std::string> mended;
+  mend_model(model, files, mended);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
   importer.SetProgressHandler(new AssimpProgress(progress));
+  // Files without surfaces have nothing to measure.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   if (importer.ReadFile(model.string(), kSteps) == nullptr) refuse(importer.GetErrorString(), log);
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene& scene = *importer.GetOrphanedScene();
@@ -308,10 +306,9 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
   source.format = importer_name(importer);
   source.is_single_precision = true;
   source.declared = extract_declared_frame(scene, source.format, *own, source.notes);
-  const bool gltf = source.format.find("glTF") != std::string::npos;
-  const NodeTransforms transforms = gltf ? gltf_transforms(own->whole(), scene) : NodeTransforms{};
-  Tree(scene, transforms, copy_meshes(scene, source), source).place();
-  copy_materials(scene, gltf, read_mtl_options(files), source);
+  source.notes.insert(source.notes.end(), mended.begin(), mended.end());
+  Tree(scene, copy_meshes(scene, source), source).place();
+  copy_materials(scene, read_mtl_options(files), source);
   return source;
 }
 
