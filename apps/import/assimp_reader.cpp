@@ -8,6 +8,7 @@
 #include <import/mend_model.hpp>
 #include <import/ply_header.hpp>
 #include <import/polygons.hpp>
+#include <import/skin.hpp>
 
 #include <glidar/io/model/mesh_blob.hpp>
 
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <new>
 #include <string_view>
 
@@ -174,31 +176,87 @@ std::uint64_t copy_faces(const aiMesh& from, SourceMesh& mesh, Left& left) {
   return lines;
 }
 
+using Places = std::map<std::string, Eigen::Matrix4d>;
+
+/// model_from_node of all nodes by their names.
+Places places_of(const aiScene& scene) {
+  Places places;
+  std::vector<Visit> stack;
+  if (scene.mRootNode != nullptr) stack.push_back({scene.mRootNode, Eigen::Matrix4d::Identity()});
+  while (!stack.empty() && places.size() < kMaxNodes) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    const Eigen::Matrix4d here = visit.model_from_parent * matrix(visit.node->mTransformation);
+    places.emplace(visit.node->mName.C_Str(), here);
+    for (unsigned i = 0; i < visit.node->mNumChildren; ++i) {
+      stack.push_back({visit.node->mChildren[i], here});
+    }
+  }
+  return places;
+}
+
+/// COLLADA 1.4.1, "Skin Deformation": bind shape, inverse bind matrix (Assimp's offset is their
+/// product) and joint, by the weights. Returns false, and changes nothing, if a joint or a vertex's
+/// weights are missing.
+bool pose_collada(const aiMesh& from, const Places& places, SourceMesh& mesh) {
+  std::vector<Eigen::Matrix4d> skin(mesh.positions.size(), Eigen::Matrix4d::Zero());
+  std::vector<double> sums(skin.size(), 0.0);
+  for (unsigned i = 0; i < from.mNumBones; ++i) {
+    const aiBone& bone = *from.mBones[i];
+    const auto place = places.find(bone.mName.C_Str());
+    if (place == places.end()) return false;
+    const Eigen::Matrix4d moved = place->second * matrix(bone.mOffsetMatrix);
+    for (unsigned k = 0; k < bone.mNumWeights; ++k) {
+      const aiVertexWeight& weight = bone.mWeights[k];
+      if (weight.mVertexId >= skin.size()) return false;
+      skin[weight.mVertexId] += double{weight.mWeight} * moved;
+      sums[weight.mVertexId] += double{weight.mWeight};
+    }
+  }
+  const bool is_complete =
+      !sums.empty() && std::all_of(sums.begin(), sums.end(), [](double sum) { return sum > 0.0; });
+  if (!is_complete) return false;
+  for (std::size_t v = 0; v < skin.size(); ++v) skin[v] /= sums[v];
+  apply_skin(skin, mesh);
+  return true;
+}
+
+/// What is left to do with a converted mesh.
+struct Copied {
+  std::uint64_t lines = 0;  ///< and points, left out
+  bool is_posed = false;    ///< its skeleton places it in the model
+};
+
 /// Converts the meshes, with the same indices.
-std::vector<std::uint64_t> copy_meshes(const aiScene& scene, SourceModel& source) {
+std::vector<Copied> copy_meshes(const aiScene& scene, SourceModel& source) {
   const bool facet_normals = source.format.find("(STL)") != std::string::npos;
+  const bool has_skins = source.format.find("Collada") != std::string::npos;
+  const Places places = has_skins ? places_of(scene) : Places{};
   Left left;
-  std::vector<std::uint64_t> lines;
+  std::vector<Copied> all;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     const aiMesh& from = *scene.mMeshes[i];
     SourceMesh& mesh = source.meshes.emplace_back();
     mesh.material = from.mMaterialIndex;
     copy_vertices(from, !facet_normals, mesh);
-    lines.push_back(copy_faces(from, mesh, left));
+    Copied& copied = all.emplace_back();
+    copied.lines = copy_faces(from, mesh, left);
+    const bool has_skin = has_skins && from.mNumBones > 0 && copied.lines == 0;
+    copied.is_posed = has_skin && pose_collada(from, places, mesh);
   }
   note_intersecting(source, left.intersecting);
   if (left.outside > 0) {
     source.notes.push_back(
         fmt::format("faces that name missing vertices are left out: {}", left.outside));
   }
-  return lines;
+  return all;
 }
 
 /// The tree with the meshes of its nodes.
 class Tree {
  public:
-  Tree(const aiScene& scene, std::vector<std::uint64_t> lines, SourceModel& source)
-      : scene_(scene), lines_(std::move(lines)), source_(source) {}
+  Tree(const aiScene& scene, std::vector<Copied> copied, SourceModel& source)
+      : scene_(scene), copied_(std::move(copied)), source_(source) {}
 
   /// Nodes depth first, parents first.
   void place() {
@@ -232,20 +290,23 @@ class Tree {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const std::size_t index = node.mMeshes[i];
       if (index >= source_.meshes.size()) continue;
-      source_.lines_and_points += lines_[index];
+      source_.lines_and_points += copied_[index].lines;
       if (source_.meshes[index].triangles.empty()) continue;
       const aiMesh& mesh = *scene_.mMeshes[index];
-      skinned_ += mesh.mNumBones > 0 ? 1 : 0;
+      const bool is_posed = copied_[index].is_posed;
+      skinned_ += mesh.mNumBones > 0 && !is_posed ? 1 : 0;
       triangles_ += source_.meshes[index].triangles.size();
       const aiString& name = mesh.mName.length > 0 ? mesh.mName : node.mName;
-      source_.placed.push_back({index, model_from_node, std::string(name.C_Str())});
+      const Eigen::Matrix4d placed =
+          is_posed ? Eigen::Matrix4d(Eigen::Matrix4d::Identity()) : model_from_node;
+      source_.placed.push_back({index, placed, std::string(name.C_Str())});
       // A small file can place a mesh very often.
       if (triangles_ > kMaxTriangles || source_.placed.size() > kMaxRecords) check_size(source_);
     }
   }
 
   const aiScene& scene_;
-  std::vector<std::uint64_t> lines_;  ///< of each mesh
+  std::vector<Copied> copied_;  ///< of each mesh
   SourceModel& source_;
   std::uint64_t triangles_ = 0;
   std::uint64_t skinned_ = 0;

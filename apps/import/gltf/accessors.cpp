@@ -14,7 +14,7 @@ namespace glidar::import::gltf {
 namespace {
 
 /// Elements of accessors without data; more cannot be meant.
-constexpr std::size_t kMostZeros = std::size_t{1} << 24U;
+constexpr std::size_t kMostZeros = std::size_t{1} << 20U;
 
 Component component_type(const Value& value) {
   const std::size_t number = value.count();
@@ -149,7 +149,9 @@ bool is_close(double stated, double found, double extent) {
 
 template <class Number>
 void check_limits(const Accessor& accessor, const std::vector<Number>& stored_values) {
-  if (accessor.min.empty() && accessor.max.empty()) return;
+  const bool is_stated = !accessor.min.empty() || !accessor.max.empty();
+  const bool has_data = !accessor.bytes.empty() || accessor.sparse;
+  if (!is_stated || !has_data) return;
   const std::size_t n = accessor.components;
   std::vector<double> low(n, std::numeric_limits<double>::infinity());
   std::vector<double> high(n, -std::numeric_limits<double>::infinity());
@@ -176,7 +178,7 @@ void check_limits(const Accessor& accessor, const std::vector<Number>& stored_va
   check("max", accessor.max, high);
 }
 
-/// The integer that stands for 1 when normalized.
+/// The integer that means 1 when normalized.
 double largest_of(Component type) {
   return with_type(type,
                    [](auto zero) { return double{std::numeric_limits<decltype(zero)>::max()}; });

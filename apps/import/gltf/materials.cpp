@@ -108,7 +108,7 @@ class Reader {
     const Value specular = source.extension("KHR_materials_specular");
     set_base(pbr["baseColorFactor"], pbr["baseColorTexture"], to);
     const double ior = source.extension("KHR_materials_ior")["ior"].number_or(1.5);
-    // An index of 0 stands for full reflection (KHR_materials_ior).
+    // An index of 0 is full reflection (KHR_materials_ior).
     const double root = ior == 0.0 ? 1.0 : (ior - 1.0) / (ior + 1.0);
     const double strength = specular["specularFactor"].number_or(1.0);
     const std::vector<double> tint = specular["specularColorFactor"].numbers_or({1, 1, 1});

@@ -48,7 +48,7 @@ T quantized(double value) {
   return static_cast<T>(std::round(std::clamp(value, -1.0, 1.0) * std::numeric_limits<T>::max()));
 }
 
-/// Unit vectors in an octahedral map; the third component is the number that stands for 1.
+/// Unit vectors in an octahedral map; the third component is the number that means 1.
 template <class T>
 void unfold_octahedra(std::string& bytes, const Layout& layout) {
   Elements<T, 4> elements(bytes, layout.stride);

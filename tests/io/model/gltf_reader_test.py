@@ -154,7 +154,7 @@ def pop_views(json):
     json["accessors"][0].update(bufferView=7)
 
 
-# What the error must say.
+# What the error must contain.
 REFUSED = {
     "index of a vertex": (lambda: drawn(4, [0, 1, 9]), "meshes[0].primitives[0].indices: index 2 names vertex 9 of 5"),
     "cut indices": (lambda: changed(lambda j: j["accessors"][1].update(count=7)), "accessors[1]: 7 elements of 2 bytes"),
@@ -236,7 +236,7 @@ def points_too(mode):
     return made
 
 
-# What the notes must say; the shape is complete.
+# What the notes must contain; the shape is complete.
 NOTED = {
     "extension": (lambda: material({"KHR_materials_clearcoat": {}}), "the extension KHR_materials_clearcoat is left out (materials[0])"),
     "extension of the list alone": (lambda: changed(lambda j: j.update(extensionsUsed=["ABC_def"])), "the extension ABC_def is left out"),
