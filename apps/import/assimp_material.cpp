@@ -144,12 +144,9 @@ std::optional<NamedTexture> texture_of(const aiMaterial& material, aiTextureType
 }
 
 std::optional<NamedTexture> first_of(const aiMaterial& source,
-                                     std::initializer_list<aiTextureType> types,
-                                     const MtlOptions& mtl) {
+                                     std::initializer_list<aiTextureType> types) {
   for (const aiTextureType type : types) {
-    auto named = texture_of(source, type);
-    mtl.refine(source.GetName().C_Str(), type, named);
-    if (named) return named;
+    if (auto named = texture_of(source, type)) return named;
   }
   return std::nullopt;
 }
@@ -175,17 +172,17 @@ float bump_strength(const aiMaterial& source) {
 
 }  // namespace
 
-SourceMaterial assimp_material(const aiMaterial& source, const MtlOptions& mtl) {
+SourceMaterial assimp_material(const aiMaterial& source) {
   SourceMaterial material;
   const aiString name = source.GetName();
   if (name.length > 0) material.material.name.assign(name.data, name.length);
   read_colours(source, material.material);
-  material.diffuse = first_of(source, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, mtl);
-  material.specular = first_of(source, {aiTextureType_SPECULAR}, mtl);
-  material.opacity = first_of(source, {aiTextureType_OPACITY}, mtl);
-  material.normals = first_of(
-      source, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT}, mtl);
-  if (material.normals && !material.normals->bump) material.normals->bump = bump_strength(source);
+  material.diffuse = first_of(source, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
+  material.specular = first_of(source, {aiTextureType_SPECULAR});
+  material.opacity = first_of(source, {aiTextureType_OPACITY});
+  material.normals =
+      first_of(source, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT});
+  if (material.normals) material.normals->bump = bump_strength(source);
   material.uses_diffuse_alpha = uses_alpha(source);
   return material;
 }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <import/mtl_options.hpp>
 #include <import/source_model.hpp>
 
 struct aiMaterial;
@@ -16,6 +15,6 @@ namespace glidar::import {
 ///    F0 = mix(0.04, base colour, metallic); shininess = 2 / r^4 - 2 (Karis, Specular BRDF
 ///    reference, 2013), 0..128;
 ///  - non-finite numbers become 0, others are clamped to their range.
-SourceMaterial assimp_material(const aiMaterial& material, const MtlOptions& mtl);
+SourceMaterial assimp_material(const aiMaterial& material);
 
 }  // namespace glidar::import

@@ -6,7 +6,6 @@
 #include <import/confined_io.hpp>
 #include <import/declared_frame.hpp>
 #include <import/mend_model.hpp>
-#include <import/ply_header.hpp>
 #include <import/polygons.hpp>
 #include <import/skin.hpp>
 
@@ -91,7 +90,7 @@ Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
   return result;
 }
 
-void copy_vertices(const aiMesh& from, bool with_normals, SourceMesh& mesh) {
+void copy_vertices(const aiMesh& from, SourceMesh& mesh) {
   const std::size_t count = from.mNumVertices;
   const auto copy = [count](const aiVector3D* values, auto& to) {
     to.reserve(count);
@@ -106,7 +105,7 @@ void copy_vertices(const aiMesh& from, bool with_normals, SourceMesh& mesh) {
   for (unsigned set = 0; set < mesh.uvs.size(); ++set) {
     if (from.HasTextureCoords(set)) copy(from.mTextureCoords[set], mesh.uvs[set]);
   }
-  if (with_normals && from.HasNormals()) copy(from.mNormals, mesh.normals);
+  if (from.HasNormals()) copy(from.mNormals, mesh.normals);
   for (std::size_t v = 0; v < count && from.HasVertexColors(0); ++v) {
     const aiColor4D& c = from.mColors[0][v];
     mesh.colours.emplace_back(c.r, c.g, c.b);
@@ -229,7 +228,6 @@ struct Copied {
 
 /// Converts the meshes, with the same indices.
 std::vector<Copied> copy_meshes(const aiScene& scene, SourceModel& source) {
-  const bool facet_normals = source.format.find("(STL)") != std::string::npos;
   const bool has_skins = source.format.find("Collada") != std::string::npos;
   const Places places = has_skins ? places_of(scene) : Places{};
   Left left;
@@ -238,7 +236,7 @@ std::vector<Copied> copy_meshes(const aiScene& scene, SourceModel& source) {
     const aiMesh& from = *scene.mMeshes[i];
     SourceMesh& mesh = source.meshes.emplace_back();
     mesh.material = from.mMaterialIndex;
-    copy_vertices(from, !facet_normals, mesh);
+    copy_vertices(from, mesh);
     Copied& copied = all.emplace_back();
     copied.lines = copy_faces(from, mesh, left);
     const bool has_skin = has_skins && from.mNumBones > 0 && copied.lines == 0;
@@ -331,10 +329,10 @@ EmbeddedImage image_of(const aiTexture& texture) {
   return image;
 }
 
-void copy_materials(const aiScene& scene, const MtlOptions& mtl, SourceModel& source) {
+void copy_materials(const aiScene& scene, SourceModel& source) {
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     const SourceMaterial& material =
-        source.materials.emplace_back(assimp_material(*scene.mMaterials[i], mtl));
+        source.materials.emplace_back(assimp_material(*scene.mMaterials[i]));
     for (const auto* texture :
          {&material.diffuse, &material.specular, &material.opacity, &material.normals}) {
       if (!*texture || source.images.contains((*texture)->name)) continue;
@@ -350,7 +348,6 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
                              ModelFiles& files, FileLog& log,
                              const std::function<void(double)>& progress) {
   const auto own = files.content(model.string());
-  const PlyHeader ply = read_ply_header(*own);
   std::vector<std::string> mended;
   mend_model(model, files, mended);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
@@ -362,14 +359,13 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
   if (importer.ReadFile(model.string(), kSteps) == nullptr) refuse(importer.GetErrorString(), log);
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene& scene = *importer.GetOrphanedScene();
-  add_ply_texture(ply, scene);
   SourceModel source;
   source.format = importer_name(importer);
   source.is_single_precision = true;
   source.declared = extract_declared_frame(scene, source.format, *own, source.notes);
   source.notes.insert(source.notes.end(), mended.begin(), mended.end());
   Tree(scene, copy_meshes(scene, source), source).place();
-  copy_materials(scene, read_mtl_options(files), source);
+  copy_materials(scene, source);
   return source;
 }
 

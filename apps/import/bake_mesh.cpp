@@ -103,10 +103,10 @@ void bake(SourceModel& source, double crease_angle_rad,
     const std::uint16_t slot = slot_of_material.at(from.material);
     const TextureUse& normals = model.materials.at(slot).normal_texture;
     const auto first = static_cast<std::uint32_t>(mesh.triangles.size());
-    Mesh part = make_part(from, placed, origins[i],
-                          {crease_angle_rad, normals.used(), normals.uv_set}, repairs);
+    Mesh part = make_part(
+        from, placed, origins[i],
+        {crease_angle_rad, normals.used(), normals.uv_set, last_use[placed.mesh] == i}, repairs);
     const auto count = static_cast<std::uint32_t>(part.triangles.size());
-    if (last_use[placed.mesh] == i) from = {};  // frees its memory
     begin_run(mesh, origins[i]);
     append(mesh, std::move(part), slot);
     model.parts.push_back({placed.name, first, count});

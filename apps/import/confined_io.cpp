@@ -70,7 +70,7 @@ class ReadStream : public Assimp::IOStream {
 };
 
 /// The path for messages: relative to the model's folder, and limited in length.
-std::string shown(std::string name, const ModelFolder& folder) {
+std::string shown_name(std::string name, const ModelFolder& folder) {
   const std::string prefix = folder.folder.string() + "/";
   if (name.starts_with(prefix)) name.erase(0, prefix.size());
   constexpr std::size_t kLongest = 120;
@@ -105,7 +105,7 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
   const ConfinedFile file = find(path);
   if (file.access != Access::granted) {
     add_once(log_.notes,
-             fmt::format("'{}' is not read: {}", shown(path, folder_), reason(file.access)));
+             fmt::format("'{}' is not read: {}", shown_name(path, folder_), reason(file.access)));
     return nullptr;
   }
   if (const std::string* text = files_.replacement(file.path.string())) {
@@ -113,7 +113,7 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
   }
   std::shared_ptr<FileContent> content = files_.content(file.path.string());
   if (content == nullptr) {
-    add_once(log_.notes, fmt::format("'{}' cannot be opened", shown(path, folder_)));
+    add_once(log_.notes, fmt::format("'{}' cannot be opened", shown_name(path, folder_)));
     add_once(log_.absent, path);
     return nullptr;
   }

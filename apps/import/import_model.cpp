@@ -6,6 +6,7 @@
 #include <import/bake_mesh.hpp>
 #include <import/gltf/read_gltf.hpp>
 #include <import/loaded_libraries.hpp>
+#include <import/own_readers.hpp>
 #include <import/read_materials.hpp>
 #include <import/unread_formats.hpp>
 
@@ -82,7 +83,9 @@ SourceModel read_file(const std::filesystem::path& model, const ModelFolder& fol
     return gltf::read_gltf(
         own->whole(), [&](const std::string& uri) { return open_buffer(uri, folder, files, log); });
   }
-  return read_with_assimp(model, folder, files, log, progress);
+  const ReaderInput input{model, folder, files, log};
+  const Reader reader = own_reader(input);
+  return reader ? reader(input) : read_with_assimp(model, folder, files, log, progress);
 }
 
 }  // namespace
@@ -92,8 +95,9 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   ModelFolder folder = model_folder(canonical_model);
   ModelFiles files(folder);
   FileLog log;
-  const auto own = files.content(canonical_model.string());  // the first of the files
-  if (own == nullptr) throw Refusal{"cannot be opened", "check its read permission"};
+  if (files.content(canonical_model.string()) == nullptr) {  // the first of the files
+    throw Refusal{"cannot be opened", "check its read permission"};
+  }
   SourceModel source = read_file(canonical_model, folder, files, log, progress);
   check_size(source);
   ImportedModel imported;

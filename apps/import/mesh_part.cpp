@@ -175,7 +175,7 @@ void for_used_vertices(const SourceMesh& mesh, const Placed& placed,
   }
 }
 
-Mesh make_part(const SourceMesh& mesh, const Placed& placed, const Eigen::Vector3d& origin,
+Mesh make_part(SourceMesh& mesh, const Placed& placed, const Eigen::Vector3d& origin,
                const BakeNeeds& needs, Repairs& repairs) {
   const Linear linear = linear_part(placed);
   Mesh part;
@@ -188,6 +188,7 @@ Mesh make_part(const SourceMesh& mesh, const Placed& placed, const Eigen::Vector
   copy_uvs_and_colours(mesh, part);
   copy_normals(mesh, linear, part);
   if (!mesh.normals.empty()) copy_tangents(mesh, linear, part);
+  if (needs.is_last) mesh = {};
   weld_vertices(part);
   if (!part.normals.empty()) {
     mend_normals(part, repairs);

@@ -15,6 +15,7 @@ struct BakeNeeds {
   double crease_angle_rad = 0.0;
   bool tangents = false;      ///< its material has a normal map
   std::size_t normal_uv = 0;  ///< in this uv set
+  bool is_last = false;       ///< no other part needs the mesh of the file: its memory is freed
 };
 
 /// Counts of vertices, triangles and normals that were left out or recomputed, over all parts.
@@ -32,7 +33,7 @@ void for_used_vertices(const SourceMesh& mesh, const Placed& placed,
 
 /// One placed mesh in the model's frame, relative to `origin`, vertices merged and its normals (and
 /// tangents, if needed) there.
-Mesh make_part(const SourceMesh& mesh, const Placed& placed, const Eigen::Vector3d& origin,
+Mesh make_part(SourceMesh& mesh, const Placed& placed, const Eigen::Vector3d& origin,
                const BakeNeeds& needs, Repairs& repairs);
 
 }  // namespace glidar::import

@@ -63,6 +63,10 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"tof", {"two_frequencies", "eight_frequencies", "kinect", "infinite", "one_pixel"}},
       {"stereo", {"shifted", "paths_4", "flat", "narrow"}},
       {"tof_npy", {"floats", "doubles", "integers", "version_2"}},
+      {"obj", {"quad", "numbers", "polygon", "materials"}},
+      {"ply", {"ascii", "little", "big", "strips", "faces"}},
+      {"stl", {"ascii", "binary", "colours"}},
+      {"off", {"plain", "all", "binary"}},
   };
   for (const testing::FileDecoder& decoder : testing::file_decoders()) {
     std::size_t files = 0;

@@ -3,6 +3,7 @@
 #include "file_decoders.hpp"
 
 #include "depth_decoders.hpp"
+#include "model_decoders.hpp"
 #include "packet_decoders.hpp"
 
 #include <apps/glidar/options/option_values.hpp>
@@ -189,7 +190,7 @@ void read_calibration(const fs::path& file) {
   apply_calibration(file, camera);
 }
 
-constexpr std::array<FileDecoder, 25> kDecoders = {{
+constexpr std::array<FileDecoder, 29> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
@@ -215,6 +216,10 @@ constexpr std::array<FileDecoder, 25> kDecoders = {{
     {"tof", "raw.bin", read_raw_tof_images},
     {"stereo", "pair.bin", read_raw_stereo_pair},
     {"tof_npy", "raw.tof.npy", [](const fs::path& file) { load_tof_images(file); }},
+    {"obj", "a.obj", read_model_file},
+    {"ply", "a.ply", read_model_file},
+    {"stl", "a.stl", read_model_file},
+    {"off", "a.off", read_model_file},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -90,8 +91,8 @@ void print_lists(const ModelReport& report) {
                        part.triangle_count);
   });
   list("material", report.materials, [](const MaterialSummary& material) {
-    return fmt::format("{}: {} triangles{}", material.name, material.triangles,
-                       texture_text(material));
+    return fmt::format("{}: {} triangles, reflectance {:.4g}{}", material.name, material.triangles,
+                       material.reflectance, texture_text(material));
   });
   list("texture", report.textures, [](const TextureSummary& texture) {
     return fmt::format("{}: {} x {}, {} channels", texture.name, texture.width, texture.height,
@@ -101,6 +102,29 @@ void print_lists(const ModelReport& report) {
     return fmt::format("texture {}: {}", texture.name, texture.reason);
   });
   list("note", report.notes, [](const std::string& note) { return note; });
+}
+
+std::string count_text(const std::optional<std::uint64_t>& count) {
+  return count ? fmt::format("{}", *count) : "-";
+}
+
+std::string box_text(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return "-";
+  return vector_text(box.min(), ", ") + " to " + vector_text(box.max(), ", ");
+}
+
+/// What the file states next to what was loaded, in the file's own units and axes.
+void print_content(const ModelContent& stated, const ModelContent& loaded) {
+  if (!stated.vertices && !stated.faces && stated.bounds.isEmpty()) return;
+  const auto both = [](const std::string& of_file, const std::string& of_model) {
+    return fmt::format("{} stated, {} loaded", of_file, of_model);
+  };
+  line("vertices", both(count_text(stated.vertices), count_text(loaded.vertices)));
+  line("faces", both(count_text(stated.faces), count_text(loaded.faces)));
+  line("instances", both(count_text(stated.instances), count_text(loaded.instances)));
+  line("bounds", both(box_text(stated.bounds), box_text(loaded.bounds)));
+  const std::string difference = content_difference(stated, loaded);
+  if (!difference.empty()) line("DIFFERENT", difference);
 }
 
 void print_table(const ModelReport& report, const std::string& up_hint) {
@@ -117,6 +141,7 @@ void print_table(const ModelReport& report, const std::string& up_hint) {
   line("surface", fmt::format("{}, winding {}, area {:.6g} m2", report.closed ? "closed" : "open",
                               to_string(report.winding), report.check.area_m2));
   line("defects", defect_text(report.check));
+  print_content(report.stated, report.loaded);
   print_lists(report);
 }
 
@@ -136,6 +161,16 @@ Json json_of(const MeshCheck& check) {
           {"duplicate_triangles", check.duplicate_triangles},
           {"duplicate_vertices", check.duplicate_vertices},
           {"unused_vertices", check.unused_vertices}};
+}
+
+Json json_of(const ModelContent& content) {
+  const auto count = [](const std::optional<std::uint64_t>& n) { return n ? Json(*n) : Json(); };
+  const bool has_box = !content.bounds.isEmpty();
+  return {{"vertices", count(content.vertices)},
+          {"faces", count(content.faces)},
+          {"instances", count(content.instances)},
+          {"min", has_box ? json_of(Eigen::Vector3d(content.bounds.min())) : Json()},
+          {"max", has_box ? json_of(Eigen::Vector3d(content.bounds.max())) : Json()}};
 }
 
 /// An array with an object for each entry.
@@ -172,6 +207,7 @@ Json json_of(const ModelReport& report, const std::string& up_hint) {
   json["materials"] = json_list(report.materials, [](const MaterialSummary& m) -> Json {
     return {{"name", m.name},
             {"triangles", m.triangles},
+            {"reflectance", m.reflectance},
             {"diffuse_texture", m.diffuse_texture},
             {"specular_texture", m.specular_texture},
             {"normal_texture", m.normal_texture},
@@ -185,6 +221,8 @@ Json json_of(const ModelReport& report, const std::string& up_hint) {
       json_list(report.missing_textures, [](const MissingTexture& t) -> Json {
         return {{"name", t.name}, {"reason", t.reason}};
       });
+  json["stated"] = json_of(report.stated);
+  json["loaded"] = json_of(report.loaded);
   json["notes"] = report.notes;
   return json;
 }

@@ -20,8 +20,9 @@ std::vector<MaterialSummary> summaries(const Model& model) {
   std::vector<MaterialSummary> all;
   for (const Material& m : model.materials) {
     all.push_back(
-        {m.name, 0, name_of(m.diffuse_texture, model), name_of(m.specular_texture, model),
-         name_of(m.normal_texture, model), name_of(m.alpha_texture, model),
+        {m.name, 0, luminance(m.diffuse), name_of(m.diffuse_texture, model),
+         name_of(m.specular_texture, model), name_of(m.normal_texture, model),
+         name_of(m.alpha_texture, model),
          m.alpha_cutoff > 0.0F && (m.alpha_texture.used() || m.opacity < m.alpha_cutoff)});
   }
   for (std::uint32_t t = 0; t < model.mesh.triangles.size(); ++t) {
@@ -118,6 +119,8 @@ ModelReport inspect(const Model& model) {
   report.materials = summaries(model);
   report.textures = texture_summaries(model);
   report.missing_textures = model.missing_textures;
+  report.stated = model.stated;
+  report.loaded = model.loaded;
   report.notes = model.notes;
   report.metres_per_unit = model.applied.metres_per_unit.value_or(1.0);
   report.unit_declared = model.declared.metres_per_unit;

@@ -27,6 +27,7 @@ std::string to_string(Winding winding);
 struct MaterialSummary {
   std::string name;
   std::uint64_t triangles = 0;
+  float reflectance = 0.0F;  ///< luminance of the diffuse colour; textures and colours multiply it
   std::string diffuse_texture;  ///< names; empty: none
   std::string specular_texture;
   std::string normal_texture;  ///< normal map, or converted height map
@@ -59,6 +60,8 @@ struct ModelReport {
   std::vector<MaterialSummary> materials;
   std::vector<TextureSummary> textures;  ///< found
   std::vector<MissingTexture> missing_textures;
+  ModelContent stated;                  ///< by the file, in its own units
+  ModelContent loaded;                  ///< of that
   std::vector<std::string> notes;       ///< omitted parts with NaN, points and lines; repairs
   double metres_per_unit = 1.0;         ///< applied
   std::optional<double> unit_declared;  ///< metres, by the file

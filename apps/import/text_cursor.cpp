@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/text_cursor.hpp>
+
+#include <glidar/core/text.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+namespace glidar::import {
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+bool is_line_end(char c) {
+  return c == '\n' || c == '\r';
+}
+
+void append_utf8(char32_t code, std::string& text) {
+  constexpr char32_t kTail = 0x3F;
+  const auto byte = [](char32_t value) { return static_cast<char>(value); };
+  if (code < 0x80) {
+    text += byte(code);
+  } else if (code < 0x800) {
+    text += {byte(0xC0U | (code >> 6U)), byte(0x80U | (code & kTail))};
+  } else if (code < 0x10000) {
+    text += {byte(0xE0U | (code >> 12U)), byte(0x80U | ((code >> 6U) & kTail)),
+             byte(0x80U | (code & kTail))};
+  } else {
+    text += {byte(0xF0U | (code >> 18U)), byte(0x80U | ((code >> 12U) & kTail)),
+             byte(0x80U | ((code >> 6U) & kTail)), byte(0x80U | (code & kTail))};
+  }
+}
+
+std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
+  const auto unit = [&](std::size_t i) {
+    const auto first = static_cast<unsigned char>(bytes[i]);
+    const auto second = static_cast<unsigned char>(bytes[i + 1]);
+    return static_cast<char32_t>(big_endian ? first << 8U | second : second << 8U | first);
+  };
+  std::string text;
+  text.reserve(bytes.size() / 2);
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    char32_t code = unit(i);
+    const bool is_high = code >= 0xD800 && code < 0xDC00;
+    if (is_high && i + 3 < bytes.size() && unit(i + 2) >= 0xDC00 && unit(i + 2) < 0xE000) {
+      i += 2;
+      code = 0x10000 + ((code - 0xD800) << 10U) + (unit(i) - 0xDC00);
+    }
+    append_utf8(code, text);
+  }
+  return text;
+}
+
+/// "1.#QNAN", "-1.#IND", "1.#INF00", "-nan(ind)".
+std::optional<double> number_of_windows(std::string_view word) {
+  const double sign = word.starts_with('-') ? -1.0 : 1.0;
+  if (word.starts_with('-')) word.remove_prefix(1);
+  const std::string small = lower_case(word);
+  if (small == "nan(ind)" || small == "nan(snan)") return kNaN;
+  if (small.starts_with("1.#inf")) return sign * kInfinity;
+  for (const char* nan : {"1.#qnan", "1.#ind", "1.#snan", "1.#nan"}) {
+    if (small.starts_with(nan)) return kNaN;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view utf8_text(std::string_view bytes, std::string& storage) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) return bytes.substr(3);
+  const bool big_endian = bytes.starts_with("\xFE\xFF");
+  if (!big_endian && !bytes.starts_with("\xFF\xFE")) return bytes;
+  storage = utf8_of_utf16(bytes.substr(2), big_endian);
+  return storage;
+}
+
+std::optional<double> number_in(std::string_view word) {
+  const char* from = word.data();
+  const char* const end = from + word.size();
+  if (from != end && *from == '+') {
+    ++from;
+    if (from != end && (*from == '-' || *from == '+')) return std::nullopt;
+  }
+  double value = 0.0;
+  const auto [stop, problem] = std::from_chars(from, end, value);
+  if (stop != end || problem == std::errc::invalid_argument) {
+    return word.find_first_of("#(") == std::string_view::npos ? std::nullopt
+                                                              : number_of_windows(word);
+  }
+  if (problem == std::errc()) return value;
+  const bool is_small =
+      word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
+  return is_small ? 0.0 : word.starts_with('-') ? -kInfinity : kInfinity;
+}
+
+std::optional<std::int64_t> integer_in(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  std::int64_t value = 0;
+  const char* const end = word.data() + word.size();
+  const auto [stop, problem] = std::from_chars(word.data(), end, value);
+  if (stop != end || problem != std::errc()) return std::nullopt;
+  return value;
+}
+
+std::string shown(std::string_view word) {
+  constexpr std::size_t kLongest = 60;
+  std::string text(word.substr(0, kLongest));
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return word.size() > kLongest ? text + "..." : text;
+}
+
+const char* TextCursor::after_line_end(const char* at) const {
+  return at + (*at == '\r' && at + 1 != end_ && at[1] == '\n' ? 2 : 1);
+}
+
+/// The start of the next line if a backslash at `at` continues this one; else null.
+const char* TextCursor::continuation(const char* at) const {
+  if (!continues_ || *at != '\\') return nullptr;
+  for (++at; at != end_ && is_blank(*at);) ++at;
+  if (at == end_) return at;
+  return is_line_end(*at) ? after_line_end(at) : nullptr;
+}
+
+/// A comment is skipped too.
+void TextCursor::skip_blanks() {
+  for (;;) {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (at_ == end_) return;
+    if (comments_ && *at_ == '#') {
+      while (at_ != end_ && !is_line_end(*at_)) ++at_;
+      return;
+    }
+    const char* const next = continuation(at_);
+    if (next == nullptr) return;
+    at_ = next;
+    ++line_;
+  }
+}
+
+std::string_view TextCursor::word() {
+  skip_blanks();
+  const char* const from = at_;
+  while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && !(comments_ && *at_ == '#') &&
+         continuation(at_) == nullptr) {
+    ++at_;
+  }
+  return {from, static_cast<std::size_t>(at_ - from)};
+}
+
+std::string_view TextCursor::rest() {
+  const char* const from = at_;
+  while (at_ != end_ && !is_line_end(*at_)) ++at_;
+  return trimmed({from, static_cast<std::size_t>(at_ - from)});
+}
+
+bool TextCursor::next_line() {
+  while (continues_ && !word().empty()) {
+  }
+  while (at_ != end_ && !is_line_end(*at_)) ++at_;
+  if (at_ == end_) return false;
+  at_ = after_line_end(at_);
+  ++line_;
+  return true;
+}
+
+bool TextCursor::find_word() {
+  for (;;) {
+    skip_blanks();
+    if (at_ == end_) return false;
+    if (!is_line_end(*at_)) return true;
+    next_line();
+  }
+}
+
+}  // namespace glidar::import
