@@ -42,6 +42,7 @@ std::vector<std::uint32_t> integers_of(const Node& list) {
           "repair the file"};
     }
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    all.push_back(value);
   }
 }
 

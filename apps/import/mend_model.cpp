@@ -175,13 +175,13 @@ void mend_model(const std::filesystem::path& model, ModelFiles& files,
   if (file == nullptr) return;
   const std::string extension = lower_case(model.extension().string());
   const std::string_view head = file->head(kHead);
-  if (is_collada(extension, head)) {
+  if (head.starts_with("PK\x03\x04")) {
+    auto archive = mended_archive(file->whole(), notes);
+    if (archive) files.replace(model.string(), std::move(*archive));
+  } else if (is_collada(extension, head)) {
     files.replace(model.string(), mend_collada(file->whole(), notes));
   } else if (is_utf16(head)) {
     files.replace(model.string(), as_utf8(parsed_xml(file->whole(), "the file")));
-  } else if (head.starts_with("PK\x03\x04")) {
-    auto archive = mended_archive(file->whole(), notes);
-    if (archive) files.replace(model.string(), std::move(*archive));
   }
 }
 

@@ -360,6 +360,17 @@ class GltfReader(unittest.TestCase):
         self.assertEqual(report["materials"][0]["name"], "paint")
         self.assertEqual(report["materials"][0]["diffuse_texture"], " t%20t.ppm")
 
+    def test_the_corpus_of_the_fuzzer_is_read_or_refused(self):
+        read = 0
+        for seed in sorted((Path(__file__).resolve().parents[2] / "fuzz/corpus/gltf").iterdir()):
+            with self.subTest(seed.name):
+                path = self.folder / "a.gltf"
+                path.write_bytes(seed.read_bytes())
+                report = info(path)
+                self.assertNotIn("the import process", str(report))
+                read += isinstance(report, dict)
+        self.assertGreater(read, 5)
+
     def test_models_of_others_have_the_shape_that_numpy_reads(self):
         folders = [Path(__file__).resolve().parents[3] / "models"]
         if "GLIDAR_DATA" in os.environ:
