@@ -4,7 +4,6 @@
 
 #include <glidar/math/portable.hpp>
 
-#include <assimp/GltfMaterial.h>
 #include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
 
@@ -18,7 +17,6 @@
 namespace glidar::import {
 namespace {
 
-constexpr int kGlNearest = 9728;  // GL_NEAREST in glTF samplers
 constexpr float kMaxShininess = 128.0F;
 
 float within(float value, float low, float high) {
@@ -106,20 +104,6 @@ Wrap wrap_mode(const aiMaterial& material, const char* key, aiTextureType type) 
   }
 }
 
-/// glTF: u' = offset + R S u in coordinates with v down, R turning counter-clockwise in the image
-/// (KHR_texture_transform). Assimp returns a modified translation, from which the offset is
-/// recovered; the result is for v up.
-void set_gltf_transform(const aiUVTransform& t, TextureUse& use) {
-  const auto c = static_cast<float>(portable_cos(-t.mRotation));
-  const auto s = static_cast<float>(portable_sin(-t.mRotation));
-  const float sx = t.mScaling.x;
-  const float sy = t.mScaling.y;
-  const float ox = t.mTranslation.x - 0.5F * sx * (1.0F - c + s);
-  const float oy = 1.0F - sy - t.mTranslation.y + 0.5F * sy * (s + c - 1.0F);
-  use.uv_scale_rotate << c * sx, -s * sy, s * sx, c * sy;
-  use.uv_offset << ox + s * sy, 1.0F - oy - c * sy;
-}
-
 /// Assimp's convention for all other formats: scale, translate, then rotate about the image's
 /// centre.
 void set_transform(const aiUVTransform& t, TextureUse& use) {
@@ -133,20 +117,16 @@ void set_transform(const aiUVTransform& t, TextureUse& use) {
   use.uv_offset = turn * (moved - middle) + middle;
 }
 
-void read_transform(const aiMaterial& material, aiTextureType type, bool gltf, TextureUse& use) {
+void read_transform(const aiMaterial& material, aiTextureType type, TextureUse& use) {
   aiUVTransform transform;
   if (material.Get(_AI_MATKEY_UVTRANSFORM_BASE, type, 0, transform) != aiReturn_SUCCESS) return;
   const TextureUse before = use;
-  if (gltf) {
-    set_gltf_transform(transform, use);
-  } else {
-    set_transform(transform, use);
-  }
+  set_transform(transform, use);
   if (!use.uv_scale_rotate.allFinite() || !use.uv_offset.allFinite()) use = before;
 }
 
 /// The first texture of a type; none without one.
-std::optional<NamedTexture> texture_of(const aiMaterial& material, aiTextureType type, bool gltf) {
+std::optional<NamedTexture> texture_of(const aiMaterial& material, aiTextureType type) {
   aiString name;
   if (material.Get(_AI_MATKEY_TEXTURE_BASE, type, 0, name) != aiReturn_SUCCESS ||
       name.length == 0) {
@@ -159,17 +139,14 @@ std::optional<NamedTexture> texture_of(const aiMaterial& material, aiTextureType
   named.use.uv_set = uv_set == 1 ? 1 : 0;
   named.use.wrap_u = wrap_mode(material, _AI_MATKEY_MAPPINGMODE_U_BASE, type);
   named.use.wrap_v = wrap_mode(material, _AI_MATKEY_MAPPINGMODE_V_BASE, type);
-  int filter = 0;
-  material.Get(_AI_MATKEY_GLTF_MAPPINGFILTER_MAG_BASE, type, 0, filter);
-  if (filter == kGlNearest) named.use.filter = Filter::nearest;
-  read_transform(material, type, gltf, named.use);
+  read_transform(material, type, named.use);
   return named;
 }
 
 std::optional<NamedTexture> first_of(const aiMaterial& source,
-                                     std::initializer_list<aiTextureType> types, bool gltf) {
+                                     std::initializer_list<aiTextureType> types) {
   for (const aiTextureType type : types) {
-    if (auto named = texture_of(source, type, gltf)) return named;
+    if (auto named = texture_of(source, type)) return named;
   }
   return std::nullopt;
 }
@@ -185,44 +162,27 @@ bool uses_alpha(const aiMaterial& source) {
   return (flags & aiTextureFlags_UseAlpha) != 0;
 }
 
-AlphaMode alpha_mode(const aiMaterial& source, bool gltf) {
-  aiString mode;
-  if (source.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS) {
-    return gltf ? AlphaMode::opaque : AlphaMode::factor;
-  }
-  const std::string_view name = mode.C_Str();
-  return name == "MASK"    ? AlphaMode::cut_out
-         : name == "BLEND" ? AlphaMode::blend
-                           : AlphaMode::opaque;
-}
-
-/// Bump strength: the key of several formats, or glTF's normal scale.
+/// Bump strength: the key of several formats.
 float bump_strength(const aiMaterial& source) {
   for (const aiTextureType type : {aiTextureType_HEIGHT, aiTextureType_NORMALS}) {
     if (const auto bm = number(source, _AI_MATKEY_OBJ_BUMPMULT_BASE, type)) return *bm;
-  }
-  if (const auto scale = number(source, _AI_MATKEY_GLTF_SCALE_BASE, aiTextureType_NORMALS)) {
-    return *scale;
   }
   return number(source, key_of(AI_MATKEY_BUMPSCALING)).value_or(1.0F);
 }
 
 }  // namespace
 
-SourceMaterial assimp_material(const aiMaterial& source, bool gltf) {
+SourceMaterial assimp_material(const aiMaterial& source) {
   SourceMaterial material;
   const aiString name = source.GetName();
   if (name.length > 0) material.material.name.assign(name.data, name.length);
   read_colours(source, material.material);
-  material.diffuse = first_of(source, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, gltf);
-  material.specular = first_of(source, {aiTextureType_SPECULAR}, gltf);
-  material.opacity = first_of(source, {aiTextureType_OPACITY}, gltf);
-  material.normals = first_of(
-      source, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT}, gltf);
+  material.diffuse = first_of(source, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
+  material.specular = first_of(source, {aiTextureType_SPECULAR});
+  material.opacity = first_of(source, {aiTextureType_OPACITY});
+  material.normals =
+      first_of(source, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT});
   if (material.normals) material.normals->bump = bump_strength(source);
-  material.alpha = alpha_mode(source, gltf);
-  material.cutoff =
-      within(number(source, key_of(AI_MATKEY_GLTF_ALPHACUTOFF)).value_or(0.5F), 0.0F, 1.0F);
   material.uses_diffuse_alpha = uses_alpha(source);
   return material;
 }

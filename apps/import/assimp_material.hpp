@@ -15,7 +15,6 @@ namespace glidar::import {
 ///    F0 = mix(0.04, base colour, metallic); shininess = 2 / r^4 - 2 (Karis, Specular BRDF
 ///    reference, 2013), 0..128;
 ///  - non-finite numbers become 0, others are clamped to their range.
-/// `gltf`: the transforms of uvs are glTF's (KHR_texture_transform), which Assimp rewrites.
-SourceMaterial assimp_material(const aiMaterial& material, bool gltf);
+SourceMaterial assimp_material(const aiMaterial& material);
 
 }  // namespace glidar::import

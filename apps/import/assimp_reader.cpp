@@ -5,9 +5,9 @@
 #include <import/assimp_material.hpp>
 #include <import/confined_io.hpp>
 #include <import/declared_frame.hpp>
-#include <import/gltf_extensions.hpp>
-#include <import/gltf_transforms.hpp>
+#include <import/mend_model.hpp>
 #include <import/polygons.hpp>
+#include <import/skin.hpp>
 
 #include <glidar/io/model/mesh_blob.hpp>
 
@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <new>
 #include <string_view>
 
@@ -174,31 +175,86 @@ std::uint64_t copy_faces(const aiMesh& from, SourceMesh& mesh, Left& left) {
   return lines;
 }
 
+using Places = std::map<std::string, Eigen::Matrix4d>;
+
+/// model_from_node of all nodes by their names.
+Places places_of(const aiScene& scene) {
+  Places places;
+  std::vector<Visit> stack;
+  if (scene.mRootNode != nullptr) stack.push_back({scene.mRootNode, Eigen::Matrix4d::Identity()});
+  while (!stack.empty() && places.size() < kMaxNodes) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    const Eigen::Matrix4d here = visit.model_from_parent * matrix(visit.node->mTransformation);
+    places.emplace(visit.node->mName.C_Str(), here);
+    for (unsigned i = 0; i < visit.node->mNumChildren; ++i) {
+      stack.push_back({visit.node->mChildren[i], here});
+    }
+  }
+  return places;
+}
+
+/// COLLADA 1.4.1, "Skin Deformation": bind shape, inverse bind matrix (Assimp's offset is their
+/// product) and joint, by the weights. Returns false, and changes nothing, if a joint or a vertex's
+/// weights are missing.
+bool pose_collada(const aiMesh& from, const Places& places, SourceMesh& mesh) {
+  std::vector<Eigen::Matrix4d> skin(mesh.positions.size(), Eigen::Matrix4d::Zero());
+  std::vector<double> sums(skin.size(), 0.0);
+  for (unsigned i = 0; i < from.mNumBones; ++i) {
+    const aiBone& bone = *from.mBones[i];
+    const auto place = places.find(bone.mName.C_Str());
+    if (place == places.end()) return false;
+    const Eigen::Matrix4d moved = place->second * matrix(bone.mOffsetMatrix);
+    for (unsigned k = 0; k < bone.mNumWeights; ++k) {
+      const aiVertexWeight& weight = bone.mWeights[k];
+      if (weight.mVertexId >= skin.size()) return false;
+      skin[weight.mVertexId] += double{weight.mWeight} * moved;
+      sums[weight.mVertexId] += double{weight.mWeight};
+    }
+  }
+  const bool is_complete =
+      !sums.empty() && std::all_of(sums.begin(), sums.end(), [](double sum) { return sum > 0.0; });
+  if (!is_complete) return false;
+  for (std::size_t v = 0; v < skin.size(); ++v) skin[v] /= sums[v];
+  apply_skin(skin, mesh);
+  return true;
+}
+
+/// What is left to do with a converted mesh.
+struct Copied {
+  std::uint64_t lines = 0;  ///< and points, left out
+  bool is_posed = false;    ///< its skeleton places it in the model
+};
+
 /// Converts the meshes, with the same indices.
-std::vector<std::uint64_t> copy_meshes(const aiScene& scene, SourceModel& source) {
+std::vector<Copied> copy_meshes(const aiScene& scene, SourceModel& source) {
+  const bool has_skins = source.format.find("Collada") != std::string::npos;
+  const Places places = has_skins ? places_of(scene) : Places{};
   Left left;
-  std::vector<std::uint64_t> lines;
+  std::vector<Copied> all;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     const aiMesh& from = *scene.mMeshes[i];
     SourceMesh& mesh = source.meshes.emplace_back();
     mesh.material = from.mMaterialIndex;
     copy_vertices(from, mesh);
-    lines.push_back(copy_faces(from, mesh, left));
+    Copied& copied = all.emplace_back();
+    copied.lines = copy_faces(from, mesh, left);
+    const bool has_skin = has_skins && from.mNumBones > 0 && copied.lines == 0;
+    copied.is_posed = has_skin && pose_collada(from, places, mesh);
   }
   note_intersecting(source, left.intersecting);
   if (left.outside > 0) {
     source.notes.push_back(
         fmt::format("faces that name missing vertices are left out: {}", left.outside));
   }
-  return lines;
+  return all;
 }
 
 /// The tree with the meshes of its nodes.
 class Tree {
  public:
-  Tree(const aiScene& scene, const NodeTransforms& transforms, std::vector<std::uint64_t> lines,
-       SourceModel& source)
-      : scene_(scene), transforms_(transforms), lines_(std::move(lines)), source_(source) {}
+  Tree(const aiScene& scene, std::vector<Copied> copied, SourceModel& source)
+      : scene_(scene), copied_(std::move(copied)), source_(source) {}
 
   /// Nodes depth first, parents first.
   void place() {
@@ -214,10 +270,8 @@ class Tree {
       }
       const Visit visit = stack.back();
       stack.pop_back();
-      const auto known = transforms_.find(visit.node);
       const Eigen::Matrix4d model_from_node =
-          visit.model_from_parent *
-          (known == transforms_.end() ? matrix(visit.node->mTransformation) : known->second);
+          visit.model_from_parent * matrix(visit.node->mTransformation);
       place_meshes(*visit.node, model_from_node);
       for (unsigned child = visit.node->mNumChildren; child-- > 0;) {
         stack.push_back({visit.node->mChildren[child], model_from_node});
@@ -234,21 +288,23 @@ class Tree {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const std::size_t index = node.mMeshes[i];
       if (index >= source_.meshes.size()) continue;
-      source_.lines_and_points += lines_[index];
+      source_.lines_and_points += copied_[index].lines;
       if (source_.meshes[index].triangles.empty()) continue;
       const aiMesh& mesh = *scene_.mMeshes[index];
-      skinned_ += mesh.mNumBones > 0 ? 1 : 0;
+      const bool is_posed = copied_[index].is_posed;
+      skinned_ += mesh.mNumBones > 0 && !is_posed ? 1 : 0;
       triangles_ += source_.meshes[index].triangles.size();
       const aiString& name = mesh.mName.length > 0 ? mesh.mName : node.mName;
-      source_.placed.push_back({index, model_from_node, std::string(name.C_Str())});
+      const Eigen::Matrix4d placed =
+          is_posed ? Eigen::Matrix4d(Eigen::Matrix4d::Identity()) : model_from_node;
+      source_.placed.push_back({index, placed, std::string(name.C_Str())});
       // A small file can place a mesh very often.
       if (triangles_ > kMaxTriangles || source_.placed.size() > kMaxRecords) check_size(source_);
     }
   }
 
   const aiScene& scene_;
-  const NodeTransforms& transforms_;
-  std::vector<std::uint64_t> lines_;  ///< of each mesh
+  std::vector<Copied> copied_;  ///< of each mesh
   SourceModel& source_;
   std::uint64_t triangles_ = 0;
   std::uint64_t skinned_ = 0;
@@ -273,10 +329,10 @@ EmbeddedImage image_of(const aiTexture& texture) {
   return image;
 }
 
-void copy_materials(const aiScene& scene, bool gltf, SourceModel& source) {
+void copy_materials(const aiScene& scene, SourceModel& source) {
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     const SourceMaterial& material =
-        source.materials.emplace_back(assimp_material(*scene.mMaterials[i], gltf));
+        source.materials.emplace_back(assimp_material(*scene.mMaterials[i]));
     for (const auto* texture :
          {&material.diffuse, &material.specular, &material.opacity, &material.normals}) {
       if (!*texture || source.images.contains((*texture)->name)) continue;
@@ -292,11 +348,14 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
                              ModelFiles& files, FileLog& log,
                              const std::function<void(double)>& progress) {
   const auto own = files.content(model.string());
-  replace_gltf_extensions(model, folder, files, log);
+  std::vector<std::string> mended;
+  mend_model(model, files, mended);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
   importer.SetProgressHandler(new AssimpProgress(progress));
+  // Files without surfaces have nothing to measure.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   if (importer.ReadFile(model.string(), kSteps) == nullptr) refuse(importer.GetErrorString(), log);
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene& scene = *importer.GetOrphanedScene();
@@ -304,10 +363,9 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
   source.format = importer_name(importer);
   source.is_single_precision = true;
   source.declared = extract_declared_frame(scene, source.format, *own, source.notes);
-  const bool gltf = source.format.find("glTF") != std::string::npos;
-  const NodeTransforms transforms = gltf ? gltf_transforms(own->whole(), scene) : NodeTransforms{};
-  Tree(scene, transforms, copy_meshes(scene, source), source).place();
-  copy_materials(scene, gltf, source);
+  source.notes.insert(source.notes.end(), mended.begin(), mended.end());
+  Tree(scene, copy_meshes(scene, source), source).place();
+  copy_materials(scene, source);
   return source;
 }
 

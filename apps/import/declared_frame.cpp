@@ -212,7 +212,6 @@ ModelFrame extract_declared_frame(aiScene& scene, const std::string& format, Fil
     return extract_collada_frame(scene, collada_text(file.whole()), notes);
   }
   if (format.find("FBX") != std::string::npos) return read_fbx(scene, notes);
-  if (format.starts_with("glTF")) return {1.0, Axis::y};
   if (format.starts_with("3mf") || format.starts_with("3MF")) {
     return printed(model_of_3mf(file.whole()), "model", notes);
   }

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/decode_image.hpp>
 
+#include <import/gltf/data_uri.hpp>
 #include <import/image_size.hpp>
 
 #include <fmt/format.h>
 #include <stb/stb_image.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <array>
@@ -57,30 +59,34 @@ Decoded no_image(std::string reason) {
   return {{}, std::move(reason)};
 }
 
-int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+' || c == '-') return 62;
-  return c == '/' || c == '_' ? 63 : -1;
+bool is_webp(std::span<const std::uint8_t> bytes) {
+  return WebPGetInfo(bytes.data(), bytes.size(), nullptr, nullptr) != 0;
 }
 
-/// RFC 4648, both alphabets; stops at the padding or any other character.
-std::vector<std::uint8_t> base64_decoded(std::string_view text) {
-  std::vector<std::uint8_t> bytes;
-  std::uint32_t bits = 0;
-  unsigned count = 0;
-  for (const char c : text) {
-    const int digit = base64_digit(c);
-    if (digit < 0) break;
-    bits = (bits << 6U) | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes.push_back(static_cast<std::uint8_t>(bits >> count));
-    }
+Decoded decode_webp(std::span<const std::uint8_t> bytes, std::uint64_t budget) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK) {
+    return no_image("broken");
   }
-  return bytes;
+  if (features.has_animation != 0) return no_image("an animated WebP image");
+  const auto width = static_cast<std::uint32_t>(features.width);
+  const auto height = static_cast<std::uint32_t>(features.height);
+  const std::uint32_t channels = features.has_alpha != 0 ? 4 : 3;
+  std::string refused = too_large(width, height, channels, budget);
+  if (!refused.empty()) return no_image(std::move(refused));
+  Decoded decoded;
+  Texture& t = decoded.texture;
+  t.width = width;
+  t.height = height;
+  t.channels = channels;
+  t.texels.resize(std::size_t{width} * height * channels);
+  const auto decode = channels == 4 ? WebPDecodeRGBAInto : WebPDecodeRGBInto;
+  const int stride = static_cast<int>(width * channels);
+  if (decode(bytes.data(), bytes.size(), t.texels.data(), t.texels.size(), stride) == nullptr) {
+    return no_image("broken, or too large for the memory limit");
+  }
+  drop_opaque_alpha(t);
+  return decoded;
 }
 
 }  // namespace
@@ -96,12 +102,14 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
         "a KTX2 image (KHR_texture_basisu), which GLIDAR does not read: export the model "
         "with PNG or JPEG textures");
   }
+  if (is_webp(bytes)) return decode_webp(bytes, budget);
   if (const auto declared = declared_size(bytes)) {
     std::string refused = too_large(declared->width, declared->height, 4, budget);
     if (!refused.empty()) return no_image(std::move(refused));
   }
   if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
-    return no_image("not an image that can be read (PNG, JPEG, BMP, TGA, GIF, PSD, HDR, PNM)");
+    return no_image(
+        "not an image that can be read (PNG, JPEG, WebP, BMP, TGA, GIF, PSD, HDR, PNM)");
   }
   if (width < 0 || height < 0 || channels < 1 || channels > 4) return no_image("broken");
   // Palettes may expand to more channels than in the header.
@@ -133,18 +141,11 @@ Decoded decode_embedded(const EmbeddedImage& image, std::uint64_t budget) {
   return decoded;
 }
 
-std::vector<std::uint8_t> data_uri_bytes(const std::string& uri) {
-  const std::size_t comma = uri.find(',');
-  if (comma == std::string::npos || uri.substr(0, comma).find("base64") == std::string::npos) {
-    return {};
-  }
-  return base64_decoded(std::string_view(uri).substr(comma + 1));
-}
-
 Decoded decode_data_uri(const std::string& uri, std::uint64_t budget) {
-  const std::vector<std::uint8_t> bytes = data_uri_bytes(uri);
-  if (bytes.empty()) return no_image("a data URI that is not base64");
-  return decode_image(bytes, budget);
+  const auto content = gltf::data_uri_content(uri);
+  if (!content) return no_image("a malformed data URI");
+  return decode_image({reinterpret_cast<const std::uint8_t*>(content->data()), content->size()},
+                      budget);
 }
 
 }  // namespace glidar::import

@@ -19,16 +19,13 @@ struct Decoded {
   std::string reason;  ///< empty: decoded
 };
 
-/// Decodes PNG, JPEG, BMP, TGA, GIF, PSD, HDR or PNM to 8 bits. Checks the size before allocating
-/// memory: at most 16384 pixels per side, 256 MiB decoded, and `budget` bytes. Drops an alpha
-/// channel that is opaque everywhere.
+/// Decodes PNG, JPEG, WebP, BMP, TGA, GIF, PSD, HDR or PNM to 8 bits. Checks the size before
+/// allocating memory: at most 16384 pixels per side, 256 MiB decoded, and `budget` bytes. Drops an
+/// alpha channel that is opaque everywhere.
 Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget);
 
 /// An image inside the model file: compressed bytes, or raw texels.
 Decoded decode_embedded(const EmbeddedImage& image, std::uint64_t budget);
-
-/// The content of "data:...;base64,..."; may be empty.
-std::vector<std::uint8_t> data_uri_bytes(const std::string& uri);
 
 /// "data:image/png;base64,...".
 Decoded decode_data_uri(const std::string& uri, std::uint64_t budget);

@@ -4,9 +4,16 @@
 
 #include <import/assimp_reader.hpp>
 #include <import/bake_mesh.hpp>
+#include <import/gltf/read_gltf.hpp>
 #include <import/loaded_libraries.hpp>
 #include <import/own_readers.hpp>
 #include <import/read_materials.hpp>
+#include <import/unread_formats.hpp>
+
+#include <glidar/core/text.hpp>
+#include <glidar/io/model/texture_search.hpp>
+
+#include <fmt/format.h>
 
 #include <limits>
 
@@ -43,6 +50,44 @@ std::vector<std::string> texture_folders(const std::vector<std::string>& read,
   return folders;
 }
 
+/// The bytes of a buffer of a glTF file, which is a file below the model's root.
+std::string_view open_buffer(const std::string& uri, const ModelFolder& folder, ModelFiles& files,
+                             FileLog& log) {
+  constexpr std::size_t kShown = 120;
+  if (uri.find("://") != std::string::npos) {
+    throw Refusal{"its buffer '" + uri.substr(0, kShown) + "' is on a network, which is not read",
+                  "download it, and save the model with its buffers"};
+  }
+  for (const std::string& name : {percent_decoded(uri), uri}) {
+    const ConfinedFile found = confine(name, folder);
+    const auto file =
+        found.access == Access::granted ? files.content(found.path.string()) : nullptr;
+    if (file != nullptr) return file->whole();
+    add_once(log.absent, (folder.folder / name).string());
+  }
+  throw Refusal{"its buffer '" + uri.substr(0, kShown) +
+                    "' is not read: " + reason(confine(percent_decoded(uri), folder).access),
+                "copy it into the model's folder"};
+}
+
+/// By the reader of its format.
+SourceModel read_file(const std::filesystem::path& model, const ModelFolder& folder,
+                      ModelFiles& files, FileLog& log,
+                      const std::function<void(double)>& progress) {
+  constexpr std::size_t kHead = 4096;
+  const auto own = files.content(model.string());
+  const std::string extension = lower_case(model.extension().string());
+  const std::string_view head = own->head(kHead);
+  if (const auto unread = unread_format(extension, head)) throw *unread;
+  if (gltf::is_gltf(extension, head)) {
+    return gltf::read_gltf(
+        own->whole(), [&](const std::string& uri) { return open_buffer(uri, folder, files, log); });
+  }
+  const ReaderInput input{model, folder, files, log};
+  const Reader reader = own_reader(input);
+  return reader ? reader(input) : read_with_assimp(model, folder, files, log, progress);
+}
+
 }  // namespace
 
 ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
@@ -53,10 +98,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   if (files.content(canonical_model.string()) == nullptr) {  // the first of the files
     throw Refusal{"cannot be opened", "check its read permission"};
   }
-  const ReaderInput input{canonical_model, folder, files, log};
-  const Reader reader = own_reader(input);
-  SourceModel source =
-      reader ? reader(input) : read_with_assimp(canonical_model, folder, files, log, progress);
+  SourceModel source = read_file(canonical_model, folder, files, log, progress);
   check_size(source);
   ImportedModel imported;
   Model& model = imported.model;

@@ -43,7 +43,9 @@ std::vector<std::string> spellings(const std::string& name) {
       all.push_back(std::move(spelling));
     }
   };
+  add(name);
   add(tidy);
+  add(percent_decoded(name));
   add(percent_decoded(tidy));
   for (std::size_t i = 0, count = all.size(); i < count; ++i) add(base_name(all[i]));
   // Material files put options before the name, and importers keep those that they do not know.
@@ -116,8 +118,10 @@ TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
     }
   }
   for (const fs::path& place : look_in) {
-    const auto match = wanted.empty() ? std::nullopt : any_case(place, base_name(wanted.front()));
-    if (match && take(*match)) return result;
+    for (const std::string& spelling : wanted) {
+      const auto match = any_case(place, base_name(spelling));
+      if (match && take(*match)) return result;
+    }
   }
   return result;
 }

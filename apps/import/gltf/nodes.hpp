@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <import/gltf/buffers.hpp>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace glidar::import::gltf {
+
+/// The nodes of a document, all transforms in double (glTF 2.0, 3.5.3).
+struct Nodes {
+  std::vector<Eigen::Matrix4d> scene_from_node;  ///< of every node, in the scene or not
+  std::vector<std::size_t> shown;                ///< nodes of the scene, depth first, parents first
+};
+
+/// The default scene, else the first one, else all nodes without a parent. Notes other scenes and
+/// nodes that are left out. Throws Refusal for nodes that have two parents or are their own
+/// ancestors.
+Nodes read_nodes(Document& document);
+
+/// The transforms of the copies of a node's mesh (EXT_mesh_gpu_instancing); one without copies.
+std::vector<Eigen::Matrix4d> copies_of(Document& document, Buffers& buffers, const Value& node);
+
+/// The matrix that these parts of a rigid motion and scale give: translation, rotation (x, y, z, w)
+/// and scale.
+Eigen::Matrix4d composed(const Eigen::Vector3d& translation, const Eigen::Vector4d& rotation,
+                         const Eigen::Vector3d& scale);
+
+}  // namespace glidar::import::gltf

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/gltf/read_gltf.hpp>
+
+#include <import/gltf/materials.hpp>
+#include <import/gltf/nodes.hpp>
+#include <import/gltf/primitive.hpp>
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glidar::import::gltf {
+namespace {
+
+/// Weights of the morph targets of a mesh at a node: the node's own, else the mesh's, else 0.
+std::vector<double> weights_of(const Value& node, const Value& mesh, const Value& targets) {
+  const Value own = node["weights"];
+  const Value weights = own ? own : mesh["weights"];
+  if (!weights) return std::vector<double>(targets.size(), 0.0);
+  return weights.numbers(targets.size());
+}
+
+/// scene_from_joint times the inverse bind matrix, of each joint of a skin (glTF 2.0, 3.7.3.2).
+std::vector<Eigen::Matrix4d> joints_of(const Context& context, const Value& skin,
+                                       const Nodes& nodes) {
+  const Value list = skin.required("joints");
+  if (list.size() == 0) list.refuse("a skin needs a joint");
+  std::vector<Eigen::Matrix4d> joints;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    joints.push_back(nodes.scene_from_node[context.document.number("nodes", list.at(i))]);
+  }
+  const Value index = skin["inverseBindMatrices"];
+  if (!index) return joints;
+  const Accessor accessor = open_accessor(context.document, context.buffers, index);
+  if (accessor.components != 16 || accessor.type != Component::float32) {
+    index.refuse("it is not of the type MAT4 of floats");
+  }
+  if (accessor.count < joints.size()) {
+    index.refuse(fmt::format("{} matrices for {} joints", accessor.count, joints.size()));
+  }
+  const std::vector<double> numbers = read_numbers(accessor);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Eigen::Map<const Eigen::Matrix4d> bind(numbers.data() + i * 16);
+    if (bind.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+      index.refuse(fmt::format("the last row of matrix {} is not 0, 0, 0, 1", i));
+    }
+    joints[i] = joints[i] * bind;
+  }
+  return joints;
+}
+
+/// Places the meshes of nodes in the model.
+class Placement {
+ public:
+  Placement(Context& context, const Nodes& nodes) : context_(context), nodes_(nodes) {}
+
+  void place(std::size_t number) {
+    const Value node = context_.document.root()["nodes"].at(number);
+    const Value skin = node["skin"];
+    if (!node["mesh"]) {
+      if (skin) skin.refuse("a node without a mesh has a skin");
+      return;
+    }
+    const Value mesh = context_.document.target("meshes", node["mesh"]);
+    const std::vector<std::size_t>& parts = meshes_of(node, mesh);
+    const std::vector<Eigen::Matrix4d> copies =
+        copies_of(context_.document, context_.buffers, node);
+    if (skin && node.extension("EXT_mesh_gpu_instancing")) {
+      node.refuse("copies of a mesh with a skin (EXT_mesh_gpu_instancing)");
+    }
+    std::string name = mesh["name"].text_or("");
+    if (name.empty()) name = node["name"].text_or("");
+    if (name.empty()) name = mesh.path();
+    for (const Eigen::Matrix4d& copy : copies) {
+      // The skeleton places a mesh with a skin.
+      const Eigen::Matrix4d matrix = skin ? Eigen::Matrix4d(Eigen::Matrix4d::Identity())
+                                          : Eigen::Matrix4d(nodes_.scene_from_node[number] * copy);
+      for (const std::size_t part : parts) {
+        context_.model.placed.push_back({part, matrix, name});
+        check_growth(part);
+      }
+    }
+  }
+
+ private:
+  /// Stops before many copies fill the memory.
+  void check_growth(std::size_t part) {
+    triangles_ += context_.model.meshes[part].triangles.size();
+    const bool is_huge = triangles_ > kMaxTriangles;
+    if (is_huge) check_size(context_.model);
+  }
+
+  /// The primitives of a mesh as the node shows them; read once for nodes that show them alike.
+  const std::vector<std::size_t>& meshes_of(const Value& node, const Value& mesh) {
+    const bool is_own = node["skin"] || node["weights"];
+    const auto key = std::pair(mesh.path(), is_own ? node.path() : std::string());
+    const auto [known, is_new] = read_.try_emplace(key);
+    if (!is_new) return known->second;
+    const Value primitives = mesh.required("primitives");
+    if (primitives.size() == 0) primitives.refuse("a mesh needs a primitive");
+    Deformation deformation;
+    if (node["skin"]) {
+      const Value skin = context_.document.target("skins", node["skin"]);
+      deformation.joints = joints_of(context_, skin, nodes_);
+    }
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      const Value primitive = primitives.at(i);
+      deformation.weights = weights_of(node, mesh, primitive["targets"]);
+      auto part = read_primitive(context_, primitive, deformation);
+      if (!part) continue;
+      known->second.push_back(context_.model.meshes.size());
+      context_.model.meshes.push_back(std::move(*part));
+    }
+    return known->second;
+  }
+
+  Context& context_;
+  const Nodes& nodes_;
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> read_;
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace
+
+bool is_gltf(std::string_view extension, std::string_view first_bytes) {
+  return extension == ".gltf" || extension == ".glb" || extension == ".vrm" ||
+         first_bytes.starts_with("glTF");
+}
+
+SourceModel read_gltf(std::string_view file, OpenFile open) {
+  Document document = parse(file);
+  Buffers buffers(document, std::move(open));
+  SourceModel model;
+  model.format = "glTF2";
+  model.declared = {1.0, Axis::y};
+  std::vector<UvSets> uv_sets = read_materials(document, buffers, model);
+  Context context{document, buffers, model, std::move(uv_sets)};
+  const Nodes nodes = read_nodes(document);
+  Placement placement(context, nodes);
+  for (const std::size_t node : nodes.shown) placement.place(node);
+  model.notes.insert(model.notes.begin(), document.notes.begin(), document.notes.end());
+  return model;
+}
+
+}  // namespace glidar::import::gltf

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/mend_model.hpp>
+
+#include <import/mend_collada.hpp>
+#include <import/source_model.hpp>
+#include <import/zip_archive.hpp>
+
+#include <glidar/core/text.hpp>
+
+#include <fmt/format.h>
+#include <pugixml.hpp>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+namespace glidar::import {
+namespace {
+
+constexpr std::size_t kHead = 4096;  // formats show themselves in so many bytes
+
+bool is_utf16(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF") ||
+         bytes.starts_with("<\0"sv) || bytes.starts_with("\0<"sv);
+}
+
+pugi::xml_document parsed_xml(std::string_view text, const std::string& name) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+  if (!result) {
+    throw Refusal{fmt::format("the XML of {} cannot be read: {} at byte {}", name,
+                              result.description(), result.offset),
+                  "the file is damaged or cut off: export it again"};
+  }
+  return document;
+}
+
+std::string as_utf8(const pugi::xml_document& document) {
+  std::ostringstream text;
+  document.save(text, "", pugi::format_raw, pugi::encoding_utf8);
+  return std::move(text).str();
+}
+
+bool is_collada(std::string_view extension, std::string_view head) {
+  using namespace std::string_view_literals;
+  return extension == ".dae" || head.find("<COLLADA") != std::string_view::npos ||
+         head.find("<\0C\0O\0L\0L\0A\0D\0A"sv) != std::string_view::npos;
+}
+
+/// The document of a .zae archive, as Assimp selects it: the one that the manifest names, else the
+/// first one; none in other archives.
+std::optional<std::string> document_of_zae(std::string_view file,
+                                           const std::vector<std::string>& names) {
+  const bool has_manifest = std::find(names.begin(), names.end(), "manifest.xml") != names.end();
+  if (has_manifest) {
+    const pugi::xml_document manifest =
+        parsed_xml(zip_content(file, "manifest.xml"), "manifest.xml");
+    std::string name = zip_name(trimmed(manifest.child("dae_root").child_value()));
+    if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  }
+  const auto first = std::find_if(names.begin(), names.end(), [](const std::string& name) {
+    return lower_case(name).ends_with(".dae");
+  });
+  return first == names.end() ? std::nullopt : std::optional(*first);
+}
+
+std::map<std::string, std::string> unpacked(std::string_view file,
+                                            const std::vector<std::string>& names) {
+  std::map<std::string, std::string> files;
+  for (const std::string& name : names) {
+    if (!name.ends_with('/')) files[name] = zip_content(file, name);
+  }
+  return files;
+}
+
+// 3MF (3D Manufacturing Format, Core Specification 1.3).
+
+bool is_picture(const std::string& name) {
+  const std::string lower = lower_case(name);
+  return lower.ends_with(".png") || lower.ends_with(".jpg") || lower.ends_with(".jpeg");
+}
+
+/// Extensions whose elements Assimp reads, or that state nothing about the shape.
+bool is_read(std::string_view name_space) {
+  return name_space.find("/core/") != std::string_view::npos ||
+         name_space.find("/material/") != std::string_view::npos ||
+         name_space.find("/trianglesets/") != std::string_view::npos;
+}
+
+void check_extensions(const pugi::xml_node& model, std::vector<std::string>& notes) {
+  const std::string required =
+      std::string(" ") + model.attribute("requiredextensions").value() + " ";
+  for (const pugi::xml_attribute& attribute : model.attributes()) {
+    const std::string_view name = attribute.name();
+    if (!name.starts_with("xmlns:") || is_read(attribute.value())) continue;
+    const std::string prefix(name.substr(6));
+    if (required.find(" " + prefix + " ") == std::string::npos) continue;
+    throw Refusal{fmt::format("it requires the extension '{}' of 3MF, which GLIDAR does not read",
+                              std::string_view(attribute.value()).substr(0, 120)),
+                  "export it without that extension, or as STL or glTF"};
+  }
+  const auto lattice = model.find_node([](const pugi::xml_node& node) {
+    return std::string_view(node.name()).ends_with(":beamlattice");
+  });
+  if (lattice) notes.emplace_back("a lattice of beams (3MF) is left out");
+}
+
+/// Parts in other files (the production extension) would be left out.
+void check_paths(const pugi::xml_node& model) {
+  const auto elsewhere = model.find_node([](const pugi::xml_node& node) {
+    const std::string_view name = node.name();
+    if (name != "component" && name != "item") return false;
+    return std::any_of(node.attributes_begin(), node.attributes_end(),
+                       [](const pugi::xml_attribute& attribute) {
+                         return std::string_view(attribute.name()).ends_with(":path");
+                       });
+  });
+  if (!elsewhere) return;
+  throw Refusal{
+      "its parts are in models of their own (the production extension of 3MF), which "
+      "GLIDAR does not read",
+      "export it without that extension, or as STL or glTF"};
+}
+
+std::string mended_3mf(std::string_view file, const std::vector<std::string>& names,
+                       std::vector<std::string>& notes) {
+  std::map<std::string, std::string> kept;
+  std::set<std::string> pictures;
+  std::vector<std::string> wanted;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(wanted),
+               [](const std::string& name) { return !is_picture(name) && !name.ends_with('/'); });
+  for (const std::string& name : wanted) {
+    std::string content = zip_content(file, name);
+    if (name.ends_with(".model")) {
+      const pugi::xml_document document = parsed_xml(content, name);
+      check_extensions(document.document_element(), notes);
+      check_paths(document.document_element());
+      for (const pugi::xml_node& resource : document.document_element().child("resources")) {
+        const pugi::xml_attribute path = resource.attribute("path");
+        if (path) pictures.insert(zip_name(path.value()));
+      }
+      if (is_utf16(content)) content = as_utf8(document);
+    }
+    kept.emplace(name, std::move(content));
+  }
+  for (const std::string& name : names) {
+    if (is_picture(name) && pictures.contains(zip_name(name))) kept[name] = zip_content(file, name);
+  }
+  return make_zip(kept);
+}
+
+/// Nothing for an archive of another kind.
+std::optional<std::string> mended_archive(std::string_view file, std::vector<std::string>& notes) {
+  const std::vector<std::string> names = zip_names(file);
+  const bool is_3mf = std::any_of(names.begin(), names.end(),
+                                  [](const std::string& name) { return name.ends_with(".model"); });
+  if (is_3mf) return mended_3mf(file, names, notes);
+  const auto collada = document_of_zae(file, names);
+  if (!collada) return std::nullopt;
+  std::map<std::string, std::string> files = unpacked(file, names);
+  files[*collada] = mend_collada(files[*collada], notes);
+  return make_zip(files);
+}
+
+}  // namespace
+
+void mend_model(const std::filesystem::path& model, ModelFiles& files,
+                std::vector<std::string>& notes) {
+  const auto file = files.content(model.string());
+  if (file == nullptr) return;
+  const std::string extension = lower_case(model.extension().string());
+  const std::string_view head = file->head(kHead);
+  if (head.starts_with("PK\x03\x04")) {
+    auto archive = mended_archive(file->whole(), notes);
+    if (archive) files.replace(model.string(), std::move(*archive));
+  } else if (is_collada(extension, head)) {
+    files.replace(model.string(), mend_collada(file->whole(), notes));
+  } else if (is_utf16(head)) {
+    files.replace(model.string(), as_utf8(parsed_xml(file->whole(), "the file")));
+  }
+}
+
+}  // namespace glidar::import

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <import/model_files.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glidar::import {
+
+/// Replaces a model file, for Assimp, by one without what Assimp fails on although the shape is
+/// complete:
+///  - COLLADA, also in archives (.zae): see mend_collada();
+///  - 3MF: thumbnails and other pictures that no material names; archives in ZIP64;
+///  - XML in UTF-16.
+/// Notes what is left out. Throws Refusal for what Assimp would leave out without a word: 3MF with
+/// extensions that it requires, or with parts in files of their own.
+void mend_model(const std::filesystem::path& model, ModelFiles& files,
+                std::vector<std::string>& notes);
+
+}  // namespace glidar::import
