@@ -76,12 +76,20 @@ struct CloudTimes {
   std::int64_t zero_ns = 0;
 };
 
+/// The time that a packet states, in whole microseconds, from that of its first firing.
+std::int64_t packet_time_ns(const CloudSource& source, std::int64_t first_ns) {
+  constexpr std::int64_t kMicrosecondNs = 1000;
+  const std::int64_t time_ns = first_ns + packet_time_offset_ns(source.sensor, source.beams);
+  return time_ns - time_ns % kMicrosecondNs;
+}
+
 CloudTimes cloud_times(const CloudSource& source, const CloudMessageOptions& options) {
   const auto [frame, sensor, beams] = source;
   std::int64_t first_ns = frame.stamp_ns + first_time_ns(beams);
   if (options.stamp == StampRule::first_point && options.misses == Misses::omitted) {
     if (const auto first = first_return_ns(frame, beams)) first_ns = frame.stamp_ns + *first;
   }
+  if (options.packet_stamps) return {packet_time_ns(source, first_ns), first_ns};
   if (options.stamp != StampRule::last_packet) return {first_ns, first_ns};
   const std::size_t columns = columns_per_packet(sensor, beams);
   const double period_ns = column_period_ns(sensor, beams);
@@ -118,7 +126,7 @@ void count_from(std::int64_t zero_ns, bool can_be_negative, Column& column) {
     values[i] = static_cast<std::uint32_t>(std::max<std::int64_t>(0, counted[i]));
 }
 
-/// The stamp of each point becomes that of the first firing of its packet.
+/// The stamp of each point becomes the time that its packet states.
 void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32_t>& points,
                         Column& column) {
   const Beams& beams = source.beams;
@@ -133,7 +141,7 @@ void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32
   }
   auto& stamps = std::get<std::vector<std::int64_t>>(column.values);
   for (std::size_t i = 0; i < points.size(); ++i)
-    stamps[i] = first_ns[points[i] % beams.cols / columns];
+    stamps[i] = packet_time_ns(source, first_ns[points[i] % beams.cols / columns]);
 }
 
 /// Coordinates of misses as the options ask for them.

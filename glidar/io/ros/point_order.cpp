@@ -20,6 +20,17 @@ std::size_t columns_per_packet(const Sensor& sensor, const Beams& beams) {
   return std::max<std::size_t>(1, kPacketPoints / std::max<std::size_t>(1, beams.rows));
 }
 
+std::int64_t packet_time_offset_ns(const Sensor& sensor, const Beams& beams) {
+  const HesaiModel* model = find_hesai_model(sensor);
+  const auto* spinning = std::get_if<Spinning>(&sensor.optics);
+  if (model == nullptr || spinning == nullptr || spinning->channels.empty()) return 0;
+  const auto earliest = std::min_element(
+      spinning->channels.begin(), spinning->channels.end(),
+      [](const auto& a, const auto& b) { return a.fire_time_ns < b.fire_time_ns; });
+  const double start_ns = sequence_start_ns(*model, 0, columns_per_packet(sensor, beams));
+  return -std::llround(start_ns + earliest->fire_time_ns);
+}
+
 std::vector<std::size_t> row_shifts(const Sensor& sensor, const Beams& beams) {
   std::vector<std::size_t> shifts(beams.rows, 0);
   const auto* spinning = std::get_if<Spinning>(&sensor.optics);

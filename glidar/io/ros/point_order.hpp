@@ -24,6 +24,9 @@ enum class PointOrder : std::uint8_t {
 /// about 384 points.
 std::size_t columns_per_packet(const Sensor& sensor, const Beams& beams);
 
+/// The time that such a packet states, ns after its first firing; 0 for other makers' packets.
+std::int64_t packet_time_offset_ns(const Sensor& sensor, const Beams& beams);
+
 /// The columns by which the rows of an Ouster's images are shifted: pixel_shift_by_row.
 std::vector<std::size_t> row_shifts(const Sensor& sensor, const Beams& beams);
 
