@@ -52,11 +52,13 @@ def rotation(q):
 
 
 class DriverTest(CliTest):
+    BAG = "run.mcap"
+
     def publish(self, *arguments, duration="0.1"):
         """Messages by topic, with the time at which they were recorded."""
-        self.succeed("render", *arguments, "--duration", duration, "-o", "run.mcap")
+        self.succeed("render", *arguments, "--duration", duration, "-o", self.BAG)
         found = {}
-        with AnyReader([Path(self.folder, "run.mcap")]) as reader:
+        with AnyReader([Path(self.folder, self.BAG)]) as reader:
             for connection, time_ns, raw in reader.messages():
                 message = reader.deserialize(raw, connection.msgtype)
                 found.setdefault(connection.topic, []).append((time_ns, message))

@@ -215,6 +215,55 @@ class Drivers(DriverTest):
         self.publish(*OPEN, "--sensor", "RS-LiDAR-16", "--as", "robosense", "--layout", "robosense")
         self.assertEqual(layout(self.first("/rslidar_points")), [*XYZI, ("ring", 16, U16), ("timestamp", 18, F64)])
 
+    CIRCLE = """models: [{model: "builtin:box:size=20,16,6"}]
+sensors: [{name: lidar, sensor: SENSOR, pose: {position: [0.2, 0, 0.3]}}]
+imus: [{name: imu, imu: {rate_hz: 200}, pose: {position: [0.2, 0, 0.3]}}]
+rig_pose: {position: [1, 0.5, 0]}
+rig_motion: {twist: {velocity_m_s: [1, 0, 0], rate_deg_s: [0, 0, 30]}}
+"""
+    # The time of points in seconds; the units of the IMU.
+    MOVING = {
+        "velodyne": ("VLP-16", "/velodyne_points", "/imu/data", 1, 1,
+                     lambda c, p: stamp_s(c) + p["time"].astype(float) - 24 * 55.296e-6),
+        "ouster": ("OS1-32", "/ouster/points", "/ouster/imu", 1, 1, lambda c, p: stamp_s(c) + 1e-9 * p["t"]),
+        "livox": ("Livox-Mid-360", "/livox/lidar", "/livox/imu", 9.80665, 1, lambda c, p: 1e-9 * p["timestamp"]),
+        "robosense": ("RS-LiDAR-16", "/rslidar_points", "/rslidar_imu_data", 9.80665, 1, lambda c, p: p["timestamp"]),
+        "hesai": ("XT32", "/lidar_points", "/lidar_imu", 9.80665, math.radians(1), lambda c, p: p["timestamp"] - 175e-6),
+    }
+
+    def test_points_and_imu_samples_follow_from_the_motion(self):
+        """A circle of 12 m: points at the true pose of their time are on the walls, and the IMU feels the turn."""
+        layouts = {"livox": ("--layout", "livox"), "robosense": ("--layout", "robosense")}
+        rate, radius_m = math.radians(30), 1 / math.radians(30)
+        for driver, (sensor, topic, imu_topic, gravity, turn, seconds_of) in self.MOVING.items():
+            with self.subTest(driver):
+                self.write("circle.yaml", self.CIRCLE.replace("SENSOR", sensor))
+                self.publish("circle.yaml", "--ground-truth", "--as", driver, *layouts.get(driver, ()), duration="0.2")
+                start_s = 1767225600.0
+                for moving in ("/tf", imu_topic):  # from the start of the first frame on
+                    self.assertEqual(self.found[moving][0][0], 1767225600 * 10**9, moving)
+                cloud = self.found[topic][-1][1]
+                data = points(cloud).ravel()
+                xyz = np.stack([data[axis].astype(float) for axis in "xyz"])
+                kept = np.isfinite(xyz[0]) & (np.abs(xyz).max(axis=0) > 0)
+                angle = rate * (seconds_of(cloud, data)[kept] - start_s)
+                pose = self.matrix(cloud.header.frame_id)
+                body = pose[:3, :3] @ xyz[:, kept] + pose[:3, 3:]
+                world = np.stack([np.cos(angle) * body[0] - np.sin(angle) * body[1] + radius_m * np.sin(angle) + 1,
+                                  np.sin(angle) * body[0] + np.cos(angle) * body[1] + radius_m * (1 - np.cos(angle)) + 0.5,
+                                  body[2]])
+                errors = np.abs(np.abs(world) - np.array([[10], [8], [3]])).min(axis=0)
+                self.assertGreater(errors.size, 10_000)
+                self.assertLess(errors.max(), 0.006)  # 350 us of a packet; units of intensity and range of the makers
+                samples = [message for _, message in self.found[imu_topic]]
+                rotation = self.matrix(samples[0].header.frame_id)[:3, :3]
+                felt = [np.mean([[getattr(getattr(s, kind), axis) for axis in "xyz"] for s in samples], axis=0)
+                        for kind in ("angular_velocity", "linear_acceleration")]
+                # -w^2 times the place from the centre of the circle, and gravity
+                acceleration = [-0.2 * rate**2, radius_m * rate**2, 9.80665]
+                self.assertLess(np.abs(rotation @ felt[0] * turn - [0, 0, rate]).max(), 1e-6)
+                self.assertLess(np.abs(rotation @ felt[1] * gravity - acceleration).max(), 1e-5)
+
     RIG = """models: [{model: "builtin:box:size=20,16,6"}]
 sensors:
   - {name: front, sensor: VLP-16, pose: {position: [1, 0, 0]}}

@@ -166,24 +166,26 @@ class Dev(unittest.TestCase):
         self.assertIn("usage: ./dev COMMAND", errors)
         self.assertIn("dev: unknown command: frmat", errors)
 
-    def test_decoders_of_packets_that_cannot_be_installed_are_reported_and_tests_run_all_the_same(self):
+    def test_packages_that_cannot_be_installed_are_reported_and_tests_run_all_the_same(self):
         self.packages = "present build\n"
         for name in ("cmake", "ninja", "ctest"):
             self.program(name, RECORD)
-        for name in ("", "_rosbags", "_dds", "_packets"):
+        for name in ("", "_rosbags", "_dds", "_packets", "_slam"):
             venv = self.folder / f"build/venv{name.replace('_', '-')}"
             (venv / "bin").mkdir(parents=True)
             (self.folder / f"scripts/requirements{name}.txt").write_text("any==1\n", encoding="utf-8")
-            if name != "_packets":
+            if name not in ("_packets", "_slam"):
                 shutil.copy(self.folder / f"scripts/requirements{name}.txt", venv / "requirements.txt")
-        pip = self.folder / "build/venv-packets/bin/pip"
-        pip.write_text("#!/bin/bash\necho no wheel\nexit 1\n", encoding="utf-8")
-        pip.chmod(0o755)
-        status, output, errors, calls = self.dev("test")
-        self.assertEqual(status, 0)
-        self.assertIn("no wheel", errors)
-        self.assertIn("the test of packets with other decoders is skipped", output)
-        self.assertTrue(calls[-1].startswith("ctest --preset dev"), calls)
+                continue
+            (venv / "bin/pip").write_text("#!/bin/bash\necho no wheel\nexit 1\n", encoding="utf-8")
+            (venv / "bin/pip").chmod(0o755)
+        packets, odometry = "the test of packets with other decoders is skipped", "the test of odometry with other programs is skipped"
+        for options, reported in (((), [packets]), (("--all",), [packets, odometry])):
+            status, output, errors, calls = self.dev("test", *options)
+            self.assertEqual(status, 0)
+            self.assertIn("no wheel", errors)
+            self.assertEqual([line for line in (packets, odometry) if line in output], reported)
+            self.assertTrue(calls[-1].startswith("ctest --preset dev"), calls)
 
     def install(self, *arguments, path=""):
         """./dev install with CMake and ninja that only record."""

@@ -44,13 +44,6 @@ const HesaiModel& checked_model(const Sensor& sensor) {
   return *model;
 }
 
-/// Start of a sequence of the packet, nanoseconds after the packet's time.
-double start_ns(const HesaiModel& model, std::size_t sequence, std::size_t sequences) {
-  const double after = static_cast<double>(sequence);
-  const double from = model.counts_from_last ? static_cast<double>(sequences) - 1.0 : 0.0;
-  return model.block_offset_ns + (after - from) * model.block_period_ns;
-}
-
 class HesaiEncoder final : public PacketEncoder {
  public:
   explicit HesaiEncoder(const Sensor& sensor)
@@ -168,7 +161,7 @@ class HesaiDecoder final : public PacketDecoder {
     const std::size_t sequences = model_.blocks / per;
     for (std::size_t s = 0; s < sequences; ++s) {
       FiringSequence sequence;
-      sequence.stamp_ns = tail.stamp_ns + std::llround(start_ns(model_, s, sequences));
+      sequence.stamp_ns = tail.stamp_ns + std::llround(sequence_start_ns(model_, s, sequences));
       sequence.azimuth_rad = -0.01 * kDegree * packet.blocks[s * per].azimuth;
       sequence.returns.resize(model_.channels * per);
       for (std::size_t laser = 0; laser < model_.channels; ++laser) {

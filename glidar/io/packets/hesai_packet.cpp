@@ -67,6 +67,12 @@ const HesaiModel* find_hesai_model(const Sensor& sensor) {
   return nullptr;
 }
 
+double sequence_start_ns(const HesaiModel& model, std::size_t sequence, std::size_t sequences) {
+  const double after = static_cast<double>(sequence);
+  const double from = model.counts_from_last ? static_cast<double>(sequences) - 1.0 : 0.0;
+  return model.block_offset_ns + (after - from) * model.block_period_ns;
+}
+
 std::vector<std::byte> encode(const HesaiPacket& packet, const HesaiModel& model) {
   Bytes bytes = packet.head;
   for (const HesaiPacket::Block& block : packet.blocks) {

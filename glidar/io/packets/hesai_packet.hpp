@@ -50,6 +50,9 @@ struct HesaiPacket {
 /// The model of this sensor by its name; nullptr: none.
 const HesaiModel* find_hesai_model(const Sensor& sensor);
 
+/// Start of a firing sequence of a packet, nanoseconds after the time that the packet states.
+double sequence_start_ns(const HesaiModel& model, std::size_t sequence, std::size_t sequences);
+
 std::vector<std::byte> encode(const HesaiPacket& packet, const HesaiModel& model);
 /// Throws Error for another size, or another head.
 HesaiPacket decode_hesai_packet(std::span<const std::byte> payload, const HesaiModel& model);

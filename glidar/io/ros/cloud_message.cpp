@@ -29,6 +29,18 @@ std::size_t columns_per_packet(const Sensor& sensor, const Beams& beams) {
   return std::max<std::size_t>(1, kPacketPoints / std::max<std::size_t>(1, beams.rows));
 }
 
+/// The time that such a packet states, ns after its first firing; 0 for other makers' packets.
+std::int64_t packet_time_offset_ns(const Sensor& sensor, const Beams& beams) {
+  const HesaiModel* model = find_hesai_model(sensor);
+  const auto* spinning = std::get_if<Spinning>(&sensor.optics);
+  if (model == nullptr || spinning == nullptr || spinning->channels.empty()) return 0;
+  const auto earliest = std::min_element(
+      spinning->channels.begin(), spinning->channels.end(),
+      [](const auto& a, const auto& b) { return a.fire_time_ns < b.fire_time_ns; });
+  const double start_ns = sequence_start_ns(*model, 0, columns_per_packet(sensor, beams));
+  return -std::llround(start_ns + earliest->fire_time_ns);
+}
+
 /// The entries of the beams of a grid in an order other than PointOrder::firing and rows.
 std::vector<std::uint32_t> ordered_entries(const Sensor& sensor, const Beams& beams,
                                            PointOrder order) {
@@ -116,12 +128,20 @@ struct CloudTimes {
   std::int64_t zero_ns = 0;
 };
 
+/// The time that a packet states, in whole microseconds, from that of its first firing.
+std::int64_t packet_time_ns(const CloudSource& source, std::int64_t first_ns) {
+  constexpr std::int64_t kMicrosecondNs = 1000;
+  const std::int64_t time_ns = first_ns + packet_time_offset_ns(source.sensor, source.beams);
+  return time_ns - time_ns % kMicrosecondNs;
+}
+
 CloudTimes cloud_times(const CloudSource& source, const CloudMessageOptions& options) {
   const auto [frame, sensor, beams] = source;
   std::int64_t first_ns = frame.stamp_ns + first_time_ns(beams);
   if (options.stamp == StampRule::first_point && options.misses == Misses::omitted) {
     if (const auto first = first_return_ns(frame, beams)) first_ns = frame.stamp_ns + *first;
   }
+  if (options.packet_stamps) return {packet_time_ns(source, first_ns), first_ns};
   if (options.stamp != StampRule::last_packet) return {first_ns, first_ns};
   const std::size_t columns = columns_per_packet(sensor, beams);
   const double period_ns = column_period_ns(sensor, beams);
@@ -158,7 +178,7 @@ void count_from(std::int64_t zero_ns, bool can_be_negative, Column& column) {
     values[i] = static_cast<std::uint32_t>(std::max<std::int64_t>(0, counted[i]));
 }
 
-/// The stamp of each point becomes that of the first firing of its packet.
+/// The stamp of each point becomes the time that its packet states.
 void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32_t>& points,
                         Column& column) {
   const Beams& beams = source.beams;
@@ -173,7 +193,7 @@ void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32
   }
   auto& stamps = std::get<std::vector<std::int64_t>>(column.values);
   for (std::size_t i = 0; i < points.size(); ++i)
-    stamps[i] = first_ns[points[i] % beams.cols / columns];
+    stamps[i] = packet_time_ns(source, first_ns[points[i] % beams.cols / columns]);
 }
 
 /// Coordinates of misses as the options ask for them.

@@ -66,8 +66,10 @@ RigMotionPublisher::RigMotionPublisher(MessageSink& sink, const PublishedRig& ri
   for (const ImuTopicChoice& choice : imus) {
     Topic topic = make_topic<Imu>(choice.topic);
     if (choice.format != nullptr) topic.qos = choice.format->qos;
-    imus_.push_back(
-        {.topic = sink_.add_topic(topic), .frame_id = choice.frame_id, .format = choice.format});
+    imus_.push_back({.topic = sink_.add_topic(topic),
+                     .frame_id = choice.frame_id,
+                     .format = choice.format,
+                     .published_from_imu = choice.published_from_imu});
   }
 }
 
@@ -204,16 +206,16 @@ void RigMotionPublisher::write_imu_sample(std::size_t index) {
   static const ImuFormat kOwn;
   const ImuFormat& format = imu.format == nullptr ? kOwn : *imu.format;
   const glidar::Imu& errors = rig_.imus[index].imu;
-  const Pose published_from_imu = format.has_optical_axes ? optical_from_body() : Pose::Identity();
-  const Eigen::Matrix3d axes = published_from_imu.linear();
+  const Eigen::Matrix3d& axes = imu.published_from_imu;
   Imu message;
   message.header = {.stamp = time_from_ns(t_ns), .frame_id = imu.frame_id};
   const std::array<double, 4>& q = format.orientation_xyzw;
   message.orientation = {q[0], q[1], q[2], q[3]};
   message.orientation_covariance = format.orientation_covariance;
   if (has_imu_orientation_) {
-    const PoseVector pose =
-        to_xyz_wxyz(imu.samples.ground_truth.world_from_imu[sample] * published_from_imu.inverse());
+    Pose world_from_published = imu.samples.ground_truth.world_from_imu[sample];
+    world_from_published.linear() *= axes.transpose();
+    const PoseVector pose = to_xyz_wxyz(world_from_published);
     message.orientation = {pose[4], pose[5], pose[6], pose[3]};
     message.orientation_covariance = same_variances(kExactVariance);
   }

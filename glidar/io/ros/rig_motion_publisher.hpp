@@ -45,6 +45,7 @@ class RigMotionPublisher {
     std::size_t topic = 0;
     std::string frame_id;
     const ImuFormat* format = nullptr;
+    Eigen::Matrix3d published_from_imu = Eigen::Matrix3d::Identity();
     std::int64_t computed_ns = 0;  ///< until this time
     ImuSamples samples = {};
     std::size_t next = 0;  ///< of the samples

@@ -207,7 +207,10 @@ void RigPublisher::hold_cloud(std::size_t sensor, const CloudSource& source, std
   const SensorTopics& topics = topics_[sensor];
   const CloudMessageOptions& options = topics.cloud_options;
   const std::int64_t stamp_ns = cloud_stamp_ns(source, options);
-  held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});  // a pose
+  // poses and samples of IMUs begin with a frame, also if its stamp is its end
+  if (options.stamp == StampRule::last_packet)
+    held_.hold({.time_ns = source.frame.stamp_ns, .topic = std::nullopt, .bytes = {}});
+  held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});
   if (!is_wanted(topics.cloud)) return;
   OutputFrame axes = output_frame("sensor", source.beams, source.frame.world_from_sensor);
   axes.cloud_from_sensor = quarter_turned(topics.driver->quarter_turns);

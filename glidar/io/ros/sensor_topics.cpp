@@ -249,6 +249,14 @@ void append_transforms(const PublishedSensor& sensor, const SensorTopics& topics
       named(driver.imu->frame));
 }
 
+/// The axes in which a driver publishes an IMU: its own ones, or those of the points if it has no
+/// coordinate frame of its own.
+Eigen::Matrix3d published_from_imu(const SensorTopics& topics, const PublishedImu& imu) {
+  if (topics.driver->imu->has_optical_axes) return optical_from_body().linear();
+  if (topics.driver->imu->frame != topics.driver->frame) return Eigen::Matrix3d::Identity();
+  return topics.rig_from_published.linear().transpose() * imu.rig_from_imu.linear();
+}
+
 }  // namespace
 
 bool is_camera(const Sensor& sensor) {
@@ -284,7 +292,8 @@ std::vector<ImuTopicChoice> imu_topics(const PublishedRig& rig,
   const ImuFormat& format = *publisher->driver->imu;
   choices.front() = {topic_name(*publisher, format.topic),
                      frame_name(*publisher, format.frame, options), &format,
-                     static_cast<std::size_t>(std::distance(topics.begin(), publisher))};
+                     static_cast<std::size_t>(std::distance(topics.begin(), publisher)),
+                     published_from_imu(*publisher, rig.imus.front())};
   return choices;
 }
 

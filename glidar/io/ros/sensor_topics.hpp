@@ -75,6 +75,8 @@ struct ImuTopicChoice {
   std::string frame_id;
   const ImuFormat* format = nullptr;
   std::optional<std::size_t> sensor = {};  ///< whose driver publishes it
+  /// From the axes of the IMU to those of `frame_id`.
+  Eigen::Matrix3d published_from_imu = Eigen::Matrix3d::Identity();
 };
 
 [[nodiscard]] bool is_camera(const Sensor& sensor);

@@ -170,7 +170,7 @@ class Livox(unittest.TestCase):
         sdk = ctypes.CDLL(str(library))
         callback = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint8, ctypes.POINTER(EthernetPacket), ctypes.c_void_p)
         found = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_void_p, ctypes.c_void_p)
-        packets, samples, handles, done = [], [], [], threading.Event()
+        packets, samples, sensors, done = [], [], [], threading.Event()
 
         def on_points(_handle, device, packet, _data):
             data = ctypes.string_at(packet, packet.contents.length)
@@ -181,7 +181,10 @@ class Livox(unittest.TestCase):
         def on_imu(_handle, _device, packet, _data):
             samples.append(ctypes.string_at(packet, packet.contents.length))
 
-        kept = [callback(on_points), callback(on_imu), found(lambda handle, _info, _data: handles.append(handle))]
+        def on_sensor(handle, info, _data):
+            sensors.append((handle, ctypes.string_at(info, 33)))  # LivoxLidarInfo: type, sn[16], lidar_ip[16]
+
+        kept = [callback(on_points), callback(on_imu), found(on_sensor)]
         sdk.SetLivoxLidarPointCloudCallBack(kept[0], None)
         sdk.SetLivoxLidarImuDataCallback(kept[1], None)
         sdk.SetLivoxLidarInfoChangeCallback(kept[2], None)
@@ -196,7 +199,10 @@ class Livox(unittest.TestCase):
                 finished = done.wait(MAX_WAIT_S)
                 sdk.LivoxLidarSdkUninit()
         self.assertTrue(finished)
-        self.assertEqual(handles, [int.from_bytes(socket.inet_aton("127.0.0.2"), "little")])
+        ((handle, info),) = sensors
+        self.assertEqual(handle, int.from_bytes(socket.inet_aton("127.0.0.2"), "little"))
+        serial, address = (text.split(b"\0")[0] for text in (info[1:], info[17:]))  # as C programs print them
+        self.assertEqual((info[0], serial, address), (9, b"GLIDAR000000001", b"127.0.0.2"))
         self.assertEqual({device for device, _ in packets}, {9})
         kind = np.dtype([("xyz", "<i4", 3), ("reflectivity", "u1"), ("tag", "u1")])
         points = np.concatenate([np.frombuffer(data[36:], kind)["xyz"] for _, data in packets]) * 1e-3

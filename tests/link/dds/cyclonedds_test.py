@@ -114,6 +114,44 @@ class CycloneDds(DdsTest):
         self.assertIn(ENCLAVE, [bytes(sample.qos[Policy.Userdata].data) for sample in participants
                                 if Policy.Userdata in sample.qos])
 
+    def test_topics_of_a_driver_arrive_with_its_qos_fields_and_dates(self):
+        """`--as ouster` with a trajectory that has dates, of which no double holds the nanoseconds."""
+        recorded, frame_ns = 1_700_000_000_123_456_789, 10**8
+        (self.folder / "drive.tum").write_text("".join(
+            f"{1_700_000_000 + k}.123456789 {k} 0 0 0 0 0 1\n" for k in range(3)))
+        best_effort = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(5),
+                          Policy.DataRepresentation(use_cdrv0_representation=True))
+
+        points = Topic(self.participant, "rt/ouster/points", ros_types.PointCloud2, qos=best_effort)
+        cloud_reader, reliable_reader = (DataReader(self.participant, points, qos=of) for of in (best_effort, qos()))
+        imu_reader = DataReader(self.participant, Topic(self.participant, "rt/ouster/imu", ros_types.Imu, qos=best_effort),
+                                qos=best_effort)
+        self.start("glidar", "stream", "builtin:box:size=20,16,6", "--ground-truth", "--sensor", "OS1-32", "--imu", "ICM-20948",
+                   "--trajectory", "drive.tum", "--as", "ouster", "--ros2")
+        clouds, samples = [], []
+
+        def collect():
+            for taken, source in ((clouds, cloud_reader), (samples, imu_reader)):
+                taken += [sample for sample in source.take(100) if hasattr(sample, "header")]
+            return len(clouds) >= 2 and len(samples) >= 5
+        wait_until(collect, "clouds and samples")
+        self.assertEqual(len(cloud_reader.get_matched_publications()), 1)
+        self.assertEqual(reliable_reader.get_matched_publications(), [])  # DLIO and FAST-LIO have such readers
+        fields = [("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("intensity", 16, 7), ("t", 20, 6), ("reflectivity", 24, 4),
+                  ("ring", 26, 4), ("ambient", 28, 4), ("range", 32, 6)]
+        for cloud in clouds:
+            stamp_ns = cloud.header.stamp.sec * 10**9 + cloud.header.stamp.nanosec
+            self.assertEqual((cloud.header.frame_id, (stamp_ns - recorded) % frame_ns), ("os_lidar", 0))
+            self.assertEqual([(field.name, field.offset, field.datatype) for field in cloud.fields], fields)
+            self.assertEqual((cloud.height, cloud.width, cloud.point_step), (32, 1024, 48))
+            times = sorted({int.from_bytes(bytes(cloud.data[at + 20:at + 24]), "little")
+                            for at in range(0, len(cloud.data), 48)})
+            self.assertEqual(len(times), 1024)
+            self.assertLessEqual(max(abs(t - k * frame_ns / 1024) for k, t in enumerate(times)), 1)
+        for sample in samples:
+            stamp_ns = sample.header.stamp.sec * 10**9 + sample.header.stamp.nanosec
+            self.assertEqual((sample.header.frame_id, (stamp_ns - recorded) % (frame_ns // 10)), ("os_imu", 0))
+
     def publish(self, topic, kind, samples, *policies):
         """Writes messages until the peer has printed a line, which it returns."""
         of = qos(*policies)
