@@ -7,8 +7,9 @@
 
 namespace glidar::import {
 
-/// Restricts this process to reading files below `root`. If the kernel supports it, also forbids
-/// TCP, abstract UNIX sockets and signals to other processes. Returns the reason for a failure, or
+/// Restricts this process to reading the file `root`, or files below that folder. If the kernel
+/// supports it, also forbids TCP, abstract UNIX sockets and signals to other processes. Returns the
+/// reason for a failure, or
 /// "". Needs PR_SET_NO_NEW_PRIVS.
 std::string restrict_files(const std::filesystem::path& root);
 
