@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bags of an OS1-128 in a street: frames written while the next one is measured, relative to frames
 // measured alone; and the bytes of frames that are ready, relative to the same bytes written to a
-// plain file. GLIDAR_BENCH_FOLDER selects the disk [the current folder].
+// plain file; and bags read by the sandboxed process, relative to bags read in this one.
+// GLIDAR_BENCH_FOLDER selects the disk [the current folder].
 #include "ratio_reporter.hpp"
 
 #include <apps/glidar/run/delivery.hpp>
+#include <glidar/io/bags/bag_clouds.hpp>
+#include <glidar/io/bags/bag_records.hpp>
+#include <glidar/io/bags/bag_topics.hpp>
 #include <glidar/io/bags/frame_bag.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
@@ -13,10 +17,12 @@
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/simulate/simulator.hpp>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glidar::bench {
@@ -112,6 +118,72 @@ void write_plain(benchmark::State& state, const Street& street) {
   state.SetBytesProcessed(state.iterations() * kFrames * static_cast<std::int64_t>(bytes.size()));
 }
 
+/// A bag of the street with this compression. Returns its path.
+std::filesystem::path write_input(const Street& street, bags::Compression compression) {
+  FrameBag plain(street.bag(), street.loaded.scene, street.sensor, *street.beams);
+  Frame frame;
+  for (std::uint32_t number = 0; number < kFrames; ++number) {
+    street.measure(number, frame);
+    plain.write(frame, *street.beams);
+  }
+  plain.finish();
+  if (compression == bags::Compression::none) return street.bag();
+  const std::filesystem::path path = street.folder / "bag_bench_packed.mcap";
+  const auto from = bags::open_bag_unconfined(street.bag());
+  const auto to = bags::create_bag(path, {.compression = compression});
+  for (const bags::StoredTopic& topic : from->topics())
+    to->add_topic({topic.name, bags::type_of(topic), bags::type_of(topic)->qos});
+  for (bags::BagMessage message; from->next(message);)
+    to->write(message.topic, message.time_ns, message.data);
+  to->finish();
+  return path;
+}
+
+using OpenBag = std::unique_ptr<bags::BagReader> (*)(const std::filesystem::path&);
+
+void read_messages(benchmark::State& state, const std::filesystem::path& path, OpenBag open) {
+  for (auto _ : state) {
+    const auto bag = open(path);
+    for (bags::BagMessage message; bag->next(message);) benchmark::DoNotOptimize(message.data);
+  }
+  state.SetItemsProcessed(state.iterations() * kFrames);
+}
+
+void read_clouds(benchmark::State& state, const std::filesystem::path& path, OpenBag open) {
+  for (auto _ : state) {
+    bags::BagClouds clouds(open(path), path, {});
+    for (bags::BagCloud cloud; clouds.next(cloud);) benchmark::DoNotOptimize(cloud.cloud);
+  }
+  state.SetItemsProcessed(state.iterations() * kFrames);
+}
+
+void add_reading(const std::filesystem::path& folder, std::vector<Ratio>& ratios) {
+  const auto street = std::make_shared<const Street>(1, folder);
+  using Read = void (*)(benchmark::State&, const std::filesystem::path&, OpenBag);
+  const std::array<std::pair<const char*, Read>, 2> reads = {
+      {{"messages", read_messages}, {"clouds", read_clouds}}};
+  for (const auto compression : {bags::Compression::none, bags::Compression::zstd}) {
+    const bool is_packed = compression != bags::Compression::none;
+    for (const auto& [what, read] : reads) {
+      const std::string name = std::string(what) + (is_packed ? " of a zstd bag" : " of a bag");
+      const auto enter = [&, read = read](const std::string& title, OpenBag open) {
+        benchmark::RegisterBenchmark(title.c_str(),
+                                     [=](benchmark::State& state) {
+                                       write_input(*street, compression);
+                                       read(state, *street, open);
+                                     })
+            ->UseRealTime()
+            ->Unit(benchmark::kMillisecond);
+      };
+      enter(name + ", in this process", bags::open_bag_unconfined);
+      enter(name + ", sandboxed", bags::open_bag);
+      constexpr double kGoal = 1.0 / 1.2;
+      ratios.push_back({name + ": sandboxed / in this process", name + ", in this process",
+                        name + ", sandboxed", kGoal});
+    }
+  }
+}
+
 void add(unsigned threads, const std::filesystem::path& folder, std::vector<Ratio>& ratios) {
   const auto street = std::make_shared<const Street>(threads, folder);
   const std::string end = ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
@@ -140,8 +212,10 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = chosen == nullptr ? "." : chosen;
   std::vector<glidar::bench::Ratio> ratios;
   for (const unsigned threads : {1U, 2U}) glidar::bench::add(threads, folder, ratios);
+  glidar::bench::add_reading(folder, ratios);
   const int result = glidar::bench::run(argc, argv, ratios);
   std::filesystem::remove(folder / "bag_bench.mcap");
+  std::filesystem::remove(folder / "bag_bench_packed.mcap");
   std::filesystem::remove(folder / "bag_bench.plain");
   return result;
 }

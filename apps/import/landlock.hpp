@@ -16,9 +16,9 @@ struct FileRestriction {
   bool covers_truncation = false;  ///< from version 3; older ones let readers truncate files
 };
 
-/// Restricts this process to reading files below `root`. If the kernel supports it, also forbids
-/// TCP, abstract UNIX sockets and signals to other processes. Uses no version of the interface
-/// above `newest`. Needs PR_SET_NO_NEW_PRIVS.
+/// Restricts this process to reading the file `root`, or files below that folder. If the kernel
+/// supports it, also forbids TCP, abstract UNIX sockets and signals to other processes. Uses no
+/// version of the interface above `newest`. Needs PR_SET_NO_NEW_PRIVS.
 FileRestriction restrict_files(const std::filesystem::path& root, long newest = kNewestLandlock);
 
 }  // namespace glidar::import

@@ -3,13 +3,20 @@
 
 // glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
 // Reads one model and writes one block (glidar/io/model/mesh_blob.hpp) to descriptor 3: the model,
-// or the error. It reads the model in a sandbox (sandbox.hpp). Progress in percent goes to
-// descriptor 4, one byte each. The GLIDAR library starts it; it is not for direct use.
+// or the error. Progress in percent goes to descriptor 4, one byte each.
+//
+// glidar-import --decode KIND PATH MEMORY_BYTES TIME_S PARENT
+// Reads a bag, capture or image and writes its records (glidar/io/decoder/record_stream.hpp) to
+// descriptor 3; requests come from descriptor 4.
+//
+// It reads in a sandbox (sandbox.hpp). The GLIDAR library starts it; it is not for direct use.
 
+#include <import/decode_file.hpp>
 #include <import/import_model.hpp>
 #include <import/process_limits.hpp>
 #include <import/sandbox.hpp>
 
+#include <glidar/io/decoder/helper_process.hpp>
 #include <glidar/io/files/checksummed_block.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/model_folder.hpp>
@@ -26,22 +33,17 @@
 namespace glidar::import {
 namespace {
 
-constexpr int kAnswerFd = 3;
-constexpr int kProgressFd = 4;
 constexpr int kExitAnswered = 0;
 constexpr int kExitFailed = 2;
-constexpr int kExitNoMemory = 3;
-constexpr int kExitFileSize = 4;
 
 void report_progress(double fraction) {
   const auto percent = static_cast<unsigned char>(fraction <= 1.0 ? fraction * 100.0 : 100.0);
   // Progress is optional: a full or closed pipe must not stop the work.
-  [[maybe_unused]] const ssize_t written = ::write(kProgressFd, &percent, 1);
+  [[maybe_unused]] const ssize_t written = ::write(kControlFd, &percent, 1);
 }
 
 int answer(const char* const* arguments) {
-  const std::vector<std::string> notes =
-      enter_sandbox(model_folder(arguments[1]).root, kProgressFd);
+  const std::vector<std::string> notes = enter_sandbox(model_folder(arguments[1]).root, kControlFd);
   try {
     ImportedModel imported =
         import_model(arguments[1], std::strtod(arguments[2], nullptr), report_progress);
@@ -53,17 +55,26 @@ int answer(const char* const* arguments) {
   return kExitAnswered;
 }
 
+int answer_records(const char* const* arguments) {
+  const std::string path = arguments[3];
+  enter_sandbox(path, kControlFd);
+  return decode_file(arguments[2], path, {kAnswerFd, kControlFd}) ? kExitAnswered : kExitFailed;
+}
+
 int run(int argc, const char* const* argv) {
-  constexpr int kArguments = 6;
-  if (argc != kArguments) return kExitFailed;
+  constexpr int kModelArguments = 6;
+  const bool is_model = argc == kModelArguments;
+  if (!is_model && (argc != kModelArguments + 1 || std::string(argv[1]) != kDecodeOption))
+    return kExitFailed;
   // A fixed threshold returns every large block to the system: glibc's own adapts and keeps some.
   constexpr int kLarge_bytes = 1 << 20;
   ::mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
-  const ProcessLimits limits{std::strtoull(argv[3], nullptr, 10), std::strtod(argv[4], nullptr),
-                             std::strtoll(argv[5], nullptr, 10)};
+  const char* const* last = argv + argc - 3;
+  const ProcessLimits limits{std::strtoull(last[0], nullptr, 10), std::strtod(last[1], nullptr),
+                             std::strtoll(last[2], nullptr, 10)};
   if (!apply(limits)) return kExitFailed;
   try {
-    return answer(argv);
+    return is_model ? answer(argv) : answer_records(argv);
   } catch (const std::bad_alloc&) {
     return kExitNoMemory;
   } catch (const FileSizeLimit&) {

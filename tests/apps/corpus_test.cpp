@@ -54,6 +54,7 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"mcap", {"chunk", "plain", "lz4", "cloud_and_poses", "velodyne_packets", "ouster_packets"}},
       {"rosbag1", {"chunk", "lz4"}},
       {"rosbag2", {"database"}},
+      {"bag_records", {"two_messages"}},
       {"ouster_source", {"plain"}},
       {"packets",
        {"vlp16", "vlp16_dual", "hdl32", "xt32", "qt64", "pandar64_dual", "ouster", "ouster_dual",

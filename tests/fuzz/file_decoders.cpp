@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_decoders.hpp"
 
+#include "demand.hpp"
 #include "depth_decoders.hpp"
 #include "model_decoders.hpp"
 #include "packet_decoders.hpp"
@@ -10,6 +11,8 @@
 #include <apps/glidar/run/packet_frames.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_clouds.hpp>
+#include <glidar/io/bags/bag_poses.hpp>
+#include <glidar/io/bags/bag_records.hpp>
 #include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/ray_file.hpp>
 #include <glidar/io/config/scene_file.hpp>
@@ -139,14 +142,14 @@ void try_contents(const std::function<void()>& read) {
 }
 
 void read_clouds(const fs::path& bag) {
-  bags::BagClouds clouds(bag);
+  bags::BagClouds clouds(bags::open_bag_unconfined(bag), bag, {});
   bags::BagCloud cloud;
   while (clouds.next(cloud)) {
   }
 }
 
 void read_packet_topics(const fs::path& bag) {
-  const auto packets = app::open_packets(bag, {});
+  const auto packets = app::packets_of(bags::open_bag_unconfined(bag), bag, {});
   UdpPacket packet;
   while (packets->next(packet)) {
   }
@@ -155,13 +158,31 @@ void read_packet_topics(const fs::path& bag) {
 /// All messages; then clouds, poses, packets and metadata, as the commands read them.
 void read_bag(const fs::path& file) {
   try_contents([&] { read_clouds(file); });
-  try_contents([&] { load_trajectory_file(file); });
+  try_contents([&] { bags::read_bag_poses(*bags::open_bag_unconfined(file), file, {}); });
   try_contents([&] { read_packet_topics(file); });
-  try_contents([&] { app::ouster_metadata_of(file); });
-  const auto bag = bags::open_bag(file);
+  try_contents([&] { app::ouster_metadata_of(*bags::open_bag_unconfined(file)); });
+  const auto bag = bags::open_bag_unconfined(file);
   bags::BagMessage message;
   while (bag->next(message)) {
   }
+}
+
+/// The file is what the sandboxed process sends of a bag of the same size.
+void read_bag_records(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  std::span<const std::byte> left = std::as_bytes(std::span(text));
+  const auto source = [&](std::span<std::byte> to) {
+    const std::size_t size = std::min(to.size(), left.size());
+    std::copy_n(left.begin(), size, to.begin());
+    left = left.subspan(size);
+    return size;
+  };
+  constexpr std::uint64_t kMaxPayload = std::uint64_t{1} << 30U;
+  const auto bag = bags::receive_bag(
+      {RecordReader(source, file.string(), kMaxPayload), [](auto) {}, text.size()});
+  bags::BagMessage message;
+  while (bag->next(message)) demand(message.topic < bag->topics().size(), "a topic is known");
 }
 
 /// The file is the database of a bag of ROS 2, or its metadata.
@@ -190,7 +211,7 @@ void read_calibration(const fs::path& file) {
   apply_calibration(file, camera);
 }
 
-constexpr std::array<FileDecoder, 29> kDecoders = {{
+constexpr std::array<FileDecoder, 30> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
@@ -199,8 +220,8 @@ constexpr std::array<FileDecoder, 29> kDecoders = {{
     {"ouster", "metadata.json", [](const fs::path& file) { load_ouster_metadata(file); }},
     {"calibration", "calibration.yaml", read_calibration},
     {"trajectory", "poses.txt", [](const fs::path& file) { load_trajectory_file(file); }},
-    {"png", "texture.png", [](const fs::path& file) { read_png_texture(file); }},
-    {"grey_png", "image.png", [](const fs::path& file) { load_grey_image(file); }},
+    {"png", "texture.png", [](const fs::path& file) { read_png_texture_unconfined(file); }},
+    {"grey_png", "image.png", [](const fs::path& file) { load_grey_image_unconfined(file); }},
     {"sidecar", "cloud.pcd.json", read_sidecar_of_cloud},
     {"recording", "stream.jsonl", read_recording},
     {"mesh_blob", "a.model", read_block},
@@ -210,6 +231,7 @@ constexpr std::array<FileDecoder, 29> kDecoders = {{
     {"mcap", "run.mcap", read_bag},
     {"rosbag1", "run.bag", read_bag},
     {"rosbag2", "metadata.yaml", read_rosbag2},
+    {"bag_records", "bag.records", read_bag_records},
     {"ouster_source", "metadata.json", [](const fs::path& file) { load_ouster_source(file); }},
     {"packets", "packets.bin", read_packets},
     {"pcap", "scan.pcap", read_capture},

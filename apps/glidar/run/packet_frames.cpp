@@ -5,11 +5,12 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_topics.hpp>
 #include <glidar/io/packets/ouster_packet.hpp>
-#include <glidar/io/packets/pcap_file.hpp>
+#include <glidar/io/packets/packet_records.hpp>
 #include <glidar/io/packets/velodyne_packet.hpp>
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace glidar::app {
 namespace {
@@ -20,14 +21,15 @@ class CaptureSource final : public PacketSource {
   bool next(UdpPacket& packet) override { return reader_.next(packet); }
 
  private:
-  PcapReader reader_;
+  CapturedPackets reader_;
 };
 
 /// The packets of velodyne_msgs/VelodyneScan.
 class ScanSource final : public PacketSource {
  public:
-  ScanSource(const std::filesystem::path& path, const std::string& topic)
-      : bag_(bags::open_bag(path)) {
+  ScanSource(std::unique_ptr<bags::BagReader> bag, const std::filesystem::path& path,
+             const std::string& topic)
+      : bag_(std::move(bag)) {
     const std::array types = {&ros::message_type<ros::VelodyneScan>()};
     const std::size_t found = bags::find_topic(*bag_, topic, types, path);
     wire_ = bag_->topics()[found].wire;
@@ -57,8 +59,9 @@ class ScanSource final : public PacketSource {
 /// The packets of ouster_sensor_msgs/PacketMsg.
 class OusterMessageSource final : public PacketSource {
  public:
-  OusterMessageSource(const std::filesystem::path& path, const std::string& topic)
-      : bag_(bags::open_bag(path)) {
+  OusterMessageSource(std::unique_ptr<bags::BagReader> bag, const std::filesystem::path& path,
+                      const std::string& topic)
+      : bag_(std::move(bag)) {
     const std::array types = {&ros::message_type<ros::PacketMsg>()};
     const std::size_t found =
         bags::find_topic(*bag_, topic.empty() ? lidar_topic() : topic, types, path);
@@ -89,9 +92,8 @@ class OusterMessageSource final : public PacketSource {
 };
 
 /// Whether the bag, or this topic of it, has the messages of Ouster's driver.
-bool has_ouster_messages(const std::filesystem::path& path, const std::string& topic) {
-  const auto bag = bags::open_bag(path);
-  return std::any_of(bag->topics().begin(), bag->topics().end(),
+bool has_ouster_messages(const bags::BagReader& bag, const std::string& topic) {
+  return std::any_of(bag.topics().begin(), bag.topics().end(),
                      [&](const bags::StoredTopic& stored) {
                        return (topic.empty() || stored.name == topic) &&
                               bags::type_of(stored) == &ros::message_type<ros::PacketMsg>();
@@ -108,24 +110,31 @@ bool is_padding(const DecodedFrame& decoded) {
 
 std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path,
                                            const std::string& topic) {
-  if (bags::is_bag_path(path)) {
-    if (has_ouster_messages(path, topic)) return std::make_unique<OusterMessageSource>(path, topic);
-    return std::make_unique<ScanSource>(path, topic);
-  }
+  if (bags::is_bag_path(path)) return packets_of(bags::open_bag(path), path, topic);
   return std::make_unique<CaptureSource>(path);
 }
 
+std::unique_ptr<PacketSource> packets_of(std::unique_ptr<bags::BagReader> bag,
+                                         const std::filesystem::path& path,
+                                         const std::string& topic) {
+  if (has_ouster_messages(*bag, topic))
+    return std::make_unique<OusterMessageSource>(std::move(bag), path, topic);
+  return std::make_unique<ScanSource>(std::move(bag), path, topic);
+}
+
 std::string ouster_metadata_of(const std::filesystem::path& path) {
-  if (!bags::is_bag_path(path)) return {};
-  const auto bag = bags::open_bag(path);
-  for (std::size_t i = 0; i < bag->topics().size(); ++i) {
-    const bags::StoredTopic topic = bag->topics()[i];
+  return bags::is_bag_path(path) ? ouster_metadata_of(*bags::open_bag(path)) : std::string();
+}
+
+std::string ouster_metadata_of(bags::BagReader& bag) {
+  for (std::size_t i = 0; i < bag.topics().size(); ++i) {
+    const bags::StoredTopic topic = bag.topics()[i];
     if (bags::type_of(topic) != &ros::message_type<ros::String>() ||
         !topic.name.bytes().ends_with("metadata"))
       continue;
-    bag->select({&i, 1});
+    bag.select({&i, 1});
     bags::BagMessage message;
-    if (!bag->next(message)) return {};
+    if (!bag.next(message)) return {};
     return ros::deserialize<ros::String>(message.data, topic.wire).data;
   }
   return {};

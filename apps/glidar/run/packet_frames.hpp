@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/packets/packet_codec.hpp>
 
 #include <cstddef>
@@ -30,10 +31,15 @@ class PacketSource {
 /// the first one that fits. Throws Error when there is no such file or topic.
 std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path,
                                            const std::string& topic);
+/// Those of a bag that is open; `path` names it in errors.
+std::unique_ptr<PacketSource> packets_of(std::unique_ptr<bags::BagReader> bag,
+                                         const std::filesystem::path& path,
+                                         const std::string& topic);
 
 /// The metadata that Ouster's driver records in a bag: the first message of the first topic of text
 /// messages named `metadata`. Empty: none, or no bag.
 std::string ouster_metadata_of(const std::filesystem::path& path);
+std::string ouster_metadata_of(bags::BagReader& bag);
 
 /// The frames of a file of packets, one for each revolution.
 class PacketFrames {

@@ -3,6 +3,8 @@
 #include <glidar/io/bags/bag.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag_file.hpp>
+#include <glidar/io/bags/bag_records.hpp>
 #include <glidar/io/bags/mcap_reader.hpp>
 #include <glidar/io/bags/mcap_writer.hpp>
 #include <glidar/io/bags/rosbag1_reader.hpp>
@@ -18,6 +20,12 @@ namespace {
 /// Without the separators that shells append to folders.
 std::filesystem::path without_separators(const std::filesystem::path& path) {
   return path.has_filename() ? path : path.parent_path();
+}
+
+/// Throws Error when the suffix names no bag.
+bool is_rosbag2(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored) || bag_format_for(path) == BagFormat::rosbag2;
 }
 
 }  // namespace
@@ -58,17 +66,22 @@ std::unique_ptr<BagWriter> create_bag(const std::filesystem::path& path,
 
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path) {
   const std::filesystem::path name = without_separators(path);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(name, ignored)) return open_rosbag2(name);
-  switch (bag_format_for(name)) {
-    case BagFormat::mcap:
-      return open_mcap(name);
-    case BagFormat::rosbag2:
-      return open_rosbag2(name);
-    case BagFormat::rosbag1:
-      break;
+  // Here, because the sandboxed process cannot look for files of a similar name.
+  if (is_rosbag2(name)) {
+    require_metadata(name);
+  } else {
+    BagFile file(name);
   }
-  return open_rosbag1(name);
+  return receive_bag(start_decoder(kBagDecoder, name));
+}
+
+std::unique_ptr<BagReader> open_bag_unconfined(const std::filesystem::path& path) {
+  if (is_rosbag2(path)) return open_rosbag2(path);
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  auto budget = std::make_shared<InputBudget>(error ? 0 : size);
+  if (bag_format_for(path) == BagFormat::mcap) return open_mcap(path, std::move(budget));
+  return open_rosbag1(path, std::move(budget));
 }
 
 }  // namespace glidar::bags

@@ -78,8 +78,11 @@ class BagReader {
   virtual bool next(BagMessage& message) = 0;
 };
 
-/// Opens a bag. A folder of rosbag2 may have any name and several files. Throws Error when it is
-/// missing, damaged, incomplete, or compressed in a way that is not supported.
+/// Opens a bag. A folder of rosbag2 may have any name and several files, which must not be links to
+/// files outside. The sandboxed process glidar-import reads it; it ends with the reader, or with
+/// the thread that opened it. Throws Error when the bag is missing, damaged, incomplete, or
+/// compressed in a way that is not supported, and when it exceeds the limits of an input of its
+/// size.
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path);
 
 }  // namespace glidar::bags

@@ -6,6 +6,7 @@
 #include <glidar/io/ros/cloud_from_message.hpp>
 
 #include <array>
+#include <utility>
 
 namespace glidar::bags {
 namespace {
@@ -20,8 +21,9 @@ void convert(const BagMessage& from, ros::Wire wire, BagCloud& to) {
 
 }  // namespace
 
-BagClouds::BagClouds(const std::filesystem::path& path, const std::string& topic)
-    : bag_(open_bag(path)) {
+BagClouds::BagClouds(std::unique_ptr<BagReader> bag, const std::filesystem::path& path,
+                     const std::string& topic)
+    : bag_(std::move(bag)) {
   const ros::MessageType* custom = &ros::message_type<ros::CustomMsg>();
   const std::array types = {&ros::message_type<ros::PointCloud2>(), custom};
   const std::size_t found = find_topic(*bag_, topic, types, path);

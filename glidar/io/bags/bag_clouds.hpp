@@ -21,7 +21,11 @@ class BagClouds {
  public:
   /// `topic` empty: the first one. Throws Error as open_bag() does, and when there is no such
   /// topic.
-  explicit BagClouds(const std::filesystem::path& path, const std::string& topic = {});
+  explicit BagClouds(const std::filesystem::path& path, const std::string& topic = {})
+      : BagClouds(open_bag(path), path, topic) {}
+  /// `path` names the bag in errors.
+  BagClouds(std::unique_ptr<BagReader> bag, const std::filesystem::path& path,
+            const std::string& topic);
 
   [[nodiscard]] const StoredTopic& topic() const { return topic_; }
   /// False at the end. Throws Error when a message is damaged.

@@ -145,14 +145,18 @@ std::size_t pose_topic(const BagReader& bag, const PoseSelection& selection,
 
 std::vector<TimedPose> read_bag_poses(const std::filesystem::path& path,
                                       const PoseSelection& selection) {
-  const std::unique_ptr<BagReader> bag = open_bag(path);
-  const std::size_t topic = pose_topic(*bag, selection, path);
-  const StoredTopic stored = bag->topics()[topic];
+  return read_bag_poses(*open_bag(path), path, selection);
+}
+
+std::vector<TimedPose> read_bag_poses(BagReader& bag, const std::filesystem::path& path,
+                                      const PoseSelection& selection) {
+  const std::size_t topic = pose_topic(bag, selection, path);
+  const StoredTopic stored = bag.topics()[topic];
   const ros::MessageType* type = type_of(stored);
-  bag->select({&topic, 1});
+  bag.select({&topic, 1});
   PoseCollector collector(path, selection);
   BagMessage message;
-  while (bag->next(message)) add_message(type, message.data, stored.wire, collector);
+  while (bag.next(message)) add_message(type, message.data, stored.wire, collector);
   std::vector<TimedPose> poses = collector.chosen();
   std::ranges::stable_sort(poses, {}, [](const TimedPose& pose) { return pose.t_ns; });
   const auto same_time = [](const TimedPose& a, const TimedPose& b) { return a.t_ns == b.t_ns; };

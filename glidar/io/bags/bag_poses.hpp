@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/motion/timed_poses.hpp>
 
 #include <filesystem>
@@ -23,5 +24,8 @@ struct PoseSelection {
 /// Throws Error when there is no such topic or pair, or a message is damaged.
 std::vector<TimedPose> read_bag_poses(const std::filesystem::path& path,
                                       const PoseSelection& selection = {});
+/// `path` names the bag in errors.
+std::vector<TimedPose> read_bag_poses(BagReader& bag, const std::filesystem::path& path,
+                                      const PoseSelection& selection);
 
 }  // namespace glidar::bags

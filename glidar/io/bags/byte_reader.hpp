@@ -4,6 +4,8 @@
 
 // Private to glidar/io/bags.
 
+#include <glidar/io/files/input_budget.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -48,6 +50,13 @@ class ByteReader {
 
   std::string text() {
     const std::span<const std::byte> bytes = sized();
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+
+  /// A text that is a name, which counts in the budget before it is copied.
+  std::string name(InputBudget& budget) {
+    const std::span<const std::byte> bytes = sized();
+    budget.take_name(bytes.size(), place_);
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
 

@@ -95,17 +95,21 @@ void compress(std::span<const std::byte> chunk, Compression compression, Bytes& 
   compress_zstd(chunk, to);
 }
 
-Bytes decompress(std::span<const std::byte> packed, Compression compression, std::uint64_t size,
-                 const std::string& place) {
-  if (size > kMaxChunkBytes) {
-    reject_bag(place, fmt::format("a chunk of {} bytes", size),
-               fmt::format("at most {} bytes", kMaxChunkBytes));
+Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::string& place) {
+  const auto& [bytes, compression, size] = packed;
+  if (compression == Compression::none) {
+    if (bytes.size() != size)
+      reject_bag(place, fmt::format("{} bytes that claim to be {}", bytes.size(), size));
+    return {bytes.begin(), bytes.end()};
   }
-  if (compression == Compression::lz4) return decompress_lz4(packed, size, place);
-  if (compression == Compression::zstd) return decompress_zstd(packed, size, place);
-  if (packed.size() != size)
-    reject_bag(place, fmt::format("{} bytes that claim to be {}", packed.size(), size));
-  return {packed.begin(), packed.end()};
+  const std::uint64_t max_size = std::min(kMaxChunkBytes, budget.limit(Budget::held_bytes));
+  if (size > max_size) {
+    reject_bag(place, fmt::format("a chunk of {} bytes", size),
+               fmt::format("at most {} bytes in a bag of this size", max_size));
+  }
+  budget.take(Budget::decompressed_bytes, size, place);
+  if (compression == Compression::lz4) return decompress_lz4(bytes, size, place);
+  return decompress_zstd(bytes, size, place);
 }
 
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t crc) {

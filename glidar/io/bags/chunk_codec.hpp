@@ -6,6 +6,7 @@
 
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/byte_writer.hpp>
+#include <glidar/io/files/input_budget.hpp>
 
 #include <cstdint>
 #include <string>
@@ -21,10 +22,16 @@ inline constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{1} << 29U;
 /// a checksum of the content, which is all that ROS 1 reads. Not for Compression::none.
 void compress(std::span<const std::byte> chunk, Compression compression, Bytes& to);
 
-/// A chunk of known size. Throws Error, with `place`, unless it has this size, or when
-/// it is larger than kMaxChunkBytes.
-Bytes decompress(std::span<const std::byte> packed, Compression compression, std::uint64_t size,
-                 const std::string& place);
+/// A chunk as a bag stores it.
+struct PackedChunk {
+  std::span<const std::byte> bytes;
+  Compression compression = Compression::none;
+  std::uint64_t size = 0;  ///< when it is decompressed
+};
+
+/// Throws Error, with `place`, unless the chunk has its size, or when it is larger than
+/// kMaxChunkBytes or the budget.
+Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::string& place);
 
 /// CRC-32 as zlib computes it, continued from `crc`.
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t crc = 0);

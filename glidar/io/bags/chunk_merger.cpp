@@ -12,15 +12,13 @@
 #include <utility>
 
 namespace glidar::bags {
-namespace {
 
-/// Of all chunks that are in memory together.
-constexpr std::size_t kMaxOpenBytes = std::size_t{1} << 30U;
-
-}  // namespace
-
-ChunkMerger::ChunkMerger(std::string place, std::vector<ChunkRange> chunks, Load load)
-    : place_(std::move(place)), chunks_(std::move(chunks)), load_(std::move(load)) {
+ChunkMerger::ChunkMerger(std::string place, std::vector<ChunkRange> chunks, SharedBudget budget,
+                         Load load)
+    : place_(std::move(place)),
+      chunks_(std::move(chunks)),
+      budget_(std::move(budget)),
+      load_(std::move(load)) {
   order_.resize(chunks_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
@@ -32,16 +30,18 @@ bool ChunkMerger::next(BagMessage& message) {
   current_.clear();
   load_due();
   if (open_.empty()) return false;
-  const std::size_t at = earliest();
-  Open& from = *open_[at];
+  std::pop_heap(open_.begin(), open_.end(), is_later);
+  Open& from = *open_.back();
   const ChunkEntry& entry = from.chunk.entries[from.entry];
   message.topic = entry.topic;
   message.time_ns = entry.time_ns;
   message.data = std::span(from.chunk.bytes).subspan(entry.offset, entry.size);
   if (++from.entry == from.chunk.entries.size()) {
-    open_bytes_ -= from.chunk.bytes.size();
+    budget_->give_back(Budget::held_bytes, from.chunk.bytes.size());
     current_ = std::move(from.chunk.bytes);  // moving a vector keeps its bytes in place
-    open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(at));
+    open_.pop_back();
+  } else {
+    std::push_heap(open_.begin(), open_.end(), is_later);
   }
   return true;
 }
@@ -50,7 +50,7 @@ bool ChunkMerger::next(BagMessage& message) {
 void ChunkMerger::load_due() {
   while (next_ < order_.size()) {
     if (!open_.empty()) {
-      const Open& first = *open_[earliest()];
+      const Open& first = *open_.front();
       if (chunks_[order_[next_]].first_ns > first.chunk.entries[first.entry].time_ns) return;
     }
     open(order_[next_++]);
@@ -62,6 +62,7 @@ void ChunkMerger::open(std::size_t number) {
   opened->number = number;
   opened->chunk = load_(number);
   std::vector<ChunkEntry>& entries = opened->chunk.entries;
+  budget_->take(Budget::messages, entries.size(), place_);
   const ChunkRange& range = chunks_[number];
   for (const ChunkEntry& entry : entries) {
     if (entry.time_ns >= range.first_ns && entry.time_ns <= range.last_ns) continue;
@@ -73,22 +74,22 @@ void ChunkMerger::open(std::size_t number) {
   if (entries.empty()) return;
   std::stable_sort(entries.begin(), entries.end(),
                    [](const ChunkEntry& a, const ChunkEntry& b) { return a.time_ns < b.time_ns; });
-  open_bytes_ += opened->chunk.bytes.size();
-  if (open_bytes_ > kMaxOpenBytes) {
-    throw Error({place_, "chunks of more than 1 GiB whose times overlap",
+  if (opened->chunk.bytes.size() > budget_->left(Budget::held_bytes)) {
+    throw Error({place_,
+                 fmt::format("chunks of more than {} bytes whose times overlap",
+                             budget_->limit(Budget::held_bytes)),
                  "messages that are roughly in order of time", "sort the bag"});
   }
+  budget_->take(Budget::held_bytes, opened->chunk.bytes.size(), place_);
   open_.push_back(std::move(opened));
+  std::push_heap(open_.begin(), open_.end(), is_later);
 }
 
-/// Of equal times, the message of the first chunk in the file.
-std::size_t ChunkMerger::earliest() const {
-  const auto key = [](const std::unique_ptr<Open>& open) {
-    return std::pair(open->chunk.entries[open->entry].time_ns, open->number);
+bool ChunkMerger::is_later(const std::unique_ptr<Open>& a, const std::unique_ptr<Open>& b) {
+  const auto key = [](const Open& open) {
+    return std::pair(open.chunk.entries[open.entry].time_ns, open.number);
   };
-  const auto first = std::min_element(
-      open_.begin(), open_.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  return static_cast<std::size_t>(first - open_.begin());
+  return key(*a) > key(*b);
 }
 
 }  // namespace glidar::bags

@@ -6,6 +6,7 @@
 
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/byte_writer.hpp>
+#include <glidar/io/files/input_budget.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -14,6 +15,9 @@
 #include <vector>
 
 namespace glidar::bags {
+
+/// The budget of a bag, which all of its files share.
+using SharedBudget = std::shared_ptr<InputBudget>;
 
 /// A part of a bag with messages of any order. Times are in [first_ns, last_ns].
 struct ChunkRange {
@@ -39,13 +43,15 @@ class ChunkMerger {
  public:
   using Load = std::function<LoadedChunk(std::size_t)>;
 
-  /// `load` reads the chunk of a number. `place` is the path of the bag, for errors.
-  ChunkMerger(std::string place, std::vector<ChunkRange> chunks, Load load);
+  /// `load` reads the chunk of a number. `place` is the path of the bag, for errors. Messages, and
+  /// chunks while they are in memory, count in the budget.
+  ChunkMerger(std::string place, std::vector<ChunkRange> chunks, SharedBudget budget, Load load);
 
   /// Keeps only messages of topics whose entry is true; before the first next().
   void select(std::vector<bool> topics) { selected_ = std::move(topics); }
 
-  /// Throws Error when a message is outside its chunk's times, or too many chunks overlap.
+  /// Throws Error when a message is outside its chunk's times, or the budget is exceeded, because
+  /// too many chunks overlap.
   bool next(BagMessage& message);
 
  private:
@@ -57,17 +63,18 @@ class ChunkMerger {
 
   void load_due();
   void open(std::size_t number);
-  [[nodiscard]] std::size_t earliest() const;
+  /// Of equal times, the first chunk in the file is the first.
+  static bool is_later(const std::unique_ptr<Open>& a, const std::unique_ptr<Open>& b);
 
   std::string place_;
   std::vector<ChunkRange> chunks_;
+  SharedBudget budget_;
   Load load_;
-  std::vector<bool> selected_;      ///< empty: all
-  std::vector<std::size_t> order_;  ///< chunks by first time
-  std::size_t next_ = 0;            ///< in order_
-  std::vector<std::unique_ptr<Open>> open_;
-  std::size_t open_bytes_ = 0;
-  Bytes current_;  ///< bytes of a chunk whose last message was returned
+  std::vector<bool> selected_;               ///< empty: all
+  std::vector<std::size_t> order_;           ///< chunks by first time
+  std::size_t next_ = 0;                     ///< in order_
+  std::vector<std::unique_ptr<Open>> open_;  ///< a heap; the earliest message is in front
+  Bytes current_;                            ///< bytes of a chunk whose last message was returned
 };
 
 }  // namespace glidar::bags

@@ -11,22 +11,26 @@ McapRecord read_mcap_head(ByteReader& reader) {
   return {op, reader.number<std::uint64_t>()};
 }
 
-void McapChannels::add(mcap::Op op, ByteReader& content) {
-  if (op == mcap::Op::channel) return add_channel(content);
+void McapChannels::add(mcap::Op op, ByteReader& content, InputBudget& budget) {
+  if (op == mcap::Op::channel) return add_channel(content, budget);
   if (op != mcap::Op::schema) return;
   const auto number = content.number<std::uint16_t>();
-  schemas_.emplace(number, content.text());
+  if (!schemas_.contains(number)) schemas_.emplace(number, content.name(budget));
 }
 
-void McapChannels::add_channel(ByteReader& content) {
+void McapChannels::add_channel(ByteReader& content, InputBudget& budget) {
   const auto number = content.number<std::uint16_t>();
   const auto schema = content.number<std::uint16_t>();
   if (channels_.contains(number)) return;
+  budget.take(Budget::topics, 1, content.place());
   StoredTopic topic;
-  topic.name = content.text();
-  const std::string encoding = content.text();
+  topic.name = content.name(budget);
+  const std::string encoding = content.name(budget);
   const auto type = schemas_.find(schema);
-  if (type != schemas_.end()) topic.type = type->second;
+  if (type != schemas_.end()) {
+    budget.take_name(type->second.size(), content.place());
+    topic.type = type->second;
+  }
   topic.wire = encoding == "ros1" ? ros::Wire::ros1 : ros::Wire::cdr;
   topic.is_ros = encoding == "ros1" || encoding == "cdr";
   channels_.emplace(number, topics_.size());

@@ -52,7 +52,7 @@ Compression compression_of(const std::string& name, const std::string& place) {
 /// Walks through the records of a file without reading messages.
 class McapScan {
  public:
-  explicit McapScan(BagFile& file) : file_(file) {}
+  McapScan(BagFile& file, InputBudget& budget) : file_(file), budget_(budget) {}
 
   void run();
   std::vector<McapChunk> chunks;
@@ -65,6 +65,7 @@ class McapScan {
   void add_message(std::uint64_t at, std::uint64_t size);
 
   BagFile& file_;
+  InputBudget& budget_;
   bool ended_ = false;
   std::optional<std::uint64_t> run_end_;  ///< end of the last chunk of plain messages
 };
@@ -112,7 +113,7 @@ void McapScan::take_record(const McapRecord& record, std::uint64_t at) {
       if (record.size > kMaxRecord)
         reject_bag(file_.place(at), "a schema or channel of more than 16 MiB");
       ByteReader content(file_.peek(at, record.size), file_.place(at));
-      return channels.add(record.op, content);
+      return channels.add(record.op, content, budget_);
     }
     default:
       return;
@@ -158,15 +159,16 @@ void McapScan::add_message(std::uint64_t at, std::uint64_t size) {
 
 class McapReader : public BagReader {
  public:
-  explicit McapReader(const std::filesystem::path& path) : file_(path) {
-    McapScan scan(file_);
+  McapReader(const std::filesystem::path& path, SharedBudget budget)
+      : file_(path), budget_(std::move(budget)) {
+    McapScan scan(file_, *budget_);
     scan.run();
     chunks_ = std::move(scan.chunks);
     channels_ = std::move(scan.channels);
     if (channels_.topics().empty()) find_channels();
     std::vector<ChunkRange> ranges;
     for (const McapChunk& chunk : chunks_) ranges.push_back(chunk.range);
-    merger_.emplace(path.string(), std::move(ranges),
+    merger_.emplace(path.string(), std::move(ranges), budget_,
                     [this](std::size_t number) { return load(chunks_[number]); });
   }
 
@@ -185,11 +187,15 @@ class McapReader : public BagReader {
     const std::string place = file_.place(chunk.offset);
     Bytes records = chunk.compression == Compression::none && chunk.size == chunk.stored_size
                         ? file_.read(chunk.offset, chunk.size)
-                        : decompress(file_.read(chunk.offset, chunk.stored_size), chunk.compression,
-                                     chunk.size, place);
+                        : unpacked(chunk, place);
     if (chunk.crc != 0 && crc32_of(records) != chunk.crc)
       reject_bag(place, "a chunk whose checksum does not match");
     return records;
+  }
+
+  Bytes unpacked(const McapChunk& chunk, const std::string& place) {
+    const Bytes stored = file_.read(chunk.offset, chunk.stored_size);
+    return decompress({stored, chunk.compression, chunk.size}, *budget_, place);
   }
 
   LoadedChunk load(const McapChunk& chunk) {
@@ -219,12 +225,13 @@ class McapReader : public BagReader {
       while (reader.left() > 0) {
         const McapRecord record = read_mcap_head(reader);
         ByteReader content(reader.take(record.size), reader.place());
-        channels_.add(record.op, content);
+        channels_.add(record.op, content, *budget_);
       }
     }
   }
 
   BagFile file_;
+  SharedBudget budget_;
   std::vector<McapChunk> chunks_;
   McapChannels channels_;
   std::optional<ChunkMerger> merger_;
@@ -232,8 +239,8 @@ class McapReader : public BagReader {
 
 }  // namespace
 
-std::unique_ptr<BagReader> open_mcap(const std::filesystem::path& path) {
-  return std::make_unique<McapReader>(path);
+std::unique_ptr<BagReader> open_mcap(const std::filesystem::path& path, SharedBudget budget) {
+  return std::make_unique<McapReader>(path, std::move(budget));
 }
 
 }  // namespace glidar::bags

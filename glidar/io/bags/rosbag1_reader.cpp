@@ -25,9 +25,11 @@ using Rosbag1Op = rosbag1::Op;
 /// Of headers, and of the data of records other than chunks.
 constexpr std::uint32_t kMaxHeader = std::uint32_t{16} << 20U;
 
-/// The fields of a header.
+/// The fields of a header, which refer to its bytes.
 class BagFields {
  public:
+  static constexpr std::size_t kMaxFields = 100;
+
   explicit BagFields(std::span<const std::byte> bytes, std::string place)
       : place_(std::move(place)) {
     ByteReader reader(bytes, place_);
@@ -36,8 +38,9 @@ class BagFields {
       const auto equals = std::find(field.begin(), field.end(), std::byte{'='});
       if (equals == field.end()) reader.reject("a field without '='");
       const auto name_size = static_cast<std::size_t>(equals - field.begin());
-      const std::string name(reinterpret_cast<const char*>(field.data()), name_size);
-      fields_[name] = field.subspan(name_size + 1);
+      const std::string_view name(reinterpret_cast<const char*>(field.data()), name_size);
+      if (fields_.size() == kMaxFields) reader.reject("a header of more than 100 fields");
+      fields_.insert_or_assign(name, field.subspan(name_size + 1));
     }
   }
 
@@ -56,8 +59,9 @@ class BagFields {
     return static_cast<std::int64_t>((packed & 0xFFFFFFFFU) * 1'000'000'000U + (packed >> 32U));
   }
 
-  [[nodiscard]] std::string text(const std::string& name) const {
-    const std::span<const std::byte> bytes = value(name);
+  [[nodiscard]] std::string name(const std::string& key, InputBudget& budget) const {
+    const std::span<const std::byte> bytes = value(key);
+    budget.take_name(bytes.size(), place_);
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
 
@@ -71,7 +75,7 @@ class BagFields {
   }
 
   std::string place_;
-  std::map<std::string, std::span<const std::byte>> fields_;
+  std::map<std::string_view, std::span<const std::byte>> fields_;
 };
 
 struct Rosbag1Chunk {
@@ -92,7 +96,8 @@ Compression rosbag1_compression(const std::string& name, const std::string& plac
 
 class Rosbag1Reader : public BagReader {
  public:
-  explicit Rosbag1Reader(const std::filesystem::path& path) : file_(path) {
+  Rosbag1Reader(const std::filesystem::path& path, SharedBudget budget)
+      : file_(path), budget_(std::move(budget)) {
     check_start();
     std::uint64_t at = rosbag1::kMagic.size();
     while (at < file_.size()) at = scan_record(at);
@@ -101,7 +106,7 @@ class Rosbag1Reader : public BagReader {
       if (!chunk.range) reject_bag(file_.place(chunk.position), "a chunk that the index lacks");
       ranges.push_back(*chunk.range);
     }
-    merger_.emplace(path.string(), std::move(ranges),
+    merger_.emplace(path.string(), std::move(ranges), budget_,
                     [this](std::size_t number) { return load(chunks_[number]); });
   }
 
@@ -146,9 +151,10 @@ class Rosbag1Reader : public BagReader {
         break;
       case Rosbag1Op::chunk:
         by_position_[at] = chunks_.size();
-        chunks_.push_back({at, data_at, data_size, fields.number<std::uint32_t>("size"),
-                           rosbag1_compression(fields.text("compression"), file_.place(at)),
-                           std::nullopt});
+        chunks_.push_back(
+            {at, data_at, data_size, fields.number<std::uint32_t>("size"),
+             rosbag1_compression(fields.name("compression", *budget_), file_.place(at)),
+             std::nullopt});
         break;
       case Rosbag1Op::connection:
         add_connection(fields, data_at, data_size);
@@ -175,8 +181,10 @@ class Rosbag1Reader : public BagReader {
       reject_bag(file_.place(data_at), "a connection of more than 16 MiB");
     const Bytes data = file_.read(data_at, data_size);
     const BagFields details(data, file_.place(data_at));
+    budget_->take(Budget::topics, 1, file_.place(data_at));
     connections_.emplace(number, topics_.size());
-    topics_.push_back({fields.text("topic"), details.text("type"), ros::Wire::ros1, true});
+    topics_.push_back(
+        {fields.name("topic", *budget_), details.name("type", *budget_), ros::Wire::ros1, true});
   }
 
   void add_chunk_info(const BagFields& fields, std::uint64_t at) {
@@ -190,7 +198,7 @@ class Rosbag1Reader : public BagReader {
     LoadedChunk loaded;
     loaded.bytes = file_.read(chunk.offset, chunk.stored_size);
     if (chunk.compression != Compression::none || chunk.size != chunk.stored_size)
-      loaded.bytes = decompress(loaded.bytes, chunk.compression, chunk.size, place);
+      loaded.bytes = decompress({loaded.bytes, chunk.compression, chunk.size}, *budget_, place);
     ByteReader reader(loaded.bytes, "chunk at " + place);
     while (reader.left() > 0) {
       const BagFields fields(reader.sized(), reader.place());
@@ -206,6 +214,7 @@ class Rosbag1Reader : public BagReader {
   }
 
   BagFile file_;
+  SharedBudget budget_;
   std::vector<StoredTopic> topics_;
   std::map<std::uint32_t, std::size_t> connections_;  ///< index in topics_
   std::vector<Rosbag1Chunk> chunks_;
@@ -215,8 +224,8 @@ class Rosbag1Reader : public BagReader {
 
 }  // namespace
 
-std::unique_ptr<BagReader> open_rosbag1(const std::filesystem::path& path) {
-  return std::make_unique<Rosbag1Reader>(path);
+std::unique_ptr<BagReader> open_rosbag1(const std::filesystem::path& path, SharedBudget budget) {
+  return std::make_unique<Rosbag1Reader>(path, std::move(budget));
 }
 
 }  // namespace glidar::bags

@@ -11,9 +11,11 @@
 #include <glidar/io/files/text_file.hpp>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace glidar::bags {
@@ -45,25 +47,45 @@ Metadata parse_metadata(const YAML::Node& root, const std::string& place) {
   const YAML::Node files = information["relative_file_paths"];
   if (!files.IsSequence() || files.size() == 0 || files.size() > kMaxFiles)
     reject_bag(place, "no list of files", fmt::format("1 to {} relative_file_paths", kMaxFiles));
+  std::set<std::string> names;
   for (const YAML::Node& file : files) {
     // Very old bags name the folder too.
     const std::string name = fs::path(text_of(file)).filename().string();
     if (name.empty() || name == "." || name == "..") reject_bag(place, "a file without a name");
+    if (!names.insert(name).second)
+      reject_bag(place, "the file " + excerpt(name) + " twice", "each file once");
     metadata.files.push_back(name);
   }
   return metadata;
 }
 
+TextFileKind metadata_kind() {
+  return {"the metadata of a bag", 16, "see that it is a bag of ROS 2"};
+}
+
 Metadata read_metadata(const fs::path& folder) {
   const fs::path file = folder / "metadata.yaml";
-  const std::string text =
-      read_text_file(file, {"the metadata of a bag", 16, "see that it is a bag of ROS 2"});
+  const std::string text = read_text_file(file, metadata_kind());
   try {
     check_yaml_budget(file.string(), text);
     return parse_metadata(YAML::Load(text), file.string());
   } catch (const YAML::Exception& error) {
     reject_bag(file.string(), error.what());
   }
+}
+
+/// The bytes of all files together. Throws Error when two names are the same file, by a link.
+std::uint64_t checked_bytes(const fs::path& folder, const std::vector<std::string>& files) {
+  std::set<std::pair<dev_t, ino_t>> known;
+  std::uint64_t size = 0;
+  for (const std::string& file : files) {
+    struct stat info {};
+    if (::stat((folder / file).c_str(), &info) != 0) continue;  // its reader reports it
+    if (!known.emplace(info.st_dev, info.st_ino).second)
+      reject_bag((folder / file).string(), "a link to another file of the bag", "each file once");
+    size += static_cast<std::uint64_t>(info.st_size);
+  }
+  return size;
 }
 
 /// Merges several bags by time. Topics of the same name and type are one.
@@ -81,11 +103,12 @@ class MergedReader : public BagReader {
   [[nodiscard]] std::span<const StoredTopic> topics() const override { return topics_; }
 
   void select(std::span<const std::size_t> topics) override {
+    std::vector<bool> selected(topics_.size(), false);
+    for (const std::size_t topic : topics) selected.at(topic) = true;
     for (Part& part : parts_) {
       std::vector<std::size_t> own;
       for (std::size_t i = 0; i < part.topics.size(); ++i) {
-        if (std::find(topics.begin(), topics.end(), part.topics[i]) != topics.end())
-          own.push_back(i);
+        if (selected[part.topics[i]]) own.push_back(i);
       }
       part.reader->select(own);
     }
@@ -122,30 +145,32 @@ class MergedReader : public BagReader {
   }
 
   std::size_t index_of(const StoredTopic& topic) {
-    const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const StoredTopic& other) {
-      return other.name == topic.name && other.type == topic.type;
-    });
-    if (known == topics_.end()) {
-      topics_.push_back(topic);
-      return topics_.size() - 1;
-    }
-    return static_cast<std::size_t>(known - topics_.begin());
+    const auto [known, is_new] =
+        numbers_.try_emplace(std::pair(topic.name, topic.type), topics_.size());
+    if (is_new) topics_.push_back(topic);
+    return known->second;
   }
 
   std::vector<StoredTopic> topics_;
+  std::map<std::pair<FileText, FileText>, std::size_t> numbers_;  ///< in topics_
   std::vector<Part> parts_;
 };
 
 }  // namespace
 
+void require_metadata(const fs::path& path) {
+  open_input_file(path / "metadata.yaml", metadata_kind());
+}
+
 std::unique_ptr<BagReader> open_rosbag2(const fs::path& path) {
   const Metadata metadata = read_metadata(path);
+  const auto budget = std::make_shared<InputBudget>(checked_bytes(path, metadata.files));
   std::vector<std::unique_ptr<BagReader>> readers;
   for (const std::string& file : metadata.files) {
     if (metadata.storage == "mcap") {
-      readers.push_back(open_mcap(path / file));
+      readers.push_back(open_mcap(path / file, budget));
     } else if (metadata.storage == "sqlite3") {
-      readers.push_back(open_sqlite_bag(path / file));
+      readers.push_back(open_sqlite_bag(path / file, budget));
     } else {
       throw Error({path.string(), "storage '" + excerpt(metadata.storage) + "'", "sqlite3 or mcap",
                    "convert the bag with `ros2 bag convert`"});

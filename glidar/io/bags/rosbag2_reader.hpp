@@ -12,4 +12,7 @@ namespace glidar::bags {
 /// compression of files or messages. Several files are merged by time. Throws Error.
 std::unique_ptr<BagReader> open_rosbag2(const std::filesystem::path& path);
 
+/// Throws Error unless the folder has a metadata.yaml that can be read.
+void require_metadata(const std::filesystem::path& path);
+
 }  // namespace glidar::bags

@@ -3,10 +3,74 @@
 #include <glidar/io/bags/sqlite.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/bags/byte_reader.hpp>
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
 namespace glidar::bags {
+
+namespace {
+
+constexpr int kStepsBetween = 1000;  // calls of the progress handler
+constexpr std::uint64_t kMinLength = 100'000;
+constexpr std::uint64_t kMaxLength = 1'000'000'000;  // SQLite's own
+
+/// rosbag2 needs far less.
+constexpr std::array<std::pair<int, int>, 6> kLimits = {{{SQLITE_LIMIT_SQL_LENGTH, 100'000},
+                                                         {SQLITE_LIMIT_COLUMN, 100},
+                                                         {SQLITE_LIMIT_EXPR_DEPTH, 100},
+                                                         {SQLITE_LIMIT_ATTACHED, 0},
+                                                         {SQLITE_LIMIT_TRIGGER_DEPTH, 1},
+                                                         {SQLITE_LIMIT_WORKER_THREADS, 0}}};
+
+/// A name for sqlite3_open_v2 by which SQLite takes no locks and does not look for logs.
+std::string immutable_uri(const std::string& path) {
+  std::string uri = "file:";
+  for (const char letter : path) {
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool is_plain = std::isalnum(byte) != 0 && byte < 128;
+    uri += is_plain ? std::string(1, letter) : fmt::format("%{:02X}", byte);
+  }
+  return uri + "?immutable=1";
+}
+
+bool is_one_of_tables(const std::vector<std::string>& names, const char* name) {
+  return name != nullptr && std::any_of(names.begin(), names.end(), [&](const std::string& one) {
+           return sqlite3_stricmp(one.c_str(), name) == 0;
+         });
+}
+
+/// Ends the statement when the budget, `context`, is used.
+extern "C" int glidar_count_sqlite_steps(void* context) {
+  InputBudget& budget = *static_cast<InputBudget*>(context);
+  if (budget.left(Budget::steps) < kStepsBetween) return 1;
+  budget.take(Budget::steps, kStepsBetween, "");
+  return 0;
+}
+
+/// Allows selecting columns of the tables in `context`. `inner`: the view or trigger that does it.
+extern "C" int glidar_authorize_sqlite(void* context, int action, const char* table,
+                                       const char* /*column*/, const char* /*database*/,
+                                       const char* inner) {
+  if (action == SQLITE_SELECT) return SQLITE_OK;
+  const auto& tables = *static_cast<const std::vector<std::string>*>(context);
+  const bool is_allowed =
+      action == SQLITE_READ && inner == nullptr && is_one_of_tables(tables, table);
+  return is_allowed ? SQLITE_OK : SQLITE_DENY;
+}
+
+}  // namespace
+
+void limit_sqlite_memory(std::uint64_t bytes) {
+  sqlite3_hard_heap_limit64(static_cast<sqlite3_int64>(bytes));
+}
 
 void Database::Closer::operator()(sqlite3* database) const {
   sqlite3_close_v2(database);
@@ -16,27 +80,64 @@ void Statement::Finaliser::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
 
-Database::Database(const std::filesystem::path& path, Mode mode)
-    : path_(path.string()), mode_(mode) {
-  const int flags =
-      mode == Mode::create ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+void Database::open(const std::string& name, int flags) {
   sqlite3* opened = nullptr;
-  const int code = sqlite3_open_v2(path.c_str(), &opened, flags, nullptr);
+  const int code = sqlite3_open_v2(name.c_str(), &opened, flags, nullptr);
   database_.reset(opened);
   if (code != SQLITE_OK) fail();
-  if (mode == Mode::create) {
-    execute("PRAGMA journal_mode=OFF");
-    execute("PRAGMA synchronous=OFF");
-    execute("PRAGMA locking_mode=EXCLUSIVE");
-    return;
-  }
-  // sqlite.org/security.html, for databases from others
-  sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-  sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
-  sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+}
+
+Database::Database(const std::filesystem::path& path) : path_(path.string()) {
+  open(path_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  execute("PRAGMA journal_mode=OFF");
+  execute("PRAGMA synchronous=OFF");
+  execute("PRAGMA locking_mode=EXCLUSIVE");
+}
+
+// sqlite.org/security.html, for databases from others
+Database::Database(const std::filesystem::path& path, std::uint64_t file_bytes, InputBudget& budget)
+    : path_(path.string()), budget_(&budget) {
+  open(immutable_uri(path_), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+  sqlite3* database = database_.get();
+  sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  for (const auto& [limit, value] : kLimits) sqlite3_limit(database, limit, value);
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH,
+                static_cast<int>(std::clamp(file_bytes, kMinLength, kMaxLength)));
+  sqlite3_progress_handler(database, kStepsBetween, glidar_count_sqlite_steps, budget_);
   execute("PRAGMA cell_size_check=ON");
   execute("PRAGMA mmap_size=0");
+  execute("PRAGMA temp_store=MEMORY");
+}
+
+void Database::allow_tables(const std::vector<std::string>& names) {
+  Statement schema(*this, "SELECT type,name,rootpage,sql FROM sqlite_schema");
+  while (schema.step()) {
+    const std::string name(schema.text(1));
+    const bool is_wanted = is_one_of_tables(names, name.c_str());
+    if (!is_wanted || schema.text(0) == "index") continue;
+    // SQLite itself writes the two words so, and 0 for the page of a virtual table
+    const bool is_ordinary = schema.text(0) == "table" && schema.number(2) > 0 &&
+                             schema.text(3).starts_with("CREATE TABLE ");
+    if (!is_ordinary)
+      reject_bag(path_, "'" + excerpt(name) + "' is no ordinary table", "the tables of rosbag2");
+    require_no_generated_columns(name);
+  }
+  tables_ = std::make_unique<std::vector<std::string>>(names);
+  sqlite3_set_authorizer(database_.get(), glidar_authorize_sqlite, tables_.get());
+}
+
+void Database::require_no_generated_columns(const std::string& table) const {
+  constexpr int kHidden = 1;
+  Statement columns(*this, "SELECT name,hidden FROM pragma_table_xinfo(?)");
+  columns.bind(1, std::string_view(table));
+  while (columns.step()) {
+    if (columns.number(kHidden) == 0) continue;
+    reject_bag(path_, "'" + excerpt(table) + "." + excerpt(columns.text(0)) + "' is generated",
+               "columns that are stored");
+  }
 }
 
 void Database::execute(const char* sql) {
@@ -50,7 +151,9 @@ void Database::close() {
 
 void Database::fail() const {
   const char* reason = database_ ? sqlite3_errmsg(database_.get()) : "out of memory";
-  if (mode_ == Mode::read) {
+  if (budget_ != nullptr) {
+    const bool is_stopped = database_ && sqlite3_errcode(database_.get()) == SQLITE_INTERRUPT;
+    if (is_stopped) budget_->take(Budget::steps, budget_->left(Budget::steps) + 1, path_);
     throw Error({path_, std::string("cannot be read by SQLite: ") + reason, "a complete bag",
                  "copy the bag again: it may be damaged"});
   }
@@ -99,7 +202,7 @@ std::int64_t Statement::number(int column) const {
   return sqlite3_column_int64(statement_.get(), column);
 }
 
-std::string Statement::text(int column) const {
+std::string_view Statement::text(int column) const {
   const unsigned char* text = sqlite3_column_text(statement_.get(), column);
   if (text == nullptr) return {};
   return {reinterpret_cast<const char*>(text),

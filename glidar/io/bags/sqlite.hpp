@@ -4,6 +4,8 @@
 
 // Private to glidar/io/bags: a thin layer over SQLite that throws Error.
 
+#include <glidar/io/files/input_budget.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -19,10 +22,16 @@ namespace glidar::bags {
 
 class Database {
  public:
-  enum class Mode : std::uint8_t { create, read };
-  /// Without journal and syncs when it is created: a file that is renamed when it is complete.
-  /// Reading refuses views, triggers and damaged cells.
-  Database(const std::filesystem::path& path, Mode mode);
+  /// A new one, without journal and syncs: a file that is renamed when it is complete.
+  explicit Database(const std::filesystem::path& path);
+  /// One of others, for reading. No file is written or locked, and a log beside it is not read. No
+  /// value is longer than the file. The steps of statements count in the budget, which must
+  /// outlive the database: they end also where pages contain each other.
+  Database(const std::filesystem::path& path, std::uint64_t file_bytes, InputBudget& budget);
+
+  /// From now on statements can only read these tables, and call no functions. Throws Error unless
+  /// they are ordinary: no virtual tables, views or generated columns.
+  void allow_tables(const std::vector<std::string>& names);
 
   void execute(const char* sql);
   /// Closes the database. Throws Error when that fails.
@@ -34,10 +43,17 @@ class Database {
   struct Closer {
     void operator()(sqlite3* database) const;
   };
+  void open(const std::string& name, int flags);
+  void require_no_generated_columns(const std::string& table) const;
+
   std::string path_;
-  Mode mode_;
+  InputBudget* budget_ = nullptr;                     ///< of a database that is read
+  std::unique_ptr<std::vector<std::string>> tables_;  ///< allowed ones; SQLite has its address
   std::unique_ptr<sqlite3, Closer> database_;
 };
+
+/// Limits the memory of SQLite in this process.
+void limit_sqlite_memory(std::uint64_t bytes);
 
 /// A prepared statement. Parameters count from 1, columns from 0.
 class Statement {
@@ -53,7 +69,8 @@ class Statement {
   void reset();
 
   [[nodiscard]] std::int64_t number(int column) const;
-  [[nodiscard]] std::string text(int column) const;
+  /// Valid until the next step() or reset().
+  [[nodiscard]] std::string_view text(int column) const;
   /// Valid until the next step() or reset().
   [[nodiscard]] std::span<const std::byte> bytes(int column) const;
 

@@ -4,11 +4,11 @@
 
 // Private to glidar/io/bags.
 
-#include <glidar/io/bags/bag.hpp>
+#include <glidar/io/bags/chunk_merger.hpp>
 
 namespace glidar::bags {
 
 /// Opens one file of the SQLite storage of rosbag2. Throws Error.
-std::unique_ptr<BagReader> open_sqlite_bag(const std::filesystem::path& path);
+std::unique_ptr<BagReader> open_sqlite_bag(const std::filesystem::path& path, SharedBudget budget);
 
 }  // namespace glidar::bags

@@ -27,8 +27,7 @@ constexpr int kSchemaVersion = 4;
 
 }  // namespace
 
-SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& path)
-    : database_(path, Database::Mode::create) {
+SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& path) : database_(path) {
   database_.execute("BEGIN");
   database_.execute(kTables);
   Statement version(database_, "INSERT INTO schema VALUES(?,?)");

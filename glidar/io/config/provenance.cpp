@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/provenance.hpp>
 
-#include <algorithm>
+#include <glidar/io/files/text_file.hpp>
+
+#include <map>
 #include <string>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace glidar {
@@ -44,46 +48,62 @@ void add_entries(const YamlField& field, std::vector<DatasheetEntry>& sheet) {
   }
 }
 
-/// Keys that `source` and `unverified` name must exist: a misspelt one would be lost.
-void require_entry(const YamlField& at, const std::string& key,
-                   const std::vector<DatasheetEntry>& sheet) {
-  const auto covered = [&](const DatasheetEntry& entry) { return covers(key, entry.key); };
-  if (std::any_of(sheet.begin(), sheet.end(), covered)) return;
-  std::vector<std::string> known;
-  for (const DatasheetEntry& entry : sheet) known.push_back(entry.key);
-  reject(at, "'" + key + "' is no key of this file", "a key such as optics.elevation_deg",
-         suggestion(key, known));
-}
-
-void set_source(const std::string& key, const std::string& source,
-                std::vector<DatasheetEntry>& sheet) {
-  for (DatasheetEntry& entry : sheet) {
-    if (covers(key, entry.key)) entry.source = source;
+/// Entries by their keys: those that a key covers follow it.
+class SheetIndex {
+ public:
+  explicit SheetIndex(std::vector<DatasheetEntry>& sheet) {
+    for (DatasheetEntry& entry : sheet) by_key_.emplace(entry.key, &entry);
   }
-}
+
+  /// The entries that a key covers. Keys that `source` and `unverified` name must exist, because a
+  /// misspelt one would be lost, and be named once. Throws Error.
+  std::vector<DatasheetEntry*> covered(const YamlField& at, const std::string& key) {
+    if (!named_.insert(key).second)
+      reject(at, "'" + shown(key) + "' is named twice", "each key once", "remove one of them");
+    std::vector<DatasheetEntry*> found;
+    for (auto one = by_key_.lower_bound(key); one != by_key_.end() && one->first.starts_with(key);
+         ++one) {
+      if (covers(key, one->first)) found.push_back(one->second);
+    }
+    if (found.empty()) reject_unknown(at, key);
+    return found;
+  }
+
+ private:
+  [[noreturn]] void reject_unknown(const YamlField& at, const std::string& key) const {
+    std::vector<std::string> known;
+    for (const auto& [name, entry] : by_key_) known.push_back(name);
+    reject(at, "'" + shown(key) + "' is no key of this file", "a key such as optics.elevation_deg",
+           suggestion(key, known));
+  }
+
+  std::multimap<std::string, DatasheetEntry*> by_key_;
+  std::unordered_set<std::string> named_;
+};
 
 void add_sources(const YamlField& root, std::vector<DatasheetEntry>& sheet) {
   const auto sources = find(root, "source");
   if (!sources) return;
-  std::vector<std::pair<std::string, std::string>> all;  // no nodes: to assign one changes the file
+  SheetIndex index(sheet);
+  std::unordered_map<DatasheetEntry*, std::size_t> sizes;  // of the keys that gave the sources
   for (const auto& [key, value] : entries(*sources)) {
-    require_entry(value, key, sheet);
-    all.emplace_back(key, text(value));
+    const std::string source = text(value);
+    for (DatasheetEntry* entry : index.covered(value, key)) {
+      // longer keys are more specific
+      if (std::size_t& size = sizes[entry]; key.size() >= size) {
+        size = key.size();
+        entry->source = source;
+      }
+    }
   }
-  // longer keys are more specific, so they are applied last
-  std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
-    return one.first.size() < other.first.size();
-  });
-  for (const auto& [key, source] : all) set_source(key, source, sheet);
 }
 
 void mark_unverified(const YamlField& root, std::vector<DatasheetEntry>& sheet) {
   const auto unverified = find(root, "unverified");
   if (!unverified) return;
+  SheetIndex index(sheet);
   for (const YamlField& item : items(*unverified)) {
-    const std::string key = text(item);
-    require_entry(item, key, sheet);
-    for (DatasheetEntry& entry : sheet) entry.verified = entry.verified && !covers(key, entry.key);
+    for (DatasheetEntry* entry : index.covered(item, text(item))) entry->verified = false;
   }
 }
 

@@ -10,20 +10,28 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <unordered_map>
 
 namespace glidar {
 namespace {
 
+constexpr std::size_t kMaxNames = 1000;  // variants or modes
+
 std::vector<std::string> key_names(const std::optional<YamlField>& map) {
   std::vector<std::string> names;
   if (!map) return names;
+  if (map->node.IsMap() && map->node.size() > kMaxNames) {
+    reject(*map, std::to_string(map->node.size()) + " names", "at most 1000",
+           "describe other sensors in files of their own");
+  }
+  std::unordered_map<std::string, std::string> known;  // by their normalised names
   for (const auto& [name, value] : entries(*map)) {
-    if (normalised_name(name).empty()) {
+    const std::string normalised = normalised_name(name);
+    if (normalised.empty())
       reject(value, "'" + excerpt(name) + "'", "a name with letters or digits");
-    }
-    const std::string same = match_name(name, names);
-    if (!same.empty()) {
-      reject(value, "the name equals '" + excerpt(same) + "'",
+    const auto [same, is_new] = known.try_emplace(normalised, name);
+    if (!is_new) {
+      reject(value, "the name equals '" + excerpt(same->second) + "'",
              "names that differ by more than case, '-', '_' and spaces", "choose another name");
     }
     names.push_back(name);

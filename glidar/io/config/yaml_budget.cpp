@@ -3,6 +3,7 @@
 #include <glidar/io/config/yaml_budget.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/input_budget.hpp>
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/mark.h>
@@ -17,14 +18,12 @@ namespace glidar {
 namespace {
 
 constexpr std::size_t kMaxValues = 1'000'000;
-constexpr std::size_t kMaxValuesPerByte = 2;
 constexpr std::size_t kMaxDocuments = 100;  // yaml-cpp reads endless ones after some invalid bytes
 
 /// Counts values as the parser meets them, without keeping any.
 class Counter : public YAML::EventHandler {
  public:
-  Counter(const std::string& file, std::size_t bytes)
-      : file_(file), max_written_out_(kMaxValues + kMaxValuesPerByte * bytes) {}
+  Counter(const std::string& file, std::size_t bytes) : file_(file), budget_(bytes) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ > kMaxDocuments) fail(mark, "more than 100 YAML documents", "one", "");
@@ -55,11 +54,15 @@ class Counter : public YAML::EventHandler {
 
  private:
   void add(const YAML::Mark& mark, std::size_t count) {
+    if (count > budget_.left(Budget::values)) {
+      fail(mark,
+           "more than " + std::to_string(budget_.limit(Budget::values)) +
+               " values with aliases written out",
+           "1000000 values and 2 more for each byte of the file",
+           "use fewer aliases, or smaller ones");
+    }
+    budget_.take(Budget::values, count, file_);
     written_out_ += count;
-    if (written_out_ <= max_written_out_) return;
-    fail(mark, "more than " + std::to_string(max_written_out_) + " values with aliases written out",
-         "1000000 values and 2 more for each byte of the file",
-         "use fewer aliases, or smaller ones");
   }
   void build(const YAML::Mark& mark) {
     if (++built_ > kMaxValues) fail(mark, "more than 1000000 values", "fewer", "use aliases");
@@ -93,7 +96,7 @@ class Counter : public YAML::EventHandler {
   }
 
   const std::string& file_;
-  std::size_t max_written_out_;
+  InputBudget budget_;
   std::size_t documents_ = 0;
   std::size_t built_ = 0;
   std::size_t written_out_ = 0;

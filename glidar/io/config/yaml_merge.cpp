@@ -3,9 +3,19 @@
 #include <glidar/io/config/yaml_merge.hpp>
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace glidar {
 namespace {
+
+using FieldTable = std::unordered_map<std::string, YamlField>;
+
+/// The values of a map by their keys. Rejects what is no map, and keys that are given twice.
+FieldTable table_of(const YamlField& map) {
+  FieldTable table;
+  for (auto& [key, value] : entries(map)) table.emplace(key, value);
+  return table;
+}
 
 /// Appends a key with its place in the file. force_insert() shares nodes, and assigning one would
 /// change the document.
@@ -26,20 +36,20 @@ void reject_removal(const YamlField& missing) {
 }  // namespace
 
 YamlField merged(const YamlField& base, const YamlField& overrides) {
-  (void)entries(base);  // rejects what is no map, and keys that are given twice
-  (void)entries(overrides);
+  const FieldTable own = table_of(base);
+  const FieldTable overriding = table_of(overrides);
   YAML::Node map(YAML::NodeType::Map);
   for (const auto& pair : base.node) {
     const std::string& key = pair.first.Scalar();
-    const auto overriding = find(overrides, key);
-    if (overriding && overriding->node.IsNull()) continue;
-    const auto own = find(base, key);
-    append(map, pair.first, overriding ? merged_value(*own, *overriding) : pair.second);
+    const auto other = overriding.find(key);
+    const bool is_overridden = other != overriding.end();
+    if (is_overridden && other->second.node.IsNull()) continue;
+    append(map, pair.first, is_overridden ? merged_value(own.at(key), other->second) : pair.second);
   }
   for (const auto& pair : overrides.node) {
     const std::string& key = pair.first.Scalar();
-    if (find(base, key)) continue;
-    if (pair.second.IsNull()) reject_removal(*find(overrides, key));
+    if (own.contains(key)) continue;
+    if (pair.second.IsNull()) reject_removal(overriding.at(key));
     append(map, pair.first, pair.second);
   }
   return {base.file, base.path, base.mark, map};

@@ -3,6 +3,7 @@
 #include <glidar/io/formats/grey_image_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/decoder/pixel_records.hpp>
 #include <glidar/io/files/input_file.hpp>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,9 @@ namespace glidar {
 namespace {
 
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 26;
+constexpr std::uint32_t kMax8Bits = 255;
+constexpr std::uint32_t kMax16Bits = 65535;
+const InputFileKind kGreyPng = {"a PNG image", 1024, "crop or shrink the image"};
 
 /// Data of the callbacks. libpng uses longjmp, which must not skip destructors, so errors are
 /// stored here and thrown after it has returned.
@@ -101,7 +106,7 @@ std::uint16_t sample_at(const std::vector<png_byte>& bytes, std::size_t sample, 
 /// The first channel; throws Error unless those of colour are equal.
 GreyImage grey_of(const std::string& name, const PngHeader& header,
                   const std::vector<png_byte>& bytes) {
-  GreyImage image = {header.width, header.height, header.bits == 8 ? 255U : 65535U};
+  GreyImage image = {header.width, header.height, header.bits == 8 ? kMax8Bits : kMax16Bits};
   const std::size_t pixels = std::size_t{header.width} * header.height;
   image.level.resize(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -120,8 +125,30 @@ GreyImage grey_of(const std::string& name, const PngHeader& header,
 }  // namespace
 
 GreyImage load_grey_image(const std::filesystem::path& path) {
+  open_input_file(path, kGreyPng);  // the sandboxed process cannot look for similar names
+  const ReceivedPixels pixels = receive_pixels(
+      start_decoder(kGreyImageDecoder, path), [](const PixelSize& size) -> std::uint64_t {
+        const std::uint64_t count = std::uint64_t{size.width} * size.height;
+        const bool is_known = size.samples == kMax8Bits || size.samples == kMax16Bits;
+        return is_known && count <= kMaxPixels ? count * sizeof(std::uint16_t) : 0;
+      });
+  GreyImage image = {pixels.size.width, pixels.size.height, pixels.size.samples};
+  image.level.resize(pixels.bytes.size() / sizeof(std::uint16_t));
+  std::memcpy(image.level.data(), pixels.bytes.data(), pixels.bytes.size());
+  for (std::uint16_t& level : image.level)
+    level = static_cast<std::uint16_t>(std::min<std::uint32_t>(level, pixels.size.samples));
+  return image;
+}
+
+void send_grey_image(const std::filesystem::path& path, RecordWriter& to) {
+  const GreyImage image = load_grey_image_unconfined(path);
+  send_pixels({image.width, image.height, image.max_level}, std::as_bytes(std::span(image.level)),
+              to);
+}
+
+GreyImage load_grey_image_unconfined(const std::filesystem::path& path) {
   PngReading reading;
-  reading.file = read_input_file(path, {"a PNG image", 1024, "crop or shrink the image"});
+  reading.file = read_input_file(path, kGreyPng);
   const auto fail = [&](const std::string& found) -> Error {
     return Error({path.string(), found, "a PNG image of grey levels", ""});
   };

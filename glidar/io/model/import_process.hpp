@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/report.hpp>
+#include <glidar/io/decoder/helper_process.hpp>
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/model/imported_model.hpp>
 
@@ -23,15 +24,6 @@ struct ImportRequest {
       0;  ///< address space; 0: default_memory_limit of the file's size
 };
 
-/// How the process ended.
-enum class ImportEnd : std::uint8_t {
-  answered,
-  crashed,
-  out_of_time,
-  out_of_memory,
-  over_file_size
-};
-
 struct ImportRun {
   ImportEnd end = ImportEnd::crashed;
   int signal = 0;   ///< that ended it when crashed; 0: it exited without an answer
@@ -40,9 +32,6 @@ struct ImportRun {
   std::uint64_t memory_limit_bytes = 0;
   double seconds = 0.0;
 };
-
-/// 20 s, plus 2 s per megabyte.
-double default_time_limit_s(std::uint64_t file_bytes);
 
 /// 1 GiB, or 40 times the file size if that is larger: text formats expand that much.
 std::uint64_t default_memory_limit(std::uint64_t file_bytes);

@@ -6,7 +6,7 @@
 #include <glidar/core/version.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/model/import_process.hpp>
-#include <glidar/io/model/import_program.hpp>
+#include <glidar/io/decoder/import_program.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 
 #include <fmt/format.h>

@@ -3,12 +3,14 @@
 #include <glidar/io/model/png_texture.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/decoder/pixel_records.hpp>
 #include <glidar/io/files/input_file.hpp>
 
 #include <png.h>
 
 #include <cstring>
 #include <memory>
+#include <span>
 
 namespace glidar {
 namespace {
@@ -26,6 +28,31 @@ constexpr std::size_t kMaxBytes = std::size_t{256} << 20U;
 }  // namespace
 
 Texture read_png_texture(const std::filesystem::path& file) {
+  open_input_file(file, kPng);  // the sandboxed process cannot look for similar names
+  const ReceivedPixels pixels = receive_pixels(
+      start_decoder(kTextureDecoder, file), [](const PixelSize& size) -> std::uint64_t {
+        const bool is_allowed = size.width <= kMaxSide && size.height <= kMaxSide &&
+                                size.samples >= 1 && size.samples <= 4;
+        const std::uint64_t bytes = std::uint64_t{size.width} * size.height * size.samples;
+        return is_allowed && bytes <= kMaxBytes ? bytes : 0;
+      });
+  Texture texture{.name = file.string(),
+                  .width = pixels.size.width,
+                  .height = pixels.size.height,
+                  .channels = pixels.size.samples,
+                  .texels = {}};
+  texture.texels.resize(pixels.bytes.size());
+  std::memcpy(texture.texels.data(), pixels.bytes.data(), pixels.bytes.size());
+  return texture;
+}
+
+void send_png_texture(const std::filesystem::path& file, RecordWriter& to) {
+  const Texture texture = read_png_texture_unconfined(file);
+  send_pixels({texture.width, texture.height, texture.channels},
+              std::as_bytes(std::span(texture.texels)), to);
+}
+
+Texture read_png_texture_unconfined(const std::filesystem::path& file) {
   png_image image;
   std::memset(&image, 0, sizeof image);
   image.version = PNG_IMAGE_VERSION;

@@ -40,8 +40,12 @@ std::int64_t stamp_of(std::uint64_t ticks, std::uint64_t ticks_per_s) {
 
 }  // namespace
 
+InputFile open_capture_file(const std::filesystem::path& path) {
+  return open_input_file(path, kCapture);
+}
+
 CaptureReader::CaptureReader(const std::filesystem::path& path)
-    : path_(path), file_(open_input_file(path, kCapture)) {
+    : path_(path), file_(open_capture_file(path)) {
   if (!fill(4)) fail("fewer than 4 bytes", "a pcap or pcapng file");
   const ByteView head(buffer_.data() + begin_, 4);
   is_next_generation_ = get_big(head, 0, 4) == kSectionBlock;

@@ -30,6 +30,9 @@ struct CaptureRecord {
   std::span<const std::byte> bytes;
 };
 
+/// Opens a capture file. Throws Error like open_input_file.
+InputFile open_capture_file(const std::filesystem::path& path);
+
 /// Reads pcap files of either byte order with micro- or nanoseconds (draft-ietf-opsawg-pcap) and
 /// pcapng files (draft-ietf-opsawg-pcapng: section, interface, enhanced and simple packet blocks).
 /// Memory is bounded whatever the file contains.

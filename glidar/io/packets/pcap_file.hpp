@@ -31,7 +31,8 @@ class PcapWriter {
   std::uint16_t id_ = 0;
 };
 
-/// Reads the UDP datagrams of a pcap or pcapng file, with fragments joined.
+/// Reads the UDP datagrams of a pcap or pcapng file, with fragments joined, in this process: see
+/// CapturedPackets.
 class PcapReader {
  public:
   /// Throws Error like CaptureReader.

@@ -3,6 +3,7 @@
 #include <glidar/io/ros/cloud_from_message.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/input_budget.hpp>
 
 #include <fmt/format.h>
 
@@ -41,9 +42,15 @@ std::size_t count_of(const PointField& field) {
   return std::max<std::size_t>(1, field.count);
 }
 
+/// Also of clouds without points: each number of a point has a name. `point_step` is not the size
+/// of any data then.
 void check_fields(const PointCloud2& message) {
+  InputBudget budget(message.data.size());
   std::vector<std::pair<std::size_t, std::size_t>> used;  // [begin, end)
   for (const PointField& field : message.fields) {
+    budget.take(Budget::components, count_of(field), "PointCloud2");
+    budget.take_name(field.name.size(), "PointCloud2");
+    budget.take(Budget::name_bytes, count_of(field) * field.name.size(), "PointCloud2");
     const std::size_t size = number_bytes(field.datatype) * count_of(field);
     if (size == 0)
       reject_cloud(fmt::format("{} of type {}", shown_field(field), field.datatype),

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_clouds.hpp>
 #include <glidar/io/bags/bag_poses.hpp>
+#include <glidar/io/bags/bag_records.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 
@@ -201,7 +202,7 @@ std::string bytes_of(const std::filesystem::path& path) {
 /// Reads everything; the text of the Error, if any.
 std::string read_all(const std::filesystem::path& path) {
   return error_text([&] {
-    const auto bag = open_bag(path);
+    const auto bag = open_bag_unconfined(path);
     BagMessage message;
     while (bag->next(message)) {
     }

@@ -235,6 +235,30 @@ TEST_F(Family, AVariantIsChosenBehindTheNameOfItsFile) {
   EXPECT_EQ(find_sensor_file(odd.string()).file, odd);
 }
 
+/// `count` variants, the last one with the key rate_hz.
+std::string many_variants(int count) {
+  std::string text = "{optics: {width: 4, height: 3, fov_deg: 20}, variants: {";
+  for (int i = 0; i < count; ++i) text += "v" + std::to_string(i) + ": {rate_hz: 7}, ";
+  return text + "}}";
+}
+
+TEST_F(Family, HasAtMost1000Variants) {
+  const auto most = folder_.write("most.yaml", many_variants(1000));
+  EXPECT_EQ(load_sensor_file({.file = most, .variant = "v999"}).rate_hz, 7.0);
+  const auto more = folder_.write("more.yaml", many_variants(1001));
+  EXPECT_THAT(error_of(folder_, [&] { load_sensor_file({.file = more, .variant = "v1"}); }),
+              HasSubstr("1001 names; allowed: at most 1000"));
+}
+
+TEST_F(Family, ManyKeysAreMergedByName) {
+  std::string keys;
+  for (int i = 0; i < 20'000; ++i) keys += "k" + std::to_string(i) + ": 1, ";
+  const auto file =
+      folder_.write("keys.yaml", "{" + keys + "variants: {a: {" + keys + "k: null}}}");
+  EXPECT_THAT(error_of(folder_, [&] { load_sensor_file({.file = file, .variant = "a"}); }),
+              HasSubstr("variants.a.k: no value, which removes the key"));
+}
+
 TEST(ParseSensor, ReadsTheDefaultModeOfAText) {
   const std::string text =
       "{optics: {width: 4, height: 3, fov_deg: 20}, modes: {a: {rate_hz: 7}}, default_mode: a}";

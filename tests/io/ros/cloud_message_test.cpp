@@ -326,6 +326,20 @@ TEST(CloudFromMessage, RowsWithoutPointsTakeNoTime) {
   EXPECT_EQ(to_point_cloud(message).size(), 0U);
 }
 
+TEST(CloudFromMessage, NumbersOfAPointAreLimitedWithoutPoints) {
+  PointCloud2 message = mixed_message(false);
+  message.width = message.height = 0;
+  message.data = Payload();
+  message.point_step = 0xFFFFFFFF;
+  message.fields.push_back({"d", 30, PointField::uint8, 1U << 28U});
+  EXPECT_THAT(error_text([&] { to_point_cloud(message); }),
+              HasSubstr("PointCloud2: more than 4096 numbers of a point"));
+  message.fields.back() = {std::string(4000, 'n'), 30, PointField::uint8, 4000};
+  EXPECT_THAT(error_text([&] { to_point_cloud(message); }), HasSubstr("bytes of names"));
+  message.fields.back() = {"d", 30, PointField::uint8, 4000};
+  EXPECT_EQ(to_point_cloud(message).columns.back().components.size(), 4000U);
+}
+
 TEST(CloudFromMessage, ContradictingSizesAreErrors) {
   const auto refused = [](const auto& change) {
     PointCloud2 message = mixed_message(false);

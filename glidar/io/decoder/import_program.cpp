@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/model/import_program.hpp>
+#include <glidar/io/decoder/import_program.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/own_folders.hpp>

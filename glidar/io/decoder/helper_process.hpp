@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: starts and ends the program glidar-import, which reads files of others.
+
+#include <glidar/io/files/unique_fd.hpp>
+
+#include <sys/resource.h>
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// Descriptors of the program: its standard streams are /dev/null, all others are closed.
+inline constexpr int kAnswerFd = 3;   ///< it writes what it read
+inline constexpr int kControlFd = 4;  ///< it writes progress, or reads requests
+
+/// The first argument of the program when it does not read a model; then DecoderKind::name, path,
+/// memory in bytes, time in s, and id of this process.
+inline constexpr const char* kDecodeOption = "--decode";
+
+/// Exit status of the program when it has no memory left to report this in an answer.
+inline constexpr int kExitNoMemory = 3;
+/// The same when its answer exceeds the limit on the size of files, which holds for memory too.
+inline constexpr int kExitFileSize = 4;
+
+/// How the program ended.
+enum class ImportEnd : std::uint8_t {
+  answered,
+  crashed,
+  out_of_time,
+  out_of_memory,
+  over_file_size
+};
+
+struct HelperEnd {
+  ImportEnd end = ImportEnd::crashed;
+  int signal = 0;  ///< that ended it when crashed; 0: it exited without an answer
+  rusage usage{};
+};
+
+[[noreturn]] void fail_to_start(const std::string& program, int error);
+
+/// The descriptor duplicated above those of the program, so that it can get any of them. Closes
+/// `fd`. Throws Error when it is -1, or none is free.
+UniqueFd moved_up(const std::string& program, int fd);
+
+/// Starts the program with these descriptors. Its environment contains only the search path of the
+/// dynamic loader. Throws Error.
+pid_t start_helper(std::vector<std::string> arguments, int answer, int control);
+
+/// True when the program has ended; it is not reaped yet. An unknown one counts as ended.
+bool has_ended(pid_t helper);
+
+/// Waits for the end of the program, after killing it if required.
+HelperEnd end_helper(pid_t helper, bool is_killed);
+
+/// "signal SIGSEGV, Segmentation fault"
+std::string signal_name(int signal);
+
+/// 20 s, plus 2 s per megabyte.
+double default_time_limit_s(std::uint64_t file_bytes);
+
+}  // namespace glidar

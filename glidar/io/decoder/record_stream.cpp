@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/decoder/record_stream.hpp>
+
+#include <glidar/core/excerpt.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{256} << 10U;
+constexpr std::size_t kMaxFailureBytes = std::size_t{64} << 10U;
+
+/// A record in the stream, before its payload. Both ends are on one machine.
+struct RecordHead {
+  std::uint32_t kind = 0;
+  std::uint32_t index = 0;
+  std::int64_t stamp_ns = 0;
+  std::uint64_t size = 0;
+};
+static_assert(sizeof(RecordHead) == 24);
+
+void append_bytes(std::vector<std::byte>& to, const void* from, std::size_t size) {
+  const auto* bytes = static_cast<const std::byte*>(from);
+  to.insert(to.end(), bytes, bytes + size);
+}
+
+}  // namespace
+
+/// Small records are collected. At first each is sent at once, so that a reader of the first
+/// message need not wait until thousands are read.
+void RecordWriter::write(const Record& record) {
+  const RecordHead head{static_cast<std::uint32_t>(record.kind), record.index, record.stamp_ns,
+                        record.payload.size()};
+  append_bytes(buffer_, &head, sizeof head);
+  ++records_;
+  if (record.payload.size() >= kBufferBytes) {
+    flush();
+    return write_all(record.payload);
+  }
+  append_bytes(buffer_, record.payload.data(), record.payload.size());
+  if (buffer_.size() >= kBufferBytes || records_ - flushed_records_ > flushed_records_) flush();
+}
+
+void RecordWriter::write_failure(const ErrorParts& parts) {
+  std::vector<std::byte> payload;
+  for (const std::string* part : {&parts.where, &parts.found, &parts.allowed, &parts.remedy}) {
+    const std::string text = part->substr(0, kMaxFailureBytes / 5);
+    const auto size = static_cast<std::uint32_t>(text.size());
+    append_bytes(payload, &size, sizeof size);
+    append_bytes(payload, text.data(), text.size());
+  }
+  write({RecordKind::failure, 0, 0, payload});
+  flush();
+}
+
+void RecordWriter::flush() {
+  write_all(buffer_);
+  buffer_.clear();
+  flushed_records_ = records_;
+}
+
+void RecordWriter::write_all(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(fd_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw Error({"stream", std::generic_category().message(errno)});
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+}
+
+RecordReader::RecordReader(Source source, std::string place, std::uint64_t max_payload)
+    : source_(std::move(source)),
+      place_(std::move(place)),
+      max_payload_(max_payload),
+      buffer_(kBufferBytes) {}
+
+void RecordReader::reject(const std::string& found) const {
+  throw Error({place_, "the process that reads it returned a malformed answer (" + found + ")", "",
+               "the file is damaged or malicious"});
+}
+
+Record RecordReader::next() {
+  RecordHead head;
+  take(std::as_writable_bytes(std::span(&head, 1)));
+  if (head.kind < static_cast<std::uint32_t>(RecordKind::topic) ||
+      head.kind > static_cast<std::uint32_t>(RecordKind::failure))
+    reject(fmt::format("a record of kind {}", head.kind));
+  const auto kind = static_cast<RecordKind>(head.kind);
+  const std::uint64_t max_size = kind == RecordKind::item      ? max_payload_
+                                 : kind == RecordKind::failure ? kMaxFailureBytes
+                                                               : 3 * InputBudget::kMaxNameBytes;
+  if (head.size > max_size) reject(fmt::format("a record of {} bytes", head.size));
+  const std::span<const std::byte> payload = take_payload(head.size);
+  if (kind == RecordKind::failure) rethrow(payload);
+  return {kind, head.index, head.stamp_ns, payload};
+}
+
+/// Fills all bytes.
+void RecordReader::take(std::span<std::byte> to) {
+  while (!to.empty()) {
+    const std::size_t held = std::min(end_ - begin_, to.size());
+    std::memcpy(to.data(), buffer_.data() + begin_, held);
+    begin_ += held;
+    to = to.subspan(held);
+    if (to.empty()) return;
+    const bool is_large = to.size() >= buffer_.size();
+    const std::size_t got = source_(is_large ? to : std::span(buffer_));
+    if (got == 0) reject("it ends early");
+    if (is_large) {
+      to = to.subspan(got);
+    } else {
+      begin_ = 0;
+      end_ = got;
+    }
+  }
+}
+
+/// A claimed size alone takes no memory: the buffer grows as the bytes arrive.
+std::span<const std::byte> RecordReader::take_payload(std::uint64_t size) {
+  if (size <= end_ - begin_) {
+    begin_ += size;
+    return std::span(buffer_).subspan(begin_ - size, size);
+  }
+  constexpr std::size_t kFirst = std::size_t{1} << 20U;
+  for (std::size_t filled = 0; filled < size;) {
+    const std::size_t until =
+        std::min<std::size_t>(size, std::max({kFirst, 2 * filled, payload_.size()}));
+    if (payload_.size() < until) payload_.resize(until);
+    take(std::span(payload_).subspan(filled, until - filled));
+    filled = until;
+  }
+  return std::span(payload_).first(size);
+}
+
+void RecordReader::rethrow(std::span<const std::byte> payload) const {
+  std::array<std::string, 4> parts;
+  for (std::string& part : parts) {
+    std::uint32_t size = 0;
+    if (payload.size() < sizeof size) reject("an error that ends early");
+    std::memcpy(&size, payload.data(), sizeof size);
+    payload = payload.subspan(sizeof size);
+    if (payload.size() < size) reject("an error that ends early");
+    constexpr std::size_t kMaxPart = 8192;
+    part = excerpt({reinterpret_cast<const char*>(payload.data()), size}, kMaxPart);
+    payload = payload.subspan(size);
+  }
+  throw Error({parts[0], parts[1], parts[2], parts[3]});
+}
+
+}  // namespace glidar

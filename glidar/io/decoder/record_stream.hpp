@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io and glidar-import: plain records of what the sandboxed process reads.
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/files/input_budget.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+enum class RecordKind : std::uint32_t {
+  topic = 1,  ///< of a bag; all come first, in order
+  ready,      ///< all topics are sent; the reader requests some of them
+  item,       ///< a message of a bag, a datagram of a capture, or the pixels of an image
+  end,
+  failure,  ///< the error that ended the reading
+};
+
+/// One record; in the stream these numbers, the size and the bytes of the payload.
+struct Record {
+  RecordKind kind = RecordKind::end;
+  std::uint32_t index = 0;    ///< of the item's topic, or what its kind of input needs
+  std::int64_t stamp_ns = 0;  ///< of an item
+  std::span<const std::byte> payload;
+};
+
+class RecordWriter {
+ public:
+  explicit RecordWriter(int fd) : fd_(fd) {}
+
+  /// Throws Error when the stream cannot be written.
+  void write(const Record& record);
+  void write_failure(const ErrorParts& parts);
+  void flush();
+
+ private:
+  void write_all(std::span<const std::byte> bytes);
+
+  int fd_;
+  std::vector<std::byte> buffer_;
+  std::size_t flushed_records_ = 0;
+  std::size_t records_ = 0;
+};
+
+/// Reads records of a process that a malicious file may have compromised: checks every number and
+/// size, and keeps memory within the budget of the input.
+class RecordReader {
+ public:
+  /// Fills some of the bytes and returns how many; 0 at the end of the stream.
+  using Source = std::function<std::size_t(std::span<std::byte>)>;
+
+  /// `place` names the input in errors. `max_payload`: bytes of a record.
+  RecordReader(Source source, std::string place, std::uint64_t max_payload);
+
+  /// The next record, whose payload is valid until the next call. Throws the Error that the process
+  /// reports, and Error when the stream is malformed or ends without its last record.
+  Record next();
+
+  [[noreturn]] void reject(const std::string& found) const;
+  [[nodiscard]] const std::string& place() const { return place_; }
+
+ private:
+  void take(std::span<std::byte> to);
+  std::span<const std::byte> take_payload(std::uint64_t size);
+  [[noreturn]] void rethrow(std::span<const std::byte> payload) const;
+
+  Source source_;
+  std::string place_;
+  std::uint64_t max_payload_;
+  std::vector<std::byte> buffer_;
+  std::size_t begin_ = 0;  ///< of the bytes of buffer_ that were not returned yet
+  std::size_t end_ = 0;
+  std::vector<std::byte> payload_;  ///< of a record that is larger than the rest of the buffer
+};
+
+}  // namespace glidar

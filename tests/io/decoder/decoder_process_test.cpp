@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/decoder/decoder_process.hpp>
+
+#include <glidar/io/bags/bag_records.hpp>
+
+#include <support/error_text.hpp>
+#include <support/test_folder.hpp>
+
+#include <gmock/gmock.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+namespace glidar {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TestFolder;
+
+/// Replaces the program by a shell script.
+class DecoderProcess : public ::testing::Test {
+ protected:
+  ~DecoderProcess() override { ::unsetenv("GLIDAR_IMPORT_HELPER"); }
+
+  /// The error of reading a bag with this script, which may take `time_limit_s`.
+  std::string error(const std::string& body, double time_limit_s = 600.0) {
+    return error_text([&] {
+      const auto bag = bags::receive_bag(start(body, time_limit_s));
+      for (bags::BagMessage message; bag->next(message);) {
+      }
+    });
+  }
+
+  DecoderRun start(const std::string& body, double time_limit_s = 600.0) {
+    const std::filesystem::path script =
+        folder_.write("import", "#!/bin/sh\necho $$ > " + id_file() + "\n" + body + "\n");
+    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+    ::setenv("GLIDAR_IMPORT_HELPER", script.c_str(), 1);
+    DecoderKind kind = kBagDecoder;
+    kind.time_limit_s = time_limit_s;
+    return start_decoder(kind, folder_.write("run.mcap", "bag"));
+  }
+
+  [[nodiscard]] bool is_running() const {
+    std::ifstream file(id_file());
+    pid_t id = 0;
+    file >> id;
+    return id > 0 && ::kill(id, 0) == 0;
+  }
+
+  [[nodiscard]] std::string id_file() const { return (folder_ / "id").string(); }
+  TestFolder folder_;
+};
+
+constexpr double kShort_s = 0.3;
+constexpr const char* kTopics =
+    R"(printf '\002\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0' >&3)";
+constexpr const char* kEnd = R"(printf '\004\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0' >&3)";
+
+TEST_F(DecoderProcess, ABagWithoutTopicsIsRead) {
+  EXPECT_EQ(error(std::string(kTopics) + "\n" + kEnd), "no error");
+}
+
+TEST_F(DecoderProcess, SilenceEndsAfterTheTimeLimit) {
+  EXPECT_THAT(error("exec sleep 3600", kShort_s), HasSubstr("run.mcap: reading it took longer"));
+  EXPECT_FALSE(is_running());
+}
+
+TEST_F(DecoderProcess, SilenceAfterTheTopicsEndsToo) {
+  EXPECT_THAT(error(std::string(kTopics) + "\nexec sleep 3600", kShort_s),
+              HasSubstr("took longer than 0.3 s"));
+}
+
+TEST_F(DecoderProcess, AStoppedProcessEnds) {
+  EXPECT_THAT(error("kill -STOP $$", kShort_s), HasSubstr("took longer"));
+  EXPECT_FALSE(is_running());
+}
+
+TEST_F(DecoderProcess, ClosedDescriptorsDoNotKeepItAlive) {
+  EXPECT_THAT(error("exec sleep 3600 3>&- 4>&-", kShort_s), HasSubstr("run.mcap: "));
+  EXPECT_FALSE(is_running());
+}
+
+TEST_F(DecoderProcess, AFloodEndsAtTheFirstMalformedRecord) {
+  EXPECT_THAT(error("exec cat /dev/zero >&3"), HasSubstr("a record of kind 0"));
+  EXPECT_FALSE(is_running());
+}
+
+TEST_F(DecoderProcess, AFloodOfTopicsEndsAtTheBudget) {
+  const std::string topic =
+      R"(\001\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\012\0\0\0\0\0\0\0\001\0\0\0\0\0\0\0\0\0)";
+  EXPECT_THAT(error("while printf '" + topic + "' >&3; do :; done"), HasSubstr("topics"));
+}
+
+TEST_F(DecoderProcess, CrashesAndLimitsAreReported) {
+  EXPECT_THAT(error("kill -SEGV $$"), HasSubstr("crashed (signal SIGSEGV"));
+  EXPECT_THAT(error("exit 2"), HasSubstr("ended without an answer"));
+  EXPECT_THAT(error("exit 3"), HasSubstr("needs more memory than"));
+  EXPECT_THAT(error("kill -XCPU $$"), HasSubstr("took longer"));
+  EXPECT_THAT(error(kTopics), HasSubstr("ended without an answer"));
+}
+
+TEST_F(DecoderProcess, EndsWithItsReader) {
+  {
+    const auto bag = bags::receive_bag(start(std::string(kTopics) + "\nexec sleep 3600"));
+    EXPECT_TRUE(is_running());
+  }
+  EXPECT_FALSE(is_running());
+}
+
+TEST_F(DecoderProcess, ASelectionForAnEndedProcessIsNoSignal) {
+  const std::string topic =
+      R"(printf '\001\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\012\0\0\0\0\0\0\0\001\0\0\0\0\0\0\0\0\0' >&3)";
+  const auto bag = bags::receive_bag(start(topic + "\n" + kTopics + "\nexit 2"));
+  ASSERT_EQ(bag->topics().size(), 1U);
+  bags::BagMessage message;
+  EXPECT_THAT(error_text([&] { bag->next(message); }), HasSubstr("ended without an answer"));
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/decoder/record_stream.hpp>
+
+#include <glidar/io/files/unique_fd.hpp>
+
+#include <support/error_text.hpp>
+#include <support/test_folder.hpp>
+
+#include <gmock/gmock.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace glidar {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using Bytes = std::vector<std::byte>;
+
+constexpr std::uint64_t kMaxPayload = std::uint64_t{1} << 22U;
+
+/// What a writer writes.
+template <class Write>
+Bytes written(const Write& write) {
+  const testing::TestFolder folder;
+  const std::string file = (folder / "records").string();
+  const UniqueFd fd(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  RecordWriter writer(fd.get());
+  write(writer);
+  writer.flush();
+  Bytes bytes(static_cast<std::size_t>(::lseek(fd.get(), 0, SEEK_END)));
+  EXPECT_EQ(::pread(fd.get(), bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  return bytes;
+}
+
+/// Reads bytes that arrive in pieces of `piece`.
+RecordReader reader_of(const Bytes& bytes, std::size_t piece = SIZE_MAX) {
+  auto at = std::make_shared<std::size_t>(0);
+  return RecordReader(
+      [&bytes, piece, at](std::span<std::byte> to) {
+        const std::size_t size = std::min({to.size(), piece, bytes.size() - *at});
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(*at), size, to.begin());
+        *at += size;
+        return size;
+      },
+      "run.mcap", kMaxPayload);
+}
+
+TEST(RecordStream, RecordsOfAnySizeReadBackHoweverTheyArrive) {
+  const std::vector<std::size_t> sizes = {0, 3, 300'000, 1, 3'000'000, 70'000, 262'144};
+  const Bytes bytes = written([&](RecordWriter& to) {
+    for (std::uint32_t i = 0; i < sizes.size(); ++i) {
+      const Bytes payload(sizes[i], static_cast<std::byte>(i));
+      to.write({RecordKind::item, i, -5 * std::int64_t{i}, payload});
+    }
+  });
+  for (const std::size_t piece : {std::size_t{7'001}, std::size_t{65'536}, SIZE_MAX}) {
+    RecordReader reader = reader_of(bytes, piece);
+    for (std::uint32_t i = 0; i < sizes.size(); ++i) {
+      const Record record = reader.next();
+      EXPECT_EQ(record.index, i);
+      EXPECT_EQ(record.stamp_ns, -5 * std::int64_t{i});
+      ASSERT_EQ(record.payload.size(), sizes[i]);
+      EXPECT_TRUE(std::all_of(record.payload.begin(), record.payload.end(),
+                              [&](std::byte one) { return one == static_cast<std::byte>(i); }));
+    }
+  }
+}
+
+TEST(RecordStream, AnErrorOfTheProcessIsThrownWithoutControlCharacters) {
+  const Bytes bytes = written([](RecordWriter& to) {
+    to.write_failure({"run.mcap, byte 7", "a chunk\x1b[2J", "a complete bag", "copy it again"});
+  });
+  EXPECT_THAT(error_text([&] { reader_of(bytes).next(); }),
+              HasSubstr("run.mcap, byte 7: a chunk?[2J; allowed: a complete bag; copy it again"));
+}
+
+TEST(RecordStream, MalformedStreamsAreErrors) {
+  const Bytes item = written([](RecordWriter& to) {
+    to.write({RecordKind::item, 0, 0, Bytes(10)});
+  });
+  const auto with = [&](std::size_t at, int value) {
+    Bytes changed = item;
+    changed[at] = static_cast<std::byte>(value);
+    return error_text([&] { reader_of(changed).next(); });
+  };
+  EXPECT_THAT(with(0, 9), AllOf(HasSubstr("run.mcap: "), HasSubstr("a record of kind 9")));
+  EXPECT_THAT(with(0, 0), HasSubstr("a record of kind 0"));
+  EXPECT_THAT(with(22, 1), HasSubstr("a record of 281474976710666 bytes"));
+  EXPECT_THAT(with(16, 11), HasSubstr("it ends early"));
+  EXPECT_THAT(with(0, 5), HasSubstr("an error that ends early"));
+  EXPECT_THAT(error_text([] { reader_of({}).next(); }), HasSubstr("it ends early"));
+}
+
+TEST(RecordStream, TopicsAreShort) {
+  const Bytes bytes = written([](RecordWriter& to) {
+    to.write({RecordKind::topic, 0, 0, Bytes(100'000)});
+  });
+  EXPECT_THAT(error_text([&] { reader_of(bytes).next(); }), HasSubstr("a record of 100000 bytes"));
+}
+
+}  // namespace
+}  // namespace glidar
