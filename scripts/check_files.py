@@ -25,6 +25,7 @@ SLEEPERS = {
     "tests/support/waiting.py": "the helper that waits",
     "tests/support/waiting.hpp": "the helper that waits",
     "tests/python/errors_test.py": "a program that hangs, which the test interrupts",
+    "tests/io/decoder/decoder_process_test.cpp": "programs that hang, which the library ends",
     "tests/io/model/import_process_test.cpp": "programs that hang, which the library ends",
     "tests/scripts/check_files_test.py": "the test of this rule",
 }

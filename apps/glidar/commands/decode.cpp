@@ -26,6 +26,7 @@
 #include <memory>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 namespace glidar::app {
 namespace {
@@ -99,11 +100,9 @@ Sender sender_of(const DecodeFlags& flags) {
   return sender;
 }
 
-/// Whether the file has clouds, not packets.
-bool has_clouds(const DecodeFlags& flags) {
-  if (!bags::is_bag_path(flags.input)) return false;
-  const auto bag = bags::open_bag(flags.input);
-  for (const bags::StoredTopic& topic : bag->topics()) {
+/// Whether the bag has clouds, not packets.
+bool has_clouds(const DecodeFlags& flags, const bags::BagReader& bag) {
+  for (const bags::StoredTopic& topic : bag.topics()) {
     if (!flags.topic.empty() && topic.name != flags.topic) continue;
     const ros::MessageType* type = bags::type_of(topic);
     if (type == &ros::message_type<ros::PointCloud2>() ||
@@ -115,7 +114,7 @@ bool has_clouds(const DecodeFlags& flags) {
     return type == &ros::message_type<ros::VelodyneScan>() ||
            type == &ros::message_type<ros::PacketMsg>();
   };
-  return std::none_of(bag->topics().begin(), bag->topics().end(), has_packets);
+  return std::none_of(bag.topics().begin(), bag.topics().end(), has_packets);
 }
 
 /// Counts the frames and prints the summary.
@@ -141,9 +140,9 @@ class Written {
   std::uint64_t count_ = 0;
 };
 
-void decode_packets(const DecodeFlags& flags, Console& console, Written& written) {
-  // before the sensor is sought, so that a missing file is reported as such
-  auto packets = open_packets(flags.input, flags.topic);
+/// `packets` are open before the sensor is sought, so that a missing file is reported as such.
+void decode_packets(const DecodeFlags& flags, std::unique_ptr<PacketSource> packets,
+                    Console& console, Written& written) {
   Sender sender = sender_of(flags);
   for (const std::string& note : sender.sensor.notes) console.info(note);
   PacketFrames frames(std::move(packets), std::move(sender.decoder));
@@ -197,9 +196,10 @@ void convert_intensity(PointCloud& cloud) {
   }
 }
 
-void decode_clouds(const DecodeFlags& flags, Console& console, Written& written) {
+void decode_clouds(const DecodeFlags& flags, std::unique_ptr<bags::BagReader> bag, Console& console,
+                   Written& written) {
   check_cloud_options(flags);
-  bags::BagClouds clouds(flags.input, flags.topic);
+  bags::BagClouds clouds(std::move(bag), flags.input, flags.topic);
   const Scene nothing;
   const Sensor unknown;
   const Beams beams;
@@ -225,7 +225,9 @@ void check_recordings(const DecodeFlags& flags) {
 int run_decode(DecodeFlags flags) {
   Console console(flags.quiet);
   flags.output.sink.sidecar = false;  // there is no measurement to describe
-  const bool are_clouds = has_clouds(flags);
+  std::unique_ptr<bags::BagReader> bag;
+  if (bags::is_bag_path(flags.input)) bag = bags::open_bag(flags.input);
+  const bool are_clouds = bag != nullptr && has_clouds(flags, *bag);
   if (!are_clouds && flags.output.columns.empty()) flags.output.columns = kDecodedColumns;
   check_recordings(flags);
   if (flags.output.paths.empty()) {
@@ -235,9 +237,11 @@ int run_decode(DecodeFlags flags) {
   check_layout(flags.output);
   Written written(flags);
   if (are_clouds) {
-    decode_clouds(flags, console, written);
+    decode_clouds(flags, std::move(bag), console, written);
   } else {
-    decode_packets(flags, console, written);
+    auto packets = bag != nullptr ? packets_of(std::move(bag), flags.input, flags.topic)
+                                  : open_packets(flags.input);
+    decode_packets(flags, std::move(packets), console, written);
   }
   written.finish();
   return kDone;

@@ -108,9 +108,7 @@ bool is_padding(const DecodedFrame& decoded) {
 
 }  // namespace
 
-std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path,
-                                           const std::string& topic) {
-  if (bags::is_bag_path(path)) return packets_of(bags::open_bag(path), path, topic);
+std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path) {
   return std::make_unique<CaptureSource>(path);
 }
 

@@ -27,11 +27,10 @@ class PacketSource {
   virtual bool next(UdpPacket& packet) = 0;
 };
 
-/// The packets of a capture, or of a topic of VelodyneScan or PacketMsg of a bag; `topic` empty:
-/// the first one that fits. Throws Error when there is no such file or topic.
-std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path,
-                                           const std::string& topic);
-/// Those of a bag that is open; `path` names it in errors.
+/// The packets of a capture. Throws Error when there is no such file.
+std::unique_ptr<PacketSource> open_packets(const std::filesystem::path& path);
+/// Those of a topic of VelodyneScan or PacketMsg of a bag; `topic` empty: the first one that fits.
+/// `path` names the bag in errors. Throws Error when there is no such topic.
 std::unique_ptr<PacketSource> packets_of(std::unique_ptr<bags::BagReader> bag,
                                          const std::filesystem::path& path,
                                          const std::string& topic);

@@ -44,11 +44,11 @@ std::span<const std::byte> BagFile::peek(std::uint64_t offset, std::uint64_t siz
   return std::span(window_).subspan(offset - window_offset_, size);
 }
 
-Bytes BagFile::read(std::uint64_t offset, std::uint64_t size) {
+Bytes BagFile::read(std::uint64_t offset, std::uint64_t size, Bytes reused) {
   require_within(offset, size);
-  Bytes bytes(size);
-  read_at(offset, bytes);
-  return bytes;
+  reused.resize(size);
+  read_at(offset, reused);
+  return reused;
 }
 
 void BagFile::require_within(std::uint64_t offset, std::uint64_t size) const {

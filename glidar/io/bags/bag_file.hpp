@@ -28,8 +28,8 @@ class BagFile {
   /// The bytes at an offset. They are valid until the next call. Throws Error when they are not all
   /// in the file; allocates no more than the file contains.
   std::span<const std::byte> peek(std::uint64_t offset, std::uint64_t size);
-  /// The same, to keep.
-  Bytes read(std::uint64_t offset, std::uint64_t size);
+  /// The same, to keep, in the memory of `reused`.
+  Bytes read(std::uint64_t offset, std::uint64_t size, Bytes reused = {});
 
  private:
   void require_within(std::uint64_t offset, std::uint64_t size) const;

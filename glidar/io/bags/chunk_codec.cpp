@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace glidar::bags {
 namespace {
@@ -47,7 +48,7 @@ void compress_zstd(std::span<const std::byte> chunk, Bytes& to) {
 }
 
 Bytes decompress_lz4(std::span<const std::byte> packed, std::uint64_t size,
-                     const std::string& place) {
+                     const std::string& place, Bytes chunk) {
   if (size / kMaxLz4Ratio > packed.size())
     reject_bag(place, fmt::format("{} bytes that claim to be {}", packed.size(), size));
   LZ4F_dctx* made = nullptr;
@@ -55,7 +56,7 @@ Bytes decompress_lz4(std::span<const std::byte> packed, std::uint64_t size,
     throw Error({place, "cannot decompress LZ4"});
   const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> context(
       made, LZ4F_freeDecompressionContext);
-  Bytes chunk(size);
+  chunk.resize(size);
   std::size_t done = 0;
   for (;;) {
     std::size_t written = chunk.size() - done;
@@ -74,11 +75,11 @@ Bytes decompress_lz4(std::span<const std::byte> packed, std::uint64_t size,
 }
 
 Bytes decompress_zstd(std::span<const std::byte> packed, std::uint64_t size,
-                      const std::string& place) {
+                      const std::string& place, Bytes chunk) {
   const unsigned long long known = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (known == ZSTD_CONTENTSIZE_ERROR || (known != ZSTD_CONTENTSIZE_UNKNOWN && known > size))
     reject_bag(place, "damaged Zstandard data");
-  Bytes chunk(size);
+  chunk.resize(size);
   const std::size_t done =
       ZSTD_decompress(chunk.data(), chunk.size(), packed.data(), packed.size());
   if (ZSTD_isError(done) != 0U)
@@ -95,7 +96,8 @@ void compress(std::span<const std::byte> chunk, Compression compression, Bytes& 
   compress_zstd(chunk, to);
 }
 
-Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::string& place) {
+Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::string& place,
+                 Bytes reused) {
   const auto& [bytes, compression, size] = packed;
   if (compression == Compression::none) {
     if (bytes.size() != size)
@@ -108,8 +110,8 @@ Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::stri
                fmt::format("at most {} bytes in a bag of this size", max_size));
   }
   budget.take(Budget::decompressed_bytes, size, place);
-  if (compression == Compression::lz4) return decompress_lz4(bytes, size, place);
-  return decompress_zstd(bytes, size, place);
+  if (compression == Compression::lz4) return decompress_lz4(bytes, size, place, std::move(reused));
+  return decompress_zstd(bytes, size, place, std::move(reused));
 }
 
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t crc) {

@@ -29,9 +29,10 @@ struct PackedChunk {
   std::uint64_t size = 0;  ///< when it is decompressed
 };
 
-/// Throws Error, with `place`, unless the chunk has its size, or when it is larger than
-/// kMaxChunkBytes or the budget.
-Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::string& place);
+/// The chunk in the memory of `reused`. Throws Error, with `place`, unless it has its size, or when
+/// it is larger than kMaxChunkBytes or the budget.
+Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::string& place,
+                 Bytes reused = {});
 
 /// CRC-32 as zlib computes it, continued from `crc`.
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t crc = 0);

@@ -27,7 +27,6 @@ ChunkMerger::ChunkMerger(std::string place, std::vector<ChunkRange> chunks, Shar
 }
 
 bool ChunkMerger::next(BagMessage& message) {
-  current_.clear();
   load_due();
   if (open_.empty()) return false;
   std::pop_heap(open_.begin(), open_.end(), is_later);
@@ -60,7 +59,7 @@ void ChunkMerger::load_due() {
 void ChunkMerger::open(std::size_t number) {
   auto opened = std::make_unique<Open>();
   opened->number = number;
-  opened->chunk = load_(number);
+  opened->chunk = load_(number, std::exchange(current_, {}));
   std::vector<ChunkEntry>& entries = opened->chunk.entries;
   budget_->take(Budget::messages, entries.size(), place_);
   const ChunkRange& range = chunks_[number];

@@ -41,9 +41,10 @@ struct LoadedChunk {
 /// Merges the messages of chunks by time. A chunk is in memory only while its messages are due.
 class ChunkMerger {
  public:
-  using Load = std::function<LoadedChunk(std::size_t)>;
+  /// Reads the chunk of a number, if possible in memory that an earlier chunk had.
+  using Load = std::function<LoadedChunk(std::size_t number, Bytes reused)>;
 
-  /// `load` reads the chunk of a number. `place` is the path of the bag, for errors. Messages, and
+  /// `place` is the path of the bag, for errors. Messages, and
   /// chunks while they are in memory, count in the budget.
   ChunkMerger(std::string place, std::vector<ChunkRange> chunks, SharedBudget budget, Load load);
 
@@ -74,7 +75,7 @@ class ChunkMerger {
   std::vector<std::size_t> order_;           ///< chunks by first time
   std::size_t next_ = 0;                     ///< in order_
   std::vector<std::unique_ptr<Open>> open_;  ///< a heap; the earliest message is in front
-  Bytes current_;                            ///< bytes of a chunk whose last message was returned
+  Bytes current_;  ///< of a chunk whose last message was returned; reused for the next chunk
 };
 
 }  // namespace glidar::bags

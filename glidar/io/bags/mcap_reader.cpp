@@ -169,7 +169,9 @@ class McapReader : public BagReader {
     std::vector<ChunkRange> ranges;
     for (const McapChunk& chunk : chunks_) ranges.push_back(chunk.range);
     merger_.emplace(path.string(), std::move(ranges), budget_,
-                    [this](std::size_t number) { return load(chunks_[number]); });
+                    [this](std::size_t number, Bytes reused) {
+                      return load(chunks_[number], std::move(reused));
+                    });
   }
 
   [[nodiscard]] std::span<const StoredTopic> topics() const override { return channels_.topics(); }
@@ -183,24 +185,24 @@ class McapReader : public BagReader {
   bool next(BagMessage& message) override { return merger_->next(message); }
 
  private:
-  Bytes records_of(const McapChunk& chunk) {
+  Bytes records_of(const McapChunk& chunk, Bytes reused = {}) {
     const std::string place = file_.place(chunk.offset);
     Bytes records = chunk.compression == Compression::none && chunk.size == chunk.stored_size
-                        ? file_.read(chunk.offset, chunk.size)
-                        : unpacked(chunk, place);
+                        ? file_.read(chunk.offset, chunk.size, std::move(reused))
+                        : unpacked(chunk, place, std::move(reused));
     if (chunk.crc != 0 && crc32_of(records) != chunk.crc)
       reject_bag(place, "a chunk whose checksum does not match");
     return records;
   }
 
-  Bytes unpacked(const McapChunk& chunk, const std::string& place) {
+  Bytes unpacked(const McapChunk& chunk, const std::string& place, Bytes reused) {
     const Bytes stored = file_.read(chunk.offset, chunk.stored_size);
-    return decompress({stored, chunk.compression, chunk.size}, *budget_, place);
+    return decompress({stored, chunk.compression, chunk.size}, *budget_, place, std::move(reused));
   }
 
-  LoadedChunk load(const McapChunk& chunk) {
+  LoadedChunk load(const McapChunk& chunk, Bytes reused) {
     LoadedChunk loaded;
-    loaded.bytes = records_of(chunk);
+    loaded.bytes = records_of(chunk, std::move(reused));
     ByteReader reader(loaded.bytes, "chunk at " + file_.place(chunk.offset));
     while (reader.left() > 0) {
       const McapRecord record = read_mcap_head(reader);

@@ -107,7 +107,9 @@ class Rosbag1Reader : public BagReader {
       ranges.push_back(*chunk.range);
     }
     merger_.emplace(path.string(), std::move(ranges), budget_,
-                    [this](std::size_t number) { return load(chunks_[number]); });
+                    [this](std::size_t number, Bytes reused) {
+                      return load(chunks_[number], std::move(reused));
+                    });
   }
 
   [[nodiscard]] std::span<const StoredTopic> topics() const override { return topics_; }
@@ -193,12 +195,16 @@ class Rosbag1Reader : public BagReader {
     chunks_[chunk->second].range = {fields.time_ns("start_time"), fields.time_ns("end_time")};
   }
 
-  LoadedChunk load(const Rosbag1Chunk& chunk) {
+  LoadedChunk load(const Rosbag1Chunk& chunk, Bytes reused) {
     const std::string place = file_.place(chunk.offset);
     LoadedChunk loaded;
-    loaded.bytes = file_.read(chunk.offset, chunk.stored_size);
-    if (chunk.compression != Compression::none || chunk.size != chunk.stored_size)
-      loaded.bytes = decompress({loaded.bytes, chunk.compression, chunk.size}, *budget_, place);
+    if (chunk.compression == Compression::none && chunk.size == chunk.stored_size) {
+      loaded.bytes = file_.read(chunk.offset, chunk.stored_size, std::move(reused));
+    } else {
+      const Bytes stored = file_.read(chunk.offset, chunk.stored_size);
+      loaded.bytes =
+          decompress({stored, chunk.compression, chunk.size}, *budget_, place, std::move(reused));
+    }
     ByteReader reader(loaded.bytes, "chunk at " + place);
     while (reader.left() > 0) {
       const BagFields fields(reader.sized(), reader.place());
