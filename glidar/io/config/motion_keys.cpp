@@ -3,11 +3,14 @@
 #include <glidar/io/config/motion_keys.hpp>
 
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/time_text.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 
 #include <array>
-#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 
 namespace glidar {
 namespace {
@@ -31,11 +34,18 @@ void visit_interpolation(FieldVisitor& visitor, Interpolation& interpolation) {
       kNames, interpolation);
 }
 
-/// Rounded to microseconds from 1e6 s on: a double holds these of a date, but not nanoseconds.
-std::int64_t nanoseconds(double seconds) {
-  constexpr double kMaxExact_s = 1e6;
-  return std::abs(seconds) < kMaxExact_s ? std::llround(seconds * 1e9)
-                                         : std::llround(seconds * 1e6) * 1000;
+/// Seconds, read as a text because doubles do not hold the nanoseconds of dates.
+void visit_start(FieldVisitor& visitor, std::optional<std::int64_t>& start_ns) {
+  const FieldInfo field = {"start_s", "shifts all times so that the first one is this", kUnitSecond,
+                           false, "times of the file"};
+  const NumberRule rule = {-9.2e9, 9.2e9, false, "seconds from -9.2e9 to 9.2e9"};
+  double seconds = 0.0;
+  if (!visitor.is_reading()) visitor.number(field, rule, seconds);
+  if (!visitor.is_reading() || !visitor.has(field.key)) return;
+  std::string text;
+  visitor.text(field, text);
+  start_ns = parse_seconds_ns(text);
+  if (!start_ns) visitor.reject(field.key, "{}", rule.allowed);
 }
 
 struct TrajectoryFileKeys {
@@ -50,14 +60,10 @@ void describe(TrajectoryFileKeys& keys, FieldVisitor& visitor) {
   visitor.number({"rate_hz", "of a KITTI file", kUnitHertz, false, "none"},
                  {0.01, 1e9, false, "a number from 0.01 to 1e9"}, rate_hz);
   visit_file(visitor, {"times", "times of a KITTI file", kNoUnit, false, "none"}, keys.times_file);
-  double start_s = 0.0;
-  visitor.number({"start_s", "shifts all times so that the first one is this", kUnitSecond, false,
-                  "times of the file"},
-                 {-9.2e9, 9.2e9, false, "seconds from -9.2e9 to 9.2e9"}, start_s);
+  visit_start(visitor, keys.options.start_ns);
   visit_interpolation(visitor, keys.options.interpolation);
   if (!visitor.is_reading()) return;
   if (visitor.has("rate_hz")) keys.options.rate_hz = rate_hz;
-  if (visitor.has("start_s")) keys.options.start_ns = nanoseconds(start_s);
   keys.options.times_file = keys.times_file;
 }
 

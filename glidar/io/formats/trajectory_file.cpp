@@ -95,6 +95,23 @@ bool has_nanoseconds(const TextRowReader& rows, const Word& word) {
   rows.reject(word, "the unit " + shown(unit) + " of times", "[s] or [ns]");
 }
 
+/// The columns of EuRoC files, from their first row of numbers: nanoseconds, position, qw qx qy qz,
+/// and in files with 17 columns velocities and biases.
+Columns euroc_columns(const TextRowReader& rows) {
+  constexpr std::size_t kMinDigits = 16;  // of nanoseconds since 1970, from its twelfth day on
+  constexpr std::size_t kWithBiases = 17;
+  const std::string_view time = rows.words()[0].text;
+  const std::size_t count = rows.words().size();
+  const bool has_ns =
+      time.size() >= kMinDigits && time.find_first_not_of("0123456789") == std::string_view::npos;
+  if (has_ns && (count == kTum || count == kWithBiases))
+    return {.at = {0, 1, 2, 3, 5, 6, 7, 4}, .count = count, .has_ns = true};
+  rows.reject(rows.words()[0], "numbers in the first row, which names the columns of CSV files",
+              "a row of names; without it, rows of EuRoC files: nanoseconds with 16 digits or "
+              "more, x, y, z, qw, qx, qy, qz, 8 or 17 columns",
+              "add the row 't,x,y,z,qx,qy,qz,qw', in the order of the columns");
+}
+
 /// The header of a CSV file.
 Columns named_columns(const TextRowReader& rows) {
   const std::string allowed =
@@ -228,10 +245,12 @@ void require_no_times(const std::string& file, const TrajectoryFileOptions& opti
 std::vector<TimedPose> read_quaternions(TextRowReader& rows, const std::string& file,
                                         const TrajectoryFileOptions& options) {
   require_no_times(file, options);
-  const bool csv = rows.has_commas();
-  const Columns columns = csv ? named_columns(rows) : Columns();
+  const bool has_names =
+      rows.has_commas() && rows.words()[0].text.find_first_of("+-.0123456789") != 0;
+  Columns columns;
+  if (rows.has_commas()) columns = has_names ? named_columns(rows) : euroc_columns(rows);
   std::vector<TimedPose> poses;
-  if (!csv) read_quaternion_row(rows, columns, poses);
+  if (!has_names) read_quaternion_row(rows, columns, poses);
   while (rows.next()) read_quaternion_row(rows, columns, poses);
   return poses;
 }

@@ -6,6 +6,8 @@
 
 #include "io/yaml_files.hpp"
 
+#include <gmock/gmock.h>
+
 #include <numbers>
 
 namespace glidar {
@@ -62,6 +64,33 @@ TEST(MotionKeys, TrajectoryIsAPathOrAMap) {
                 .translation()
                 .x(),
             4.0);
+}
+
+TEST(MotionKeys, StartTimesAreExactToTheNanosecond) {
+  // a double of these sizes has steps of 238 ns
+  const std::pair<const char*, std::int64_t> kTimes[] = {
+      {"1700000000.123456789", 1'700'000'000'123'456'789},
+      {"1.700000000123456789e9", 1'700'000'000'123'456'789},
+      {"-1700000000.000000001", -1'700'000'000'000'000'001},
+      {"+9.2e9", 9'200'000'000'000'000'000},
+      {"0.0000000015", 2}};
+  for (const auto& [text, expected_ns] : kTimes) {
+    const auto moved = std::get<TimedPoses>(
+        motion("motion: {trajectory: {file: orbit.tum, start_s: " + std::string(text) + "}}"));
+    EXPECT_EQ(moved.first_ns(), expected_ns) << text;
+  }
+}
+
+TEST(MotionKeys, StartTimesThatAreNoSecondsAreRejected) {
+  for (const char* text : {"now", "1e10", ".inf", "5 s"}) {
+    try {
+      (void)motion("motion: {trajectory: {file: orbit.tum, start_s: " + std::string(text) + "}}");
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("allowed: seconds from -9.2e9 to 9.2e9"));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("motion.trajectory.start_s"));
+    }
+  }
 }
 
 TEST(MotionKeys, SceneShowsEverythingAtTimeZero) {

@@ -60,7 +60,8 @@ TEST(TrajectoryFile, EurocNamesItsColumnsInACommentAndHasNanoseconds) {
         "b_w_RS_S_x [rad s^-1], b_w_RS_S_y [rad s^-1], b_w_RS_S_z [rad s^-1], "
         "b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], b_a_RS_S_z [m s^-2]\r\n" +
             std::string(kRow) + others,
-        "timestamp [ns],x,y,z,qw,qx,qy,qz\n" + std::string(kRow)}) {
+        "timestamp [ns],x,y,z,qw,qx,qy,qz\n" + std::string(kRow), std::string(kRow),
+        "# without names\n" + std::string(kRow) + others}) {
     const TimedPoses poses = load_text(content);
     ASSERT_EQ(poses.poses().size(), 1U);
     const TimedPose& pose = poses.poses()[0];
@@ -129,6 +130,11 @@ const std::string kGood = "0 0 0 0 0 0 0 1\n";
 const std::string kNames =
     "t, x, y, z, qw, qx, qy, qz, each once, in any order, or the names of EuRoC files";
 
+const std::string kNoNames =
+    "numbers in the first row, which names the columns of CSV files; allowed: a row of names; "
+    "without it, rows of EuRoC files: nanoseconds with 16 digits or more, x, y, z, qw, qx, qy, qz, "
+    "8 or 17 columns; add the row 't,x,y,z,qx,qy,qz,qw', in the order of the columns";
+
 const BadFile kBadTrajectories[] = {
     {"Empty", "", "t: no pose; allowed: at least one; see docs/files.md"},
     {"OnlyComments", "# a\n\n", "t: no pose; allowed: at least one; see docs/files.md"},
@@ -160,8 +166,16 @@ const BadFile kBadTrajectories[] = {
      "t:1:3: a position that is not finite or too large; allowed: coordinates up to 1e15 m"},
     {"UnknownColumn", "t,x,y,z,qx,qy,qz,w\n",
      "t:1:18: the column 'w'; allowed: " + kNames + "; the first row names the columns"},
-    {"CsvWithoutHeader", "0,0,0,0,0,0,0,1\n",
-     "t:1:1: the column '0'; allowed: " + kNames + "; the first row names the columns"},
+    {"CsvOfSecondsWithoutNames", "1403636580.838555574,0,0,0,1,0,0,0\n", "t:1:1: " + kNoNames},
+    {"CsvOfShortTimesWithoutNames", "140363658083855,0,0,0,1,0,0,0\n", "t:1:1: " + kNoNames},
+    {"CsvOfNegativeTimesWithoutNames", "-1403636580838555648,0,0,0,1,0,0,0\n",
+     "t:1:1: " + kNoNames},
+    {"CsvOfPositionsWithoutNames", "1403636580838555648,0,0,0\n", "t:1:1: " + kNoNames},
+    {"EurocRowTooShort", "1403636580838555648,0,0,0,1,0,0,0\n1403636580838555649,0,0,0,1,0,0\n",
+     "t:2:31: 7 columns; allowed: 8 in every row"},
+    {"EurocTimeInSeconds", "1403636580838555648,0,0,0,1,0,0,0\n1403636581.5,0,0,0,1,0,0,0\n",
+     "t:2:1: '1403636581.5' in a column of nanoseconds; allowed: whole numbers; a column of "
+     "seconds is called 't'"},
     {"ColumnTwice", "t,x,y,z,qx,qy,qz,x\n", "t:1:18: the column 'x' again; allowed: " + kNames},
     {"ColumnMissing", "t,x,y,z,qx,qy,qz\n", "t:1:15: no column 'qw'; allowed: " + kNames},
     {"SecondsInNanoseconds", "timestamp,x,y,z,qx,qy,qz,qw\n1.5,0,0,0,0,0,0,1\n",

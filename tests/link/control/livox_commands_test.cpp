@@ -9,7 +9,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace glidar::control {
 namespace {
@@ -21,6 +23,15 @@ Bytes bytes_from(std::initializer_list<int> values) {
   Bytes bytes;
   for (const int value : values) bytes.push_back(static_cast<std::byte>(value));
   return bytes;
+}
+
+/// The letters before the first zero, which C programs print; fails without a zero.
+std::string text_of(const Bytes& bytes) {
+  const auto end = std::find(bytes.begin(), bytes.end(), std::byte{0});
+  EXPECT_NE(end, bytes.end());
+  std::string text;
+  for (auto letter = bytes.begin(); letter != end; ++letter) text += static_cast<char>(*letter);
+  return text;
 }
 
 struct Livox {
@@ -75,9 +86,19 @@ TEST(LivoxCommands, AnswerSearchesWithTypeSerialNumberAddressAndPort) {
   const LivoxCommand read = decode_livox_command(*answer);
   EXPECT_EQ(read.data.size(), 24U);
   EXPECT_EQ(Bytes(read.data.begin(), read.data.begin() + 2), bytes_from({0, 9}));
+  const Bytes serial(read.data.begin() + 2, read.data.begin() + 18);
+  EXPECT_EQ(text_of(serial), "GLIDAR000000001");
   EXPECT_EQ(Bytes(read.data.begin() + 18, read.data.end()), bytes_from({127, 0, 0, 2, 0x24, 0xdb}));
   EXPECT_FALSE(livox.commands.answer_search(*answer).has_value());
   EXPECT_FALSE(livox.commands.answer(*answer, "127.0.0.1").has_value());
+}
+
+TEST(LivoxCommands, TheSerialNumberEndsWithAZero) {
+  Livox livox;
+  const Bytes answer = livox.ask(0x0101, bytes_from({1, 0, 0, 0, 0, 0x80}));
+  ASSERT_EQ(answer.size(), 3U + 4U + 16U);
+  EXPECT_EQ(get<std::uint16_t>(answer, 3), 0x8000);
+  EXPECT_EQ(text_of(Bytes(answer.begin() + 7, answer.end())), "GLIDAR000000001");
 }
 
 TEST(LivoxCommands, AnswerQueriesOfAllKeysOfTheMid360) {
