@@ -277,9 +277,9 @@ TEST(SceneFileErrors, CalibrationsThatDoNotFitAreReportedWithBothPlaces) {
   const std::string cell = "c.csv:3: 'up'; allowed: degrees from -90 to 90";
   const std::string two = "optics: {type: spinning, columns_per_turn: 8, elevation_deg: [1, 2]";
   EXPECT_EQ(error("sensors: [{name: a, sensor: {" + two + "}}, calibration_file: c.csv}]"),
-            "s.yaml:2:115: sensors[0].calibration_file: " + cell);
+            "s.yaml:2:119: sensors[0].calibration_file: " + cell);
   EXPECT_EQ(error("sensor: {" + two + ", calibration_file: c.csv}}"),
-            "s.yaml:2:96: sensor.optics.calibration_file: " + cell);
+            "s.yaml:2:97: sensor.optics.calibration_file: " + cell);
   EXPECT_EQ(error("sensor: VLP-16\nsensor_calibration_file: d.csv"),
             "s.yaml:3:26: sensor_calibration_file: d.csv: 2 channels; allowed: 16, as the sensor; "
             "use the calibration of this sensor, or the sensor's preset");

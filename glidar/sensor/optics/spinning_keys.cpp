@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -150,6 +151,14 @@ void visit_sector(FieldVisitor& visitor, Spinning& s) {
     return visitor.number({"width_deg", "", kUnitDegree}, kTurn, s.azimuth_width_rad);
   }
   if (visitor.mode() == FieldVisitor::Mode::schema) {
+    visitor.at_most_one({.keys = {"from_deg", "from_rad"},
+                         .allowed = "",
+                         .missing = "the first azimuth is missing"});
+    for (const auto& [key, needed] : {std::pair{"from_deg", "to_deg"},
+                                      {"to_deg", "from_deg"},
+                                      {"from_rad", "width_rad"},
+                                      {"width_rad", "from_rad"}})
+      visitor.needs({key, needed, "", ""});
     visit_sector_deg(visitor, false, s);
     return visit_sector_rad(visitor, false, s);
   }

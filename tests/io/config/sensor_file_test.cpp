@@ -184,7 +184,7 @@ const BadFile kBadFiles[] = {
     {"MissingWidth", optics("height: 2, fov_deg: 20"),
      "s.yaml:1:9: optics: the key 'width' is missing; add 'width: ...'"},
     {"MissingFy", optics("width: 4, height: 2, fx: 3"),
-     "s.yaml:1:46: optics.fx: given without 'fy'; allowed: one of fov_deg, fov_x_deg, or fx with "
+     "s.yaml:1:35: optics.fx: given without 'fy'; allowed: one of fov_deg, fov_x_deg, or fx with "
      "fy; add 'fy: ...'"},
     {"NoFocalLength", optics("width: 4, height: 2"),
      "s.yaml:1:9: optics: the focal length is missing; allowed: " + kFocal +
