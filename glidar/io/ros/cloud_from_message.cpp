@@ -49,8 +49,8 @@ void check_fields(const PointCloud2& message) {
   std::vector<std::pair<std::size_t, std::size_t>> used;  // [begin, end)
   for (const PointField& field : message.fields) {
     budget.take(Budget::components, count_of(field), "PointCloud2");
-    budget.take_name(field.name.size(), "PointCloud2");
-    budget.take(Budget::name_bytes, count_of(field) * field.name.size(), "PointCloud2");
+    budget.take_name(field.name.bytes().size(), "PointCloud2");
+    budget.take(Budget::name_bytes, count_of(field) * field.name.bytes().size(), "PointCloud2");
     const std::size_t size = number_bytes(field.datatype) * count_of(field);
     if (size == 0)
       reject_cloud(fmt::format("{} of type {}", shown_field(field), field.datatype),
