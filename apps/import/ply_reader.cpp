@@ -396,21 +396,26 @@ class PlyReader {
     std::vector<double> uvs;
     for (std::uint64_t n = 0; n < element.count; ++n, ++face_) {
       values_.begin_entry(element, n);
-      uvs.clear();
-      for (std::size_t i = 0; i < entry.size(); ++i) {
-        const PlyProperty& property = element.properties[i];
-        if (i == wanted.indices) {
-          read_corners(property);
-        } else if (i == wanted.uvs) {
-          read_list(property, uvs);
-        } else if (property.count) {
-          skip_value(property);
-        } else {
-          entry[i] = values_.next(property.type);
-        }
-      }
+      read_face(element, wanted, entry, uvs);
       excess_ += values_.end_entry() ? 1 : 0;
       add_face(element, wanted, entry, uvs);
+    }
+  }
+
+  void read_face(const PlyElement& element, const FaceProperties& wanted,
+                 std::vector<double>& entry, std::vector<double>& uvs) {
+    uvs.clear();
+    for (std::size_t i = 0; i < entry.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      if (i == wanted.indices) {
+        read_corners(property);
+      } else if (i == wanted.uvs) {
+        read_list(property, uvs);
+      } else if (property.count) {
+        skip_value(property);
+      } else {
+        entry[i] = values_.next(property.type);
+      }
     }
   }
 
@@ -477,7 +482,6 @@ class PlyReader {
 
   /// Strips of triangles; -1 begins the next one.
   void read_strips(const PlyElement& element) {
-    std::set<std::size_t> used;
     const std::size_t indices = element.find({"vertex_indices", "vertex_index"});
     if (indices == PlyElement::kNone || !element.properties[indices].count) {
       refuse_line(element.line, "the strips have no list 'vertex_indices'");
@@ -486,15 +490,19 @@ class PlyReader {
     std::vector<double> strip;
     for (std::uint64_t n = 0; n < element.count; ++n, ++face_) {
       values_.begin_entry(element, n);
-      for (std::size_t i = 0; i < element.properties.size(); ++i) {
-        if (i == indices) {
-          read_list(element.properties[i], strip);
-        } else {
-          skip_value(element.properties[i]);
-        }
-      }
+      read_strip(element, indices, strip);
       end_entry();
       add_strip(strip);
+    }
+  }
+
+  void read_strip(const PlyElement& element, std::size_t indices, std::vector<double>& strip) {
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      if (i == indices) {
+        read_list(element.properties[i], strip);
+      } else {
+        skip_value(element.properties[i]);
+      }
     }
   }
 
