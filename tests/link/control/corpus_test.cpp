@@ -11,7 +11,7 @@ namespace {
 
 TEST(ControlCorpus, AcceptsValidRequestsAndPacketsOnly) {
   const auto [accepted, files] = testing::decode_corpus("control", testing::try_control_decoders);
-  EXPECT_EQ(files, 15U);
+  EXPECT_EQ(files, 16U);
   EXPECT_THAT(accepted, ::testing::ElementsAre("http_config", "http_metadata", "livox_configure",
                                                "livox_packet", "livox_query", "livox_search",
                                                "ptc_calibration", "ptc_destination"));
