@@ -4,7 +4,9 @@
 
 import _thread
 import logging
+import os
 import pickle
+import signal
 import threading
 from itertools import starmap
 from pathlib import Path
