@@ -4,9 +4,9 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
+#include <glidar/io/decoder/import_program.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/model/import_process.hpp>
-#include <glidar/io/decoder/import_program.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 
 #include <fmt/format.h>
