@@ -132,7 +132,7 @@ std::filesystem::path write_input(const Street& street, bags::Compression compre
   const auto from = bags::open_bag_unconfined(street.bag());
   const auto to = bags::create_bag(path, {.compression = compression});
   for (const bags::StoredTopic& topic : from->topics())
-    to->add_topic({topic.name, bags::type_of(topic), bags::type_of(topic)->qos});
+    to->add_topic({topic.name.bytes(), bags::type_of(topic), bags::type_of(topic)->qos});
   for (bags::BagMessage message; from->next(message);)
     to->write(message.topic, message.time_ns, message.data);
   to->finish();

@@ -213,7 +213,7 @@ std::set<std::string> frame_pairs(const ros::MemorySink& sink, const std::string
   std::set<std::string> pairs;
   for (const ros::TFMessage& message : sink.of<ros::TFMessage>(topic))
     for (const ros::TransformStamped& one : message.transforms)
-      pairs.insert(one.header.frame_id + " > " + one.child_frame_id);
+      pairs.insert(one.header.frame_id.bytes() + " > " + one.child_frame_id.bytes());
   return pairs;
 }
 

@@ -82,7 +82,7 @@ TEST_P(EveryBag, ReadsBackItsMessagesInOrderOfTime) {
   ASSERT_EQ(bag->topics().size(), 2U);
   const StoredTopic points = bag->topics()[1];
   EXPECT_EQ(points.name, "/points");
-  EXPECT_EQ(ros::find_message_type(points.type), &ros::message_type<ros::PointCloud2>());
+  EXPECT_EQ(ros::find_message_type(points.type.bytes()), &ros::message_type<ros::PointCloud2>());
   std::int64_t last_ns = 0;
   std::vector<std::uint32_t> seen;
   BagMessage message;
