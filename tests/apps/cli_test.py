@@ -385,13 +385,23 @@ class Verify(CliTest):
 
 
 class Interrupt(CliTest):
+    def written_by(self, pid):
+        """The open files of a process in the test's folder, also those without a name yet."""
+        folder, links = os.path.realpath(self.folder) + "/", []
+        for descriptor in os.listdir(f"/proc/{pid}/fd"):
+            try:
+                links.append(os.readlink(f"/proc/{pid}/fd/{descriptor}"))
+            except FileNotFoundError:  # closed meanwhile
+                continue
+        return [link for link in links if link.startswith(folder)]
+
     def test_ctrl_c_leaves_no_files(self):
         with subprocess.Popen(
                 ["glidar", "render", "builtin:asteroid", "-w", "1200", "--height", "1200",
                  "--columns", "all", "-o", "a.csv", "-o", "b.csv"],
                 cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE, text=True) as program:
-            wait_until(self.files, "it was writing", program, pause_s=0.002)
+            wait_until(lambda: self.written_by(program.pid), "it was writing", program, pause_s=0.002)
             self.assertIsNone(program.poll(), "the program ended before it could be interrupted")
             program.send_signal(signal.SIGINT)
             _, error = program.communicate(timeout=MAX_WAIT_S)

@@ -19,7 +19,8 @@ from skipping import IN_CTEST, skip  # noqa: E402
 
 LIBRARIES = os.environ.get("GLIDAR_LIBRARIES", "")
 READER = ["io/config/field_json", "io/config/provenance", "io/config/yaml_budget", "io/config/yaml_field_reader",
-          "io/config/yaml_reader", "io/files/input_file", "io/files/nearest_file", "io/files/text_file"]
+          "io/config/yaml_reader", "io/files/input_budget", "io/files/input_file", "io/files/nearest_file",
+          "io/files/text_file"]
 KEYS_TEST = """
 TEST(Example, KeysAreReadAndWritten) {
   glidar::NoiseStep step;

@@ -4,6 +4,7 @@
 #include "packet_fixture.hpp"
 
 #include <glidar/io/bags/sqlite_bag_reader.hpp>
+#include <glidar/io/files/input_budget.hpp>
 #include <glidar/io/packets/hesai_packet.hpp>
 #include <glidar/io/packets/ouster_codec.hpp>
 #include <glidar/io/packets/pcap_file.hpp>
@@ -13,6 +14,8 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <filesystem>
+#include <memory>
 #include <ostream>
 
 namespace glidar::testing {
@@ -105,7 +108,9 @@ std::vector<Payload> xt32_payloads() {
   constexpr std::array kHead = {std::byte{0xEE}, std::byte{0xFF}, std::byte{6}, std::byte{1}};
   constexpr std::ptrdiff_t kBytes = 1080;
   std::vector<Payload> payloads;
-  const auto bag = bags::open_sqlite_bag(data_folder() / "depth/nebula/xt32.db3");
+  const std::filesystem::path path = data_folder() / "depth/nebula/xt32.db3";
+  const auto bag =
+      bags::open_sqlite_bag(path, std::make_shared<InputBudget>(std::filesystem::file_size(path)));
   for (bags::BagMessage message; bag->next(message);) {
     auto at = std::search(message.data.begin(), message.data.end(), kHead.begin(), kHead.end());
     while (message.data.end() - at >= kBytes) {
