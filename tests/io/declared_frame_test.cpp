@@ -300,7 +300,6 @@ TEST(DeclaredFrame, AreCorrectForRealFiles) {
                          {"textured/assimp/Collada/cube_with_2UVs.DAE", 0.0254, Axis::z},
                          {"textured/assimp/Collada/duck.zae", 0.01, Axis::y},
                          {"textured/assimp/Collada/cube_UTF8BOM.dae", 0.01, Axis::y},
-                         {"textured/assimp/Collada/lights.dae", 1.0, Axis::z},
                          {"textured/dae/CesiumMilkTruck/CesiumMilkTruck.dae", 1.0, Axis::y},
                          {"scenes/turtlebot3_world/meshes/wall.dae", 0.0254, Axis::y},
                          {"textured/assimp/FBX/cubes_with_names.fbx", 0.01, Axis::y},

@@ -50,7 +50,7 @@ std::string write_error(const CloudFixture& made, const char* name) {
 
 std::string pcd_head(const char* data) {
   return std::string("# .PCD v0.7 - Point Cloud Data file format\n# glidar ") + version() +
-         ", metres in the frame my frame\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\n"
+         ", metres in the frame my?frame\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\n"
          "TYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS "
          "2\nDATA " +
          data + "\n";
@@ -111,7 +111,7 @@ TEST(PlyFile, AsciiHasTheExpectedText) {
   options.ply_ascii = true;
   EXPECT_EQ(written(two_points(), "a.ply", options),
             std::string("ply\nformat ascii 1.0\ncomment glidar ") + version() +
-                ", metres in the frame my frame\nelement vertex 2\nproperty float x\n"
+                ", metres in the frame my?frame\nelement vertex 2\nproperty float x\n"
                 "property float y\nproperty float z\nproperty float intensity\nend_header\n"
                 "0.5 -1.25 3 0.1\nnan nan nan 0\n");
 }

@@ -368,7 +368,7 @@ TEST(RigMessages, OfViewersHaveTrueRangesAndImages) {
   EXPECT_EQ(sink.counts().at("/lidar/intensity/image_raw"), 2U);
   std::vector<std::string> names;
   const auto clouds = sink.of<ros::PointCloud2>("/lidar/points");
-  for (const auto& field : clouds.at(0).fields) names.push_back(field.name);
+  for (const auto& field : clouds.at(0).fields) names.push_back(field.name.bytes());
   EXPECT_THAT(names, ElementsAre("x", "y", "z", "intensity", "ring", "time", "range", "true_range",
                                  "instance", "class"));
 }
