@@ -33,6 +33,9 @@ std::map<std::string, std::uint64_t> counted_triangles() {
 
 /// Why some count differs or a file that the manifest could read is refused.
 const std::map<std::string, std::string> kExceptions = {
+    {"textured/assimp/Collada/cameras.dae", "it has no surfaces"},
+    {"textured/assimp/Collada/lights.dae", "it has no surfaces"},
+    {"textured/assimp/OBJ/number_formats.obj", "3.1+e2 is no number"},
     {"textured/obj_mtl/tinyobj/test-nan.obj", "two triangles touch NaN and are left out"}};
 
 class DataModels : public ::testing::TestWithParam<const char*> {};

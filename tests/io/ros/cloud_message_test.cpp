@@ -297,7 +297,7 @@ TEST(CloudFromMessage, NamesAreColumnNamesAndUnique) {
 }
 
 TEST(CloudFromMessage, ManyNamesThatBecomeOneTakeLittleTime) {
-  constexpr std::uint32_t kFields = 60'000;
+  constexpr std::uint32_t kFields = 4000;  // of at most 4096
   PointCloud2 message;
   message.height = 1;
   message.fields = {{"x", 0, PointField::float32, 1},
@@ -355,7 +355,7 @@ TEST(CloudFromMessage, ContradictingSizesAreErrors) {
               HasSubstr("fields within the 30 bytes"));
   EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].offset = 21; }), HasSubstr("overlap"));
   EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].count = 0xFFFFFFFF; }),
-              HasSubstr("fields within"));
+              HasSubstr("numbers of a point"));
   EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].datatype = 9; }), HasSubstr("types 1 to 8"));
   EXPECT_THAT(refused([](PointCloud2& m) { m.fields[5].name = "a"; }), HasSubstr("two fields 'a'"));
   EXPECT_THAT(refused([](PointCloud2& m) { m.fields[0].name = "w"; }), HasSubstr("no x, y and z"));
