@@ -128,8 +128,8 @@ std::vector<Group> merged(const std::vector<Group>& parts,
     Group& group = groups[group_of[i]];
     if (!parts[i].box.isEmpty()) group.box.extend(parts[i].box);
     group.rounding = std::max(group.rounding, parts[i].rounding);
+    group.is_coarse = group.is_coarse || parts[i].is_coarse;
   }
-  set_coarse(groups);
   return groups;
 }
 
