@@ -157,29 +157,35 @@ void read_clouds(benchmark::State& state, const std::filesystem::path& path, Ope
   state.SetItemsProcessed(state.iterations() * kFrames);
 }
 
+struct Reading {
+  std::string title;
+  void (*read)(benchmark::State&, const std::filesystem::path&, OpenBag);
+  OpenBag open;
+  bags::Compression compression;
+};
+
+void enter_reading(const std::shared_ptr<const Street>& street, const Reading& reading) {
+  benchmark::RegisterBenchmark(reading.title.c_str(),
+                               [street, reading](benchmark::State& state) {
+                                 reading.read(state, write_input(*street, reading.compression),
+                                              reading.open);
+                               })
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
 void add_reading(const std::filesystem::path& folder, std::vector<Ratio>& ratios) {
   const auto street = std::make_shared<const Street>(1, folder);
-  using Read = void (*)(benchmark::State&, const std::filesystem::path&, OpenBag);
-  const std::array<std::pair<const char*, Read>, 2> reads = {
-      {{"messages", read_messages}, {"clouds", read_clouds}}};
   for (const auto compression : {bags::Compression::none, bags::Compression::zstd}) {
-    const bool is_packed = compression != bags::Compression::none;
-    for (const auto& [what, read] : reads) {
-      const std::string name = std::string(what) + (is_packed ? " of a zstd bag" : " of a bag");
-      const auto enter = [&, read = read](const std::string& title, OpenBag open) {
-        benchmark::RegisterBenchmark(title.c_str(),
-                                     [=](benchmark::State& state) {
-                                       write_input(*street, compression);
-                                       read(state, *street, open);
-                                     })
-            ->UseRealTime()
-            ->Unit(benchmark::kMillisecond);
-      };
-      enter(name + ", in this process", bags::open_bag_unconfined);
-      enter(name + ", sandboxed", bags::open_bag);
+    for (const auto read : {read_messages, read_clouds}) {
+      std::string name = read == read_messages ? "messages" : "clouds";
+      name += compression == bags::Compression::none ? " of a bag" : " of a zstd bag";
+      const Reading here{name + ", in this process", read, bags::open_bag_unconfined, compression};
+      const Reading there{name + ", sandboxed", read, bags::open_bag, compression};
+      enter_reading(street, here);
+      enter_reading(street, there);
       constexpr double kGoal = 1.0 / 1.2;
-      ratios.push_back({name + ": sandboxed / in this process", name + ", in this process",
-                        name + ", sandboxed", kGoal});
+      ratios.push_back({name + ": sandboxed / in this process", here.title, there.title, kGoal});
     }
   }
 }

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <utility>
 
 namespace glidar::import {
 namespace {
@@ -78,7 +79,9 @@ SourceModel read_file(const std::filesystem::path& model, const ModelFolder& fol
   const auto own = files.content(model.string());
   const std::string extension = lower_case(model.extension().string());
   const std::string_view head = own->head(kHead);
-  if (const auto unread = unread_format(extension, head)) throw *unread;
+  if (auto unread = unread_format(extension, head)) {
+    throw Refusal{std::move(unread->found), std::move(unread->remedy)};
+  }
   if (gltf::is_gltf(extension, head)) {
     return gltf::read_gltf(
         own->whole(), [&](const std::string& uri) { return open_buffer(uri, folder, files, log); });

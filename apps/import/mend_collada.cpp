@@ -222,6 +222,24 @@ class Mender {
     }
   }
 
+  /// Writes the indices of the triangles of a strip or a fan, `stride` for each corner; returns
+  /// their number.
+  static std::size_t append_triangles(const std::vector<std::uint32_t>& indices, std::size_t stride,
+                                      bool is_strip, std::string& text) {
+    const std::size_t corners = indices.size() / stride;
+    std::size_t count = 0;
+    for (; count + 2 < corners; ++count) {
+      const std::size_t first = is_strip ? count : 0;
+      const std::size_t odd = is_strip ? count % 2 : 0;
+      for (const std::size_t corner : {first, count + 1 + odd, count + 2 - odd}) {
+        for (std::size_t k = 0; k < stride; ++k) {
+          text.append(std::to_string(indices[corner * stride + k])).append(" ");
+        }
+      }
+    }
+    return count;
+  }
+
   /// Triangles instead of strips or fans, of which Assimp leaves out the latter.
   void unfold(Node from, bool is_strip) {
     std::size_t stride = 1;
@@ -231,17 +249,7 @@ class Mender {
     std::string text;
     std::size_t count = 0;
     for (const Node& list : from.children("p")) {
-      const std::vector<std::uint32_t> indices = integers_of(list);
-      const std::size_t corners = indices.size() / stride;
-      for (std::size_t i = 0; i + 2 < corners; ++i, ++count) {
-        const std::size_t first = is_strip ? i : 0;
-        const std::size_t odd = is_strip ? i % 2 : 0;
-        for (const std::size_t corner : {first, i + 1 + odd, i + 2 - odd}) {
-          for (std::size_t k = 0; k < stride; ++k) {
-            text += std::to_string(indices[corner * stride + k]) + " ";
-          }
-        }
-      }
+      count += append_triangles(integers_of(list), stride, is_strip, text);
     }
     while (Node list = from.child("p")) from.remove_child(list);
     from.set_name("triangles");

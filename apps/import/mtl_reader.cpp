@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace glidar::import {
 namespace {
@@ -107,7 +108,7 @@ MapStatement parse_map(std::string_view text) {
     MapStatement with_tail = map;
     parse_options(tail, with_tail);
     if (!trimmed(tail).empty()) continue;  // a part of the name
-    map = with_tail;
+    map = std::move(with_tail);
     text = text.substr(0, at);
     break;
   }
@@ -184,7 +185,9 @@ bool MtlReader::read_map(const std::string& keyword, std::string_view text) {
     note_line("'" + shown(keyword) + "' names no file");
     return true;
   }
-  for (const std::string& option : map.unused) unused_.insert(keyword + " " + option);
+  for (const std::string& option : map.unused) {
+    unused_.insert(std::string(keyword).append(" ").append(option));
+  }
   // A normal map has precedence over heights.
   const bool is_heights = keyword.ends_with("bump");
   if (is_heights && m.normals && has_normal_map_.contains(current_->number)) {

@@ -46,20 +46,19 @@ std::shared_ptr<FileContent> ReaderInput::companion(const std::string& name) con
   for (const std::string& tried : names) {
     if (tried.empty()) continue;
     const ConfinedFile file = confine(tried, folder);
-    if (file.access == Access::granted) {
-      if (auto content = files.content(file.path.string())) {
-        if (access == Access::outside) {
-          add_once(log.notes,
-                   fmt::format("'{}' is outside the model's folder: '{}' is read instead",
-                               shown(name), shown(tried)));
-        }
-        return content;
-      }
-      add_once(log.notes, fmt::format("'{}' cannot be opened", shown(name)));
-      return nullptr;
+    if (file.access != Access::granted) {
+      add_once(log.absent, (folder.folder / tried).string());
+      if (access == Access::absent) access = file.access;
+      continue;
     }
-    add_once(log.absent, (folder.folder / tried).string());
-    if (access == Access::absent) access = file.access;
+    auto content = files.content(file.path.string());
+    if (content == nullptr) {
+      add_once(log.notes, fmt::format("'{}' cannot be opened", shown(name)));
+    } else if (access == Access::outside) {
+      add_once(log.notes, fmt::format("'{}' is outside the model's folder: '{}' is read instead",
+                                      shown(name), shown(tried)));
+    }
+    return content;
   }
   add_once(log.notes, fmt::format("'{}' is not read: {}", shown(name), reason(access)));
   return nullptr;

@@ -67,7 +67,7 @@ class NoiseStepExample(unittest.TestCase):
             command = shlex.split(os.environ["GLIDAR_CXX"]) + [
                 "-std=c++20", "-ffp-contract=off", *shlex.split(os.environ["GLIDAR_CXX_FLAGS"]), "-O0", "-I.", "-Itests",
                 *[f"-isystem{path}" for path in os.environ["GLIDAR_INCLUDES"].split(",")], "unit.cpp", "-o", "example",
-                *LIBRARIES.split(","), "-lyaml-cpp", "-ltbb", "-lgtest", "-lgtest_main", "-pthread"]
+                *LIBRARIES.split(","), "-lyaml-cpp", "-lfmt", "-ltbb", "-lgtest", "-lgtest_main", "-pthread"]
             subprocess.run(command, cwd=folder, check=True)
             subprocess.run(["./example"], cwd=folder, check=True)
 

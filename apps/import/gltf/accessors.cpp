@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace glidar::import::gltf {
@@ -86,6 +87,15 @@ auto with_type(Component type, const Read& read) {
   return read(float{});
 }
 
+/// Copies the `n` components of an element. Signed ones are not read as unsigned integers.
+template <class T, class Number>
+void copy_element(const char* from, std::size_t n, Number* to) {
+  if constexpr (std::is_floating_point_v<Number> || std::is_unsigned_v<T>) {
+    for (std::size_t k = 0; k < n; ++k)
+      to[k] = static_cast<Number>(stored<T>(from + k * sizeof(T)));
+  }
+}
+
 /// All components as stored.
 template <class Number>
 std::vector<Number> read_stored(const Accessor& accessor) {
@@ -93,20 +103,14 @@ std::vector<Number> read_stored(const Accessor& accessor) {
     using T = decltype(zero);
     const std::size_t n = accessor.components;
     std::vector<Number> all(accessor.count * n);
-    if (!accessor.bytes.empty()) {
-      const char* element = accessor.bytes.data();
-      for (std::size_t i = 0; i < accessor.count; ++i, element += accessor.stride) {
-        for (std::size_t k = 0; k < n; ++k) {
-          all[i * n + k] = static_cast<Number>(stored<T>(element + k * sizeof(T)));
-        }
-      }
-    }
+    const std::size_t given = accessor.bytes.empty() ? 0 : accessor.count;
+    for (std::size_t i = 0; i < given; ++i)
+      copy_element<T>(accessor.bytes.data() + i * accessor.stride, n, all.data() + i * n);
     if (!accessor.sparse) return all;
     const char* value = accessor.sparse->values.data();
     for (const std::uint32_t i : accessor.sparse->indices) {
-      for (std::size_t k = 0; k < n; ++k, value += sizeof(T)) {
-        all[i * n + k] = static_cast<Number>(stored<T>(value));
-      }
+      copy_element<T>(value, n, all.data() + i * n);
+      value += n * sizeof(T);
     }
     return all;
   });

@@ -243,7 +243,7 @@ std::vector<double> Value::numbers(std::size_t count) const {
   return all;
 }
 
-std::vector<double> Value::numbers_or(std::vector<double> fallback) const {
+std::vector<double> Value::numbers_or(const std::vector<double>& fallback) const {
   return json_ == nullptr ? fallback : numbers(fallback.size());
 }
 

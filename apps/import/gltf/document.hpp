@@ -54,7 +54,7 @@ class Value {
   /// Exactly `count` numbers.
   [[nodiscard]] std::vector<double> numbers(std::size_t count) const;
   /// The same; `fallback` if it is absent.
-  [[nodiscard]] std::vector<double> numbers_or(std::vector<double> fallback) const;
+  [[nodiscard]] std::vector<double> numbers_or(const std::vector<double>& fallback) const;
 
   [[noreturn]] void refuse(const std::string& found) const { gltf::refuse(path_, found); }
 

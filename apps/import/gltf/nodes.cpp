@@ -50,6 +50,15 @@ struct Family {
   std::vector<std::size_t> parent;
 };
 
+void add_child(Family& family, std::size_t parent, std::size_t child, const Value& index) {
+  if (family.parent[child] != kNoNode) {
+    index.refuse(
+        fmt::format("nodes[{}] has another parent, nodes[{}]", child, family.parent[child]));
+  }
+  family.parent[child] = parent;
+  family.children[parent].push_back(child);
+}
+
 Family read_family(const Document& document) {
   const Value nodes = document.root()["nodes"];
   Family family{std::vector<std::vector<std::size_t>>(nodes.size()),
@@ -58,13 +67,7 @@ Family read_family(const Document& document) {
     const Value list = nodes.at(i)["children"];
     for (std::size_t k = 0; k < list.size(); ++k) {
       const Value index = list.at(k);
-      const std::size_t child = document.number("nodes", index);
-      if (family.parent[child] != kNoNode) {
-        index.refuse(
-            fmt::format("nodes[{}] has another parent, nodes[{}]", child, family.parent[child]));
-      }
-      family.parent[child] = i;
-      family.children[i].push_back(child);
+      add_child(family, i, document.number("nodes", index), index);
     }
   }
   return family;

@@ -147,21 +147,36 @@ std::vector<V> vectors_of(const std::vector<double>& numbers, std::size_t stride
 
 // Morphing.
 
+struct Morphs {
+  Value targets;
+  const std::vector<double>& weights;  ///< one per target
+};
+
 /// Adds the weighted differences of all targets to an attribute.
-void morph(PrimitiveReader& reader, const Value& targets, const std::vector<double>& weights,
-           const char* name, const Kind& kind, std::vector<double>& values, std::size_t stride) {
+void morph(PrimitiveReader& reader, const Morphs& morphs, const char* name, const Kind& kind,
+           std::vector<double>& values, std::size_t stride) {
   if (values.empty()) return;
-  for (std::size_t t = 0; t < targets.size(); ++t) {
-    if (weights[t] == 0.0) continue;
-    const std::vector<double> deltas = reader.deltas(targets.at(t), name, kind);
+  for (std::size_t t = 0; t < morphs.targets.size(); ++t) {
+    if (morphs.weights[t] == 0.0) continue;
+    const std::vector<double> deltas = reader.deltas(morphs.targets.at(t), name, kind);
     const std::size_t n = deltas.size() / (values.size() / stride);
     for (std::size_t i = 0; i < deltas.size(); ++i) {
-      values[i / n * stride + i % n] += weights[t] * deltas[i];
+      values[i / n * stride + i % n] += morphs.weights[t] * deltas[i];
     }
   }
 }
 
 // Skinning.
+
+/// The pose of a joint times its weight.
+Eigen::Matrix4d weighted_joint(const Value& primitive, const Deformation& deformation,
+                               std::size_t vertex, std::uint32_t joint, double weight) {
+  if (joint >= deformation.joints.size() || !(weight >= 0.0)) {
+    primitive.refuse(fmt::format("vertex {} has the joint {} of {} and the weight {}", vertex,
+                                 joint, deformation.joints.size(), weight));
+  }
+  return weight * deformation.joints[joint];
+}
 
 /// The matrix of each vertex.
 std::vector<Eigen::Matrix4d> skin_of(PrimitiveReader& reader, const Value& primitive,
@@ -176,11 +191,7 @@ std::vector<Eigen::Matrix4d> skin_of(PrimitiveReader& reader, const Value& primi
     reader.attributes()[("WEIGHTS_" + number).c_str()].require();
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (weights[i] == 0.0) continue;
-      if (joints[i] >= deformation.joints.size() || !(weights[i] >= 0.0)) {
-        primitive.refuse(fmt::format("vertex {} has the joint {} of {} and the weight {}", i / 4,
-                                     joints[i], deformation.joints.size(), weights[i]));
-      }
-      skin[i / 4] += weights[i] * deformation.joints[joints[i]];
+      skin[i / 4] += weighted_joint(primitive, deformation, i / 4, joints[i], weights[i]);
       sums[i / 4] += weights[i];
     }
   }
@@ -261,23 +272,22 @@ void note_attributes(const Value& primitive, const Value& attributes, const UvSe
   }
 }
 
-void read_uvs(PrimitiveReader& reader, const UvSets& sets, const Value& targets,
-              const std::vector<double>& weights, SourceMesh& mesh) {
+void read_uvs(PrimitiveReader& reader, const UvSets& sets, const Morphs& morphs, SourceMesh& mesh) {
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string name = "TEXCOORD_" + std::to_string(sets.sets[k]);
     std::vector<double> uvs = reader.numbers(name, {2, false});
-    morph(reader, targets, weights, name.c_str(), {2, false}, uvs, 2);
+    morph(reader, morphs, name.c_str(), {2, false}, uvs, 2);
     mesh.uvs[k] = vectors_of<Eigen::Vector2f>(uvs, 2);
     for (Eigen::Vector2f& uv : mesh.uvs[k]) uv.y() = 1.0F - uv.y();
   }
 }
 
-void read_colours(PrimitiveReader& reader, const Value& targets, const std::vector<double>& weights,
-                  SourceMesh& mesh, SourceModel& model) {
+void read_colours(PrimitiveReader& reader, const Morphs& morphs, SourceMesh& mesh,
+                  SourceModel& model) {
   std::vector<double> colours = reader.numbers("COLOR_0", {3, true});
   if (colours.empty()) return;
   const std::size_t n = colours.size() / mesh.positions.size();
-  morph(reader, targets, weights, "COLOR_0", {3, true}, colours, n);
+  morph(reader, morphs, "COLOR_0", {3, true}, colours, n);
   mesh.colours = vectors_of<Eigen::Vector3f>(colours, n);
   for (std::size_t i = 3; n == 4 && i < colours.size(); i += 4) {
     if (colours[i] < 1.0) add_note(model, "the opacity of vertex colours is left out");
@@ -311,18 +321,17 @@ std::optional<SourceMesh> read_primitive(Context& context, const Value& primitiv
   note_attributes(primitive, reader.attributes(), sets, is_skinned, model);
   note_leftover(primitive, corners.size(), mode, model);
   mesh.triangles = triangles_of(corners, mode);
-  const Value targets = primitive["targets"];
-  const std::vector<double>& weights = deformation.weights;
+  const Morphs morphs{primitive["targets"], deformation.weights};
   const auto morphed = [&](const char* name, std::size_t components) {
     std::vector<double> values = reader.numbers(name, {components, false});
-    morph(reader, targets, weights, name, {3, false}, values, components);
+    morph(reader, morphs, name, {3, false}, values, components);
     return values;
   };
   mesh.positions = vectors_of<Eigen::Vector3d>(morphed("POSITION", 3), 3);
   mesh.normals = vectors_of<Eigen::Vector3f>(morphed("NORMAL", 3), 3);
   mesh.tangents = vectors_of<Eigen::Vector4f>(morphed("TANGENT", 4), 4);
-  read_uvs(reader, sets, targets, weights, mesh);
-  read_colours(reader, targets, weights, mesh, model);
+  read_uvs(reader, sets, morphs, mesh);
+  read_colours(reader, morphs, mesh, model);
   if (is_skinned) apply_skin(skin_of(reader, primitive, deformation, vertices, model), mesh);
   return mesh;
 }

@@ -210,7 +210,7 @@ class Search {
         continue;
       }
       const Member* member = member_of(type, name);
-      const std::string at = path.empty() ? name : path + "." + name;
+      const std::string at = path.empty() ? name : fmt::format("{}.{}", path, name);
       if (member == nullptr) {
         add(members, std::string(type) + "." + name, at);
       } else if (!member->member_type.empty()) {
@@ -243,7 +243,7 @@ class Search {
       if (member == nullptr) {
         add(unused_extensions, name, path.empty() ? "the document" : path);
       } else {
-        inside(value, member->member_type, path + ".extensions." + name);
+        inside(value, member->member_type, fmt::format("{}.extensions.{}", path, name));
       }
     }
   }

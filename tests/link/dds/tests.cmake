@@ -30,7 +30,8 @@ if(EXISTS ${GLIDAR_DDS_PYTHON})
   add_test(NAME "python: link/dds/cyclonedds_test.py"
            COMMAND ${GLIDAR_DDS_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/link/dds/cyclonedds_test.py)
   set_tests_properties("python: link/dds/cyclonedds_test.py" PROPERTIES SKIP_RETURN_CODE 77
-                       ENVIRONMENT "${dds_environment}")
+                       ENVIRONMENT "${dds_environment}"
+                       ENVIRONMENT_MODIFICATION PATH=path_list_prepend:$<TARGET_FILE_DIR:glidar_app>)
 else()
   glidar_skipped_test("python: link/dds/cyclonedds_test.py" "${no_venv}")
 endif()
