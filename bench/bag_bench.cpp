@@ -17,7 +17,6 @@
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/simulate/simulator.hpp>
 
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
