@@ -58,7 +58,7 @@ struct Attempts {
 
   /// `result`: negative when it failed, with errno.
   void add(const char* name, long result) {
-    report += std::string(name) + ": " + (result >= 0 ? "0" : ::strerrorname_np(errno)) + "\n";
+    report += std::string(name) + ": " + (result >= 0 ? "0" : ::strerrorname_np(errno)) + "|";
   }
 };
 
@@ -211,7 +211,7 @@ int run(const char* const* argv) {
   Attempts attempts = plan(argv[1], static_cast<pid_t>(limits.parent));
   for (const std::string& note :
        enter_sandbox(model_folder(argv[1]).root, kLastFd, attempts.newest_landlock)) {
-    attempts.report += "note: " + note + "\n";
+    attempts.report += "note: " + note + "|";
   }
   // Without its sandbox it would succeed in some.
   if (attempts.report.empty()) attempt_all(attempts);

@@ -82,7 +82,7 @@ class Sandbox : public ::testing::Test {
     ::close(leaky);
     std::map<std::string, std::string> results;
     std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string line; std::getline(lines, line, '|');) {
       const std::size_t colon = line.find(": ");
       results[line.substr(0, colon)] = colon == std::string::npos ? "" : line.substr(colon + 2);
     }

@@ -89,11 +89,10 @@ void add_sources(const YamlField& root, std::vector<DatasheetEntry>& sheet) {
   for (const auto& [key, value] : entries(*sources)) {
     const std::string source = text(value);
     for (DatasheetEntry* entry : index.covered(value, key)) {
-      // longer keys are more specific
-      if (std::size_t& size = sizes[entry]; key.size() >= size) {
-        size = key.size();
-        entry->source = source;
-      }
+      std::size_t& size = sizes[entry];
+      if (key.size() < size) continue;  // longer keys are more specific
+      size = key.size();
+      entry->source = source;
     }
   }
 }
