@@ -199,13 +199,15 @@ void read_rosbag2(const fs::path& file) {
   read_bag(file.parent_path());
 }
 
-/// A calibration of a LiDAR, or else of a camera.
+/// A calibration of a LiDAR, firing times of one with two channels, or else of a camera.
 void read_calibration(const fs::path& file) {
-  Sensor lidar;
-  lidar.optics = Spinning{};
-  try {
-    return apply_calibration(file, lidar);
-  } catch (const Error&) {  // as below
+  for (const std::size_t channels : {0U, 2U}) {
+    Sensor lidar;
+    lidar.optics = Spinning{.channels = std::vector<SpinningChannel>(channels)};
+    try {
+      return apply_calibration(file, lidar);
+    } catch (const Error&) {  // as below
+    }
   }
   Sensor camera;
   apply_calibration(file, camera);
