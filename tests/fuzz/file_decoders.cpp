@@ -203,7 +203,7 @@ void read_rosbag2(const fs::path& file) {
 void read_calibration(const fs::path& file) {
   for (const std::size_t channels : {0U, 2U}) {
     Sensor lidar;
-    lidar.optics = Spinning{.channels = std::vector<SpinningChannel>(channels)};
+    lidar.optics.emplace<Spinning>().channels.resize(channels);
     try {
       return apply_calibration(file, lidar);
     } catch (const Error&) {  // as below
