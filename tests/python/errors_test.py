@@ -44,7 +44,7 @@ def test_errors_are_one_printable_line():
 def test_notes_are_one_printable_line(tmp_path, caplog):
     (tmp_path / "m.obj").write_text("mtllib \x1b[31m\u202e.mtl\no m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\x1b[2J\nf 1 2 3\n")
     with caplog.at_level(logging.INFO):
-        glidar.Scene().add(tmp_path / "m.obj")
+        glidar.Scene(tmp_path / "m.obj")
     assert caplog.messages and all(message.isprintable() for message in caplog.messages)
 
 

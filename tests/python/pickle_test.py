@@ -44,7 +44,7 @@ def test_notes_of_every_calibrated_preset_survive_pickling_and_conversion_to_a_d
             continue
         calibration = tmp_path / ("camera.yaml" if sensor.kind == "camera" else "times.csv")
         if sensor.kind == "camera":
-            calibration.write_text("cam0: {camera_model: ds, intrinsics: [-0.18, 0.59, 30, 30, 16, 12], resolution: [32, 24], "
+            calibration.write_text("cam0: {camera_model: pinhole, intrinsics: [600, 600, 320, 240], resolution: [640, 480], "
                                    "T_cam_imu: 'a: \"text\" {x}'}\n", encoding="utf-8")
         else:
             channels = len(sensor.to_dict()["optics"]["elevation_deg"])

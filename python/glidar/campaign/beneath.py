@@ -197,7 +197,7 @@ class Inside:
     def remove_tree(self):
         """Removes this folder and all in it. Links in it are removed, not followed."""
         try:
-            with contextlib.suppress(FileNotFoundError), self.parent.opened() as folder:
+            with contextlib.suppress(FileNotFoundError, NotADirectoryError), self.parent.opened() as folder:
                 shutil.rmtree(self.name, ignore_errors=True, dir_fd=folder)
         except RecursionError:
             raise Error(str(self), "folders nested too deeply", "", f"remove {self.parent}") from None
