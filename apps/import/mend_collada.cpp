@@ -7,6 +7,7 @@
 #include <glidar/core/text.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pugixml.hpp>
 
 #include <algorithm>
@@ -232,9 +233,9 @@ class Mender {
       const std::size_t first = is_strip ? count : 0;
       const std::size_t odd = is_strip ? count % 2 : 0;
       for (const std::size_t corner : {first, count + 1 + odd, count + 2 - odd}) {
-        for (std::size_t k = 0; k < stride; ++k) {
-          text.append(std::to_string(indices[corner * stride + k])).append(" ");
-        }
+        const auto begin = indices.begin() + static_cast<std::ptrdiff_t>(corner * stride);
+        text +=
+            fmt::format("{} ", fmt::join(begin, begin + static_cast<std::ptrdiff_t>(stride), " "));
       }
     }
     return count;

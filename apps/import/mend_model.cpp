@@ -127,6 +127,14 @@ void check_paths(const pugi::xml_node& model) {
       "export it without that extension, or as STL or glTF"};
 }
 
+/// The pictures that the resources of a model refer to.
+void add_pictures(const pugi::xml_node& model, std::set<std::string>& pictures) {
+  for (const pugi::xml_node& resource : model.child("resources")) {
+    const pugi::xml_attribute path = resource.attribute("path");
+    if (path) pictures.insert(zip_name(path.value()));
+  }
+}
+
 std::string mended_3mf(std::string_view file, const std::vector<std::string>& names,
                        std::vector<std::string>& notes) {
   std::map<std::string, std::string> kept;
@@ -140,10 +148,7 @@ std::string mended_3mf(std::string_view file, const std::vector<std::string>& na
       const pugi::xml_document document = parsed_xml(content, name);
       check_extensions(document.document_element(), notes);
       check_paths(document.document_element());
-      for (const pugi::xml_node& resource : document.document_element().child("resources")) {
-        const pugi::xml_attribute path = resource.attribute("path");
-        if (path) pictures.insert(zip_name(path.value()));
-      }
+      add_pictures(document.document_element(), pictures);
       if (is_utf16(content)) content = as_utf8(document);
     }
     kept.emplace(name, std::move(content));

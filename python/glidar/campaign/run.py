@@ -244,12 +244,12 @@ def _import_logs(source, target, temp):
         if not names.is_log(log):
             files.note(f"{log}: it is not a log of glidar campaign, and is not copied")
             continue
-        copied = temp.path(log.name)
+        copied, place = temp.path(log.name), Inside(target, "log", log.name)
         try:
             files.copy(log, copied, files.MAX_JSON_BYTES)
         except OSError as error:
-            raise files.write_error(log, error) from None
-        files.publish(temp, copied, Inside(target, "log", log.name))
+            raise files.write_error(place, error) from None
+        files.publish(temp, copied, place)
 
 
 def check(root: StrPath) -> tuple[int, list[str]]:
