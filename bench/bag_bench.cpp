@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Bags of an OS1-128 in a street: frames written while the next one is measured, relative to frames
-// measured alone; and the bytes of frames that are ready, relative to the same bytes written to a
+// measured alone; the bytes of frames that are ready, relative to the same bytes written to a
 // plain file; and bags read by the sandboxed process, relative to bags read in this one.
 // GLIDAR_BENCH_FOLDER selects the disk [the current folder].
 #include "ratio_reporter.hpp"

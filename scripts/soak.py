@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests glidar stream under load for a long time, in lock-step and with the original protocol at once: steady and
-reconnecting clients, some that vanish or send nonsense, and a subscriber that never reads. Reports latencies, missed clouds
-and memory over time. With
---hostile also peers that send garbage, endless messages and floods, ask for too much, and hold connections.
+reconnecting clients, some that vanish or send nonsense, and a subscriber that never reads. Reports latencies, missed
+clouds and memory over time. With --hostile also peers that send garbage, endless messages and floods, ask for too much,
+and hold connections.
 
 Exit code 1 unless memory is flat, or returns to its level after the attackers, every request was answered, and every
 reply was the first one's bytes again.
@@ -32,8 +32,9 @@ from hostile_clients import HostileClients
 # with threads and clients, some 0.1 MB. A leak of one reply (100 kB) in a hundred exceeds it in ten seconds, one of 100
 # bytes a request in two minutes.
 MEMORY_TOLERANCE_MB = 2.0
-# Among attackers memory depends on how fast a loaded machine cuts them off. What must hold is that it returns to this
-# above its level before them, while all others continue; a leak of one endless message in a hundred exceeds it soon.
+# Among attackers, memory depends on how fast a loaded machine disconnects them. After they have left, while all other
+# clients continue, it must return to at most this above its earlier level; a leak of one endless message in a hundred
+# soon exceeds it.
 HOSTILE_TOLERANCE_MB = 20.0
 HELD_TOLERANCE_BYTES = 1 << 20  # of queues and unread replies, which the program counts, once all clients have left
 MEMORY_LOOK_S = 0.5

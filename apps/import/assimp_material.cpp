@@ -104,8 +104,7 @@ Wrap wrap_mode(const aiMaterial& material, const char* key, aiTextureType type) 
   }
 }
 
-/// Assimp's convention for all other formats: scale, translate, then rotate about the image's
-/// centre.
+/// Assimp's convention: scale, translate, then rotate about the image's centre.
 void set_transform(const aiUVTransform& t, TextureUse& use) {
   const auto c = static_cast<float>(portable_cos(t.mRotation));
   const auto s = static_cast<float>(portable_sin(t.mRotation));

@@ -10,7 +10,7 @@
 
 namespace glidar::import {
 
-/// Reads the formats without a reader of GLIDAR's own. Throws Refusal with Assimp's text.
+/// Reads the formats for which GLIDAR has no reader. Throws Refusal with Assimp's text.
 SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFolder& folder,
                              ModelFiles& files, FileLog& log,
                              const std::function<void(double)>& progress);

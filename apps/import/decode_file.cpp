@@ -14,7 +14,7 @@
 namespace glidar::import {
 namespace {
 
-/// A part of what this process may have.
+/// Limits SQLite to an eighth of this process's memory.
 void limit_sqlite() {
   rlimit memory{};
   if (::getrlimit(RLIMIT_AS, &memory) == 0 && memory.rlim_cur != RLIM_INFINITY)

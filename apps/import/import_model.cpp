@@ -88,7 +88,7 @@ SourceModel read_file(const std::filesystem::path& model, const ModelFolder& fol
   }
   const ReaderInput input{model, folder, files, log};
   const Reader reader = own_reader(input);
-  return reader ? reader(input) : read_with_assimp(model, folder, files, log, progress);
+  return reader != nullptr ? reader(input) : read_with_assimp(model, folder, files, log, progress);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 
 namespace glidar::import {
 
-/// Reads a model file. Throws Refusal with what is wrong; the caller reports
-/// other errors (memory, invalid data).
+/// Reads a model file. Throws Refusal if it is unusable; the caller reports other errors (memory,
+/// invalid data).
 ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
                            const std::function<void(double)>& progress);
 

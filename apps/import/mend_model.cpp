@@ -139,10 +139,8 @@ std::string mended_3mf(std::string_view file, const std::vector<std::string>& na
                        std::vector<std::string>& notes) {
   std::map<std::string, std::string> kept;
   std::set<std::string> pictures;
-  std::vector<std::string> wanted;
-  std::copy_if(names.begin(), names.end(), std::back_inserter(wanted),
-               [](const std::string& name) { return !is_picture(name) && !name.ends_with('/'); });
-  for (const std::string& name : wanted) {
+  for (const std::string& name : names) {
+    if (is_picture(name) || name.ends_with('/')) continue;
     std::string content = zip_content(file, name);
     if (name.ends_with(".model")) {
       const pugi::xml_document document = parsed_xml(content, name);

@@ -15,7 +15,7 @@ namespace glidar::import {
 ///  - COLLADA, also in archives (.zae): see mend_collada();
 ///  - 3MF: thumbnails and other pictures that no material names; archives in ZIP64;
 ///  - XML in UTF-16.
-/// Notes what is left out. Throws Refusal for what Assimp would leave out without a word: 3MF with
+/// Notes what is left out. Throws Refusal for what Assimp would silently omit: 3MF with
 /// extensions that it requires, or with parts in files of their own.
 void mend_model(const std::filesystem::path& model, ModelFiles& files,
                 std::vector<std::string>& notes);

@@ -18,9 +18,8 @@ namespace glidar::import {
 ///  - Kd: diffuse, white without it; Ka: ambient, the diffuse colour without it or if it is black;
 ///  - Ks and Ns: specular colour and exponent, 0..128; none with illum 0 or 1;
 ///  - d, Tr: opacity;
-///  - map_Kd, map_Ks, map_d; norm or map_Kn: normals; bump or map_bump: heights. Options -s, -o,
-///  -bm
-///    and -clamp are used: u' = s u + o.
+///  - map_Kd, map_Ks, map_d; norm or map_Kn: normals; bump or map_bump: heights. Of their options,
+///    -s, -o, -bm and -clamp are used: u' = s u + o.
 /// Everything else is named in a note.
 class MtlReader {
  public:

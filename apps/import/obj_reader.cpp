@@ -41,12 +41,6 @@ struct Forward {
   }
 };
 
-/// A kind of statement that is not used.
-struct Unused {
-  std::uint64_t count = 0;
-  std::uint64_t line = 0;  ///< of the first one
-};
-
 constexpr std::array<std::string_view, 17> kFreeForm = {
     "vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2", "surf", "parm",
     "trim", "hole",   "scrv", "sp",   "end",  "con",  "bzp",   "bsp"};
@@ -74,12 +68,11 @@ class ObjReader {
     for (const std::string& note : notes_) add_note(source, note);
     std::string others;
     std::string curves;
-    for (const auto& [keyword, unused] : unused_) {
+    for (const auto& [keyword, line] : unused_) {
       const bool is_curve =
           std::find(kFreeForm.begin(), kFreeForm.end(), keyword) != kFreeForm.end();
       std::string& list = is_curve ? curves : others;
-      list +=
-          fmt::format("{}'{}' (line {})", list.empty() ? "" : ", ", shown(keyword), unused.line);
+      list += fmt::format("{}'{}' (line {})", list.empty() ? "" : ", ", shown(keyword), line);
     }
     if (!curves.empty()) {
       add_note(source, "free-form curves and surfaces are left out: " + curves +
@@ -193,8 +186,7 @@ class ObjReader {
 
   void read_smoothing() {
     const std::string_view group = text_.word();
-    if (group != "off" && group != "0")
-      smoothing_line_ = smoothing_line_ == 0 ? line_ : smoothing_line_;
+    if (smoothing_line_ == 0 && group != "off" && group != "0") smoothing_line_ = line_;
   }
 
   /// Counts kinds of statements; the first of them by name.
@@ -204,11 +196,9 @@ class ObjReader {
     if (!is_text) refuse_line(line_, "'" + shown(keyword) + "' is not text: not an OBJ file");
     constexpr std::size_t kNamed = 12;
     const std::string name(keyword);
-    const auto known = unused_.find(name);
-    if (known != unused_.end()) {
-      ++known->second.count;
-    } else if (unused_.size() < kNamed) {
-      unused_.emplace(name, Unused{1, line_});
+    if (unused_.contains(name)) return;
+    if (unused_.size() < kNamed) {
+      unused_.emplace(name, line_);
     } else {
       ++more_unused_;
     }
@@ -412,7 +402,7 @@ class ObjReader {
   std::uint64_t smoothing_line_ = 0;
   std::uint64_t missing_uv_line_ = 0;
   std::uint64_t missing_normal_line_ = 0;
-  std::map<std::string, Unused> unused_;
+  std::map<std::string, std::uint64_t> unused_;  ///< keyword: line of the first one
   std::uint64_t more_unused_ = 0;
   std::set<std::string> noted_;
   std::vector<std::string> notes_;

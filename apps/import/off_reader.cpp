@@ -58,16 +58,12 @@ class OffText {
  public:
   OffText(std::string_view file, OffKind kind, TextCursor text, SourceModel& source,
           FileLists& lists)
-      : kind_(kind),
-        text_(text),
-        left_(file.data() + file.size()),
-        source_(source),
-        lists_(lists) {}
+      : kind_(kind), text_(text), end_(file.data() + file.size()), source_(source), lists_(lists) {}
 
   void read() {
     const OffCounts counts = read_counts();
-    // A vertex needs three digits and blanks, a face four.
-    const auto left = static_cast<std::uint64_t>(left_ - text_.at());
+    // Lower bounds: a vertex takes at least 4 bytes, a face 2.
+    const auto left = static_cast<std::uint64_t>(end_ - text_.at());
     if (counts.vertices > left / 4 + 1 || counts.faces > left / 2 + 1) {
       refuse_line(text_.line(),
                   fmt::format("the file states {} vertices and {} faces, and ends too "
@@ -185,7 +181,7 @@ class OffText {
 
   OffKind kind_;
   TextCursor text_;
-  const char* left_;
+  const char* end_;
   SourceModel& source_;
   FileLists& lists_;
   std::vector<double> numbers_;  ///< of the current line

@@ -18,11 +18,15 @@ namespace {
 constexpr const char* kRepair = "repair the file, or export the model again";
 constexpr std::size_t kSniffed = std::size_t{1} << 12U;
 
+bool is_ply(std::string_view head) {
+  return head.starts_with("ply") && head.find_first_of("\r\n") == 3;
+}
+
 /// Recognises files of other names by their first statement.
 Reader reader_of_content(std::string_view head) {
   std::string storage;
   head = utf8_text(head, storage);
-  if (head.starts_with("ply") && head.find_first_of("\r\n") == 3) return read_ply;
+  if (is_ply(head)) return read_ply;
   TextCursor text(head, false, true);
   if (!text.find_word()) return nullptr;
   const std::string first = lower_case(text.word());
@@ -68,7 +72,7 @@ Reader own_reader(const ReaderInput& input) {
   static const std::array<std::pair<const char*, Reader>, 4> kReaders = {
       {{".obj", read_obj}, {".ply", read_ply}, {".stl", read_stl}, {".off", read_off}}};
   const std::string_view head = input.files.content(input.model.string())->head(kSniffed);
-  if (head.starts_with("ply") && head.find_first_of("\r\n") == 3) return read_ply;
+  if (is_ply(head)) return read_ply;
   const std::string extension = lower_case(input.model.extension().string());
   for (const auto& [name, reader] : kReaders) {
     if (extension == name) return reader;

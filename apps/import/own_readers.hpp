@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -31,7 +30,7 @@ struct ReaderInput {
   [[nodiscard]] std::shared_ptr<FileContent> companion(const std::string& name) const;
 };
 
-/// Readers of GLIDAR's own. Each statement of a file is used, or named in a note, or refused with
+/// GLIDAR's own readers. Each statement of a file is used, or named in a note, or refused with
 /// its line or byte.
 SourceModel read_obj(const ReaderInput& input);
 SourceModel read_ply(const ReaderInput& input);
@@ -39,7 +38,7 @@ SourceModel read_stl(const ReaderInput& input);
 SourceModel read_off(const ReaderInput& input);
 
 /// The reader for a file, by its first bytes and its extension; none: Assimp's.
-using Reader = std::function<SourceModel(const ReaderInput&)>;
+using Reader = SourceModel (*)(const ReaderInput&);
 Reader own_reader(const ReaderInput& input);
 
 /// Errors of a file at a line, or at a byte from 0.

@@ -94,7 +94,8 @@ class EarClipper {
   }
 
   /// A straight corner is an ear without area, so that polygons beside it share its vertex.
-  /// `is_strict`: no reflex corner may touch the ear. Seams and repeated corners need less.
+  /// `is_strict`: no reflex corner may touch the ear. The second pass is not strict, for seams and
+  /// repeated corners.
   [[nodiscard]] bool is_ear(std::uint32_t corner, bool is_strict) const {
     const Corners ear = {before_[corner], corner, after_[corner]};
     const double area = turn(ear[0], ear[1], ear[2]);

@@ -12,7 +12,6 @@
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <chrono>

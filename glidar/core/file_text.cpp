@@ -20,14 +20,14 @@ bool is_name_character(char c) {
 /// Bytes of the white space at the start of a printable text; 0: there is none (Unicode, property
 /// White_Space).
 std::size_t white_space_size(std::string_view text) {
-  constexpr std::array<std::string_view, 7> kOthers = {" ",      "\u00A0", "\u1680", "\u2000",
+  constexpr std::array<std::string_view, 6> kOthers = {" ",      "\u00A0", "\u1680",
                                                        "\u202F", "\u205F", "\u3000"};
   for (const std::string_view space : kOthers)
     if (text.starts_with(space)) return space.size();
   constexpr std::string_view kFirst = "\u2000";
   constexpr std::string_view kLast = "\u200A";
   const std::string_view start = text.substr(0, kFirst.size());
-  return start > kFirst && start <= kLast ? kFirst.size() : 0;
+  return start >= kFirst && start <= kLast ? kFirst.size() : 0;
 }
 
 }  // namespace

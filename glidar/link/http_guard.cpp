@@ -88,7 +88,7 @@ HttpGuard::HttpGuard(AccessRules rules, HttpClients clients, const HttpLimits& l
       clients_(clients),
       limits_(limits),
       now_(std::move(now)),
-      turns_(limits.burst),
+      tokens_(limits.burst),
       last_(now_()) {}
 
 std::optional<HttpRefusal> HttpGuard::refuse(const HttpHead& head) {
@@ -101,7 +101,7 @@ std::optional<HttpRefusal> HttpGuard::refuse(const HttpHead& head) {
     return HttpRefusal{403, "pages of this origin have no access"};
   if (head.method != "GET" && head.method != "HEAD" && head.method != "POST")
     return HttpRefusal{405, "GET, HEAD or POST"};
-  if (!take_turn()) return HttpRefusal{429, "too many requests; try again later"};
+  if (!take_token()) return HttpRefusal{429, "too many requests; try again later"};
   return std::nullopt;
 }
 
@@ -119,12 +119,12 @@ std::optional<HttpRefusal> HttpGuard::refuse_change(const HttpHead& head) const 
 }
 
 /// A token bucket: every allowed request takes a token, and time brings new ones.
-bool HttpGuard::take_turn() {
+bool HttpGuard::take_token() {
   const Clock::time_point now = now_();
   const double seconds = std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  turns_ = std::min(limits_.burst, turns_ + seconds * limits_.requests_per_s);
-  if (turns_ < 1.0) return false;
-  turns_ -= 1.0;
+  tokens_ = std::min(limits_.burst, tokens_ + seconds * limits_.requests_per_s);
+  if (tokens_ < 1.0) return false;
+  tokens_ -= 1.0;
   return true;
 }
 

@@ -79,13 +79,13 @@ class HttpGuard {
   [[nodiscard]] const HttpLimits& limits() const { return limits_; }
 
  private:
-  bool take_turn();
+  bool take_token();
 
   AccessRules rules_;
   HttpClients clients_;
   HttpLimits limits_;
   std::function<Clock::time_point()> now_;
-  double turns_;  ///< requests that may follow at once
+  double tokens_;  ///< of a token bucket: requests that may follow at once
   Clock::time_point last_;
 };
 

@@ -84,8 +84,8 @@ class Sensor(Immutable):
     def to_dict(self) -> dict[str, Any]:
         """All values with the keys of a sensor file: ``Sensor.from_dict(sensor.to_dict()) == sensor``.
 
-        Sources of values are omitted; notes are kept. Beams from a file are arrays (see ``from_dict``), copies that may be
-        modified; all else is plain numbers, strings, lists and dicts, which YAML and JSON can represent."""
+        Sources of values are omitted; notes are kept. Beams from a file are arrays (see ``from_dict``), copies
+        that may be modified; all else is plain numbers, strings, lists and dicts, which YAML and JSON can represent."""
         document: dict[str, Any] = json.loads(self._core.document())
         table = self._core.beam_table()
         if table is None:

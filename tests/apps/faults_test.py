@@ -117,7 +117,6 @@ class Render(FaultTest):
 
         self.each_kill(RENDER, self.empty, check)
 
-
     def test_a_kill_while_files_are_written_leaves_none(self):
         if not self.has_unnamed_files():
             self.skipTest("no files without names; use another file system")

@@ -8,7 +8,6 @@
 #include <glidar/io/config/depth_alignment_file.hpp>
 #include <glidar/math/constants.hpp>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>

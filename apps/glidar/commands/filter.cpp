@@ -7,7 +7,6 @@
 #include <glidar/depth/depth_filter_chain.hpp>
 #include <glidar/math/constants.hpp>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>

@@ -5,7 +5,6 @@
 #include <apps/glidar/run/printing.hpp>
 #include <glidar/io/config/json_schema.hpp>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>

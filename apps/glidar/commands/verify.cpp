@@ -8,7 +8,6 @@
 #include <glidar/core/version.hpp>
 #include <glidar/verify/verify.hpp>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <nlohmann/json.hpp>

@@ -5,8 +5,6 @@
 #include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/progress_line.hpp>
 
-#include <fmt/format.h>
-
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>

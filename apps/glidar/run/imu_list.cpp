@@ -7,8 +7,6 @@
 #include <glidar/io/config/imu_file.hpp>
 #include <glidar/math/constants.hpp>
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 namespace glidar::app {

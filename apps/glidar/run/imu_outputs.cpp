@@ -6,8 +6,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/imu_samples_file.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>

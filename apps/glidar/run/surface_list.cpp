@@ -5,8 +5,6 @@
 #include <apps/glidar/run/printing.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

@@ -19,9 +19,10 @@ struct UvSets {
 
 /// Reads all materials into the model, in the file's order, with their images; notes what the light
 /// model has no place for:
-///  - metallic-roughness: diffuse = base colour; specular = (1 - r) F0 with F0 = mix(((ior - 1) /
-///    (ior + 1))^2, base colour, metallic) and the factors of KHR_materials_specular; shininess = 2
-///    / r^4 - 2 (Karis, Specular BRDF reference, 2013), 0..128. Its texture is left out;
+///  - metallic-roughness: diffuse = base colour; specular = (1 - r) F0 with
+///    F0 = mix(((ior - 1) / (ior + 1))^2, base colour, metallic) and the factors of
+///    KHR_materials_specular; shininess = 2 / r^4 - 2 (Karis, Specular BRDF reference, 2013),
+///    0..128. Its texture is left out;
 ///  - KHR_materials_pbrSpecularGlossiness: the same with r = 1 - glossiness and its own F0;
 ///  - KHR_materials_unlit: no highlights;
 ///  - emitted light and occlusion are left out.

@@ -196,12 +196,14 @@ std::vector<Eigen::Matrix4d> skin_of(PrimitiveReader& reader, const Value& primi
     }
   }
   constexpr double kNearOne = 0.01;
+  bool is_scaled = false;
   for (std::size_t v = 0; v < vertices; ++v) {
     if (sums[v] == 0.0) primitive.refuse(fmt::format("vertex {} has no joint with a weight", v));
     skin[v] /= sums[v];
-    if (std::abs(sums[v] - 1.0) > kNearOne) {
-      add_note(model, primitive.path() + ": weights of joints do not add to 1, they are scaled");
-    }
+    is_scaled = is_scaled || std::abs(sums[v] - 1.0) > kNearOne;
+  }
+  if (is_scaled) {
+    add_note(model, primitive.path() + ": weights of joints do not add to 1, they are scaled");
   }
   return skin;
 }

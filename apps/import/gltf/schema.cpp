@@ -10,12 +10,9 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <span>
 
 namespace glidar::import::gltf {
 namespace {
-
-using Names = std::span<const std::string_view>;
 
 /// A member of an object, and the type of it or of its elements; empty: no objects inside.
 struct Member {

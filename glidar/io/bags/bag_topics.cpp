@@ -3,6 +3,7 @@
 #include <glidar/io/bags/bag_topics.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -36,9 +37,8 @@ std::size_t find_topic(const BagReader& bag, const std::string& name,
       fitting.push_back(topics[i].name.shown(60));
     }
   }
-  const std::string found = name.empty()
-                                ? "no topic that fits"
-                                : fmt::format("no topic '{}' that fits", FileText(name).shown());
+  const std::string found =
+      name.empty() ? "no topic that fits" : fmt::format("no topic '{}' that fits", excerpt(name));
   const std::string near = closest_match(name, fitting);
   if (fitting.empty()) throw Error({path.string(), found, type_names(types)});
   constexpr std::size_t kMaxListed = 20;

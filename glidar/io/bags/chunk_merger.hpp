@@ -44,8 +44,8 @@ class ChunkMerger {
   /// Reads the chunk of a number, if possible in memory that an earlier chunk had.
   using Load = std::function<LoadedChunk(std::size_t number, Bytes reused)>;
 
-  /// `place` is the path of the bag, for errors. Messages, and
-  /// chunks while they are in memory, count in the budget.
+  /// `place` is the path of the bag, for errors. Messages, and chunks while they are in memory,
+  /// count in the budget.
   ChunkMerger(std::string place, std::vector<ChunkRange> chunks, SharedBudget budget, Load load);
 
   /// Keeps only messages of topics whose entry is true; before the first next().

@@ -47,7 +47,7 @@ bool is_one_of_tables(const std::vector<std::string>& names, const char* name) {
          });
 }
 
-/// Ends the statement when the budget, `context`, is used.
+/// Ends the statement when the budget, `context`, is used up.
 extern "C" int glidar_count_sqlite_steps(void* context) {
   InputBudget& budget = *static_cast<InputBudget*>(context);
   if (budget.left(Budget::steps) < kStepsBetween) return 1;

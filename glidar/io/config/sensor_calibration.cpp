@@ -460,8 +460,7 @@ void apply_ros_camera(const YamlField& root, const std::string& file, Sensor& se
 
 /// Of a camera: camchain YAML of Kalibr, of which `name` selects a camera (empty: cam0), or camera
 /// YAML of ROS.
-void apply_camera_calibration(const std::filesystem::path& path, const std::string& name,
-                              Sensor& sensor) {
+void apply_camera_calibration(const fs::path& path, const std::string& name, Sensor& sensor) {
   const YamlField root = read_yaml(path);
   if (find(root, "camera_matrix")) return apply_ros_camera(root, path.string(), sensor);
   apply_kalibr(root, name.empty() ? "cam0" : name, path.string(), sensor);

@@ -43,7 +43,8 @@ std::uint64_t input_bytes_of(const fs::path& path) {
   return bytes;
 }
 
-/// Address space: the program and its libraries, and twice what readers may hold.
+/// Address space in bytes: the program and its libraries, three times what readers may hold, and
+/// the input, of which at most 4 GiB count.
 std::uint64_t decoder_memory(std::uint64_t input_bytes) {
   const std::uint64_t held = InputBudget(input_bytes).limit(Budget::held_bytes);
   return 512 * kDecoderMiB + 3 * held + std::min(input_bytes, 4096 * kDecoderMiB);
@@ -66,8 +67,8 @@ class DecoderProcess {
       fail_to_start(program, errno);
     control_ = moved_up(program, sockets[0]);
     const UniqueFd control_end = moved_up(program, sockets[1]);
-    ::fcntl(answer_.get(), F_SETPIPE_SZ,
-            static_cast<int>(kDecoderMiB));  // or less, if it is forbidden
+    // the pipe stays smaller if the system forbids this size
+    ::fcntl(answer_.get(), F_SETPIPE_SZ, static_cast<int>(kDecoderMiB));
     ::fcntl(answer_.get(), F_SETFL, O_NONBLOCK);
     helper_ =
         start_helper({program, kDecodeOption, kind.name, path_, std::to_string(memory_limit_bytes_),

@@ -25,7 +25,7 @@ struct DecoderKind {
 inline constexpr DecoderKind kBagDecoder = {"bag"};
 inline constexpr DecoderKind kCaptureDecoder = {"capture"};
 
-/// A run of the process, which ends with the last copy of `records`.
+/// A run of the process, which ends with the last copy of `records` and `request`.
 struct DecoderRun {
   RecordReader records;
   /// Sends bytes to the process; it fails silently when the process has ended, which the next

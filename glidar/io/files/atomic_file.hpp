@@ -22,9 +22,9 @@ class ClosedPipe : public Error {
 /// A file that appears under its name only when it is complete: bytes are written to a temporary
 /// file in the same folder, which commit() renames. It has no name until then where the file system
 /// has such files, so that a program that is killed leaves nothing. Without commit() the destructor
-/// removes the temporary file and an existing file stays unchanged. Of a symbolic link, the target
-/// is written and the link stays. Writes are buffered and flushed in large
-/// blocks at multiples of the block size, which is fastest for file systems.
+/// removes the temporary file and an existing file stays unchanged. If the path
+/// is a symbolic link, its target is written and the link stays. Writes are buffered and flushed in
+/// large blocks at multiples of the block size, which is fastest for file systems.
 class AtomicFile {
  public:
   /// Who may read the file: everyone whom the user's umask allows, or its owner only.

@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
 constexpr double kQuietSeconds = 0.5;    // shorter loads report no progress
 constexpr int kSliceMilliseconds = 100;  // between checks of the time limit
-constexpr int kEndMilliseconds = 1;      // the same once the progress is closed, as at the end
+constexpr int kEndMilliseconds = 1;      // the same once the process has closed the pipe
 
 struct ProgressPipe {
   UniqueFd read_end;
@@ -54,8 +54,8 @@ bool wait_for_end(pid_t child, const ProgressPipe& pipe, const ImportRequest& re
   for (;;) {
     const double left_s = request.time_limit_s - seconds_since(start);
     if (left_s <= 0.0) return false;
-    const int most = watched.fd < 0 ? kEndMilliseconds : kSliceMilliseconds;
-    const int ready = ::poll(&watched, 1, std::min(most, static_cast<int>(left_s * 1000.0) + 1));
+    const int max_ms = watched.fd < 0 ? kEndMilliseconds : kSliceMilliseconds;
+    const int ready = ::poll(&watched, 1, std::min(max_ms, static_cast<int>(left_s * 1000.0) + 1));
     if (ready == 0 && has_ended(child)) return true;
     if (ready > 0) {
       std::array<unsigned char, 256> percents{};

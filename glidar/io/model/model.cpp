@@ -144,7 +144,7 @@ void drop_unused(Scene& scene, std::uint32_t mesh) {
   for (MeshSource& source : scene.sources) move_up(source.unstretched);
 }
 
-/// ", vertices 4 stated, 3 loaded"; empty: equal or not stated.
+/// "; vertices 4 stated, 3 loaded"; empty: equal or not stated.
 std::string count_difference(const char* what, const std::optional<std::uint64_t>& stated,
                              const std::optional<std::uint64_t>& loaded) {
   if (!stated || !loaded || *stated == *loaded) return "";

@@ -20,7 +20,7 @@ class CapturedPackets {
  public:
   /// Throws Error when the file is missing.
   explicit CapturedPackets(const std::filesystem::path& capture);
-  /// Those of a process that runs.
+  /// Reads the datagrams of a running process.
   explicit CapturedPackets(DecoderRun run) : run_(std::move(run)) {}
 
   /// The next datagram; false at the end. Throws Error where the file is malformed.

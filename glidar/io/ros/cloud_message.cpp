@@ -129,9 +129,9 @@ struct CloudTimes {
 };
 
 /// The time that a packet states, in whole microseconds, from that of its first firing.
-std::int64_t packet_time_ns(const CloudSource& source, std::int64_t first_ns) {
+std::int64_t packet_time_ns(std::int64_t first_ns, std::int64_t offset_ns) {
   constexpr std::int64_t kMicrosecondNs = 1000;
-  const std::int64_t time_ns = first_ns + packet_time_offset_ns(source.sensor, source.beams);
+  const std::int64_t time_ns = first_ns + offset_ns;
   return time_ns - time_ns % kMicrosecondNs;
 }
 
@@ -141,7 +141,8 @@ CloudTimes cloud_times(const CloudSource& source, const CloudMessageOptions& opt
   if (options.stamp == StampRule::first_point && options.misses == Misses::omitted) {
     if (const auto first = first_return_ns(frame, beams)) first_ns = frame.stamp_ns + *first;
   }
-  if (options.packet_stamps) return {packet_time_ns(source, first_ns), first_ns};
+  if (options.packet_stamps)
+    return {packet_time_ns(first_ns, packet_time_offset_ns(sensor, beams)), first_ns};
   if (options.stamp != StampRule::last_packet) return {first_ns, first_ns};
   const std::size_t columns = columns_per_packet(sensor, beams);
   const double period_ns = column_period_ns(sensor, beams);
@@ -192,8 +193,9 @@ void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32
     first = std::min(first, source.frame.stamp_ns + beams.times_ns[i]);
   }
   auto& stamps = std::get<std::vector<std::int64_t>>(column.values);
+  const std::int64_t offset_ns = packet_time_offset_ns(source.sensor, beams);
   for (std::size_t i = 0; i < points.size(); ++i)
-    stamps[i] = packet_time_ns(source, first_ns[points[i] % beams.cols / columns]);
+    stamps[i] = packet_time_ns(first_ns[points[i] % beams.cols / columns], offset_ns);
 }
 
 /// Coordinates of misses as the options ask for them.

@@ -207,7 +207,7 @@ void RigPublisher::hold_cloud(std::size_t sensor, const CloudSource& source, std
   const SensorTopics& topics = topics_[sensor];
   const CloudMessageOptions& options = topics.cloud_options;
   const std::int64_t stamp_ns = cloud_stamp_ns(source, options);
-  // poses and samples of IMUs begin with a frame, also if its stamp is its end
+  // poses and IMU samples start with the frame, even when the stamp of the cloud is its end
   if (options.stamp == StampRule::last_packet)
     held_.hold({.time_ns = source.frame.stamp_ns, .topic = std::nullopt, .bytes = {}});
   held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});

@@ -29,7 +29,7 @@ class OusterServer final : public ControlServer {
   [[nodiscard]] std::uint16_t port() const override { return service_.port(); }
 
  private:
-  /// The name that --control has is as good as an address.
+  /// Requests may address the server by the host name that --control specifies.
   static link::AccessRules access_rules(const link::Endpoint& at) {
     link::AccessRules rules{.origins = {}, .hosts = {}};
     if (at.host != "*") rules.hosts.push_back(at.host);

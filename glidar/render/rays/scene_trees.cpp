@@ -133,7 +133,8 @@ void SceneTrees::store_poses(const CastRequest& request, const Resolver& resolve
   }
 }
 
-/// Every triangle of a copy is as far as that of the original, which is lower.
+/// Removes instances of one mesh at the pose of another: their hits tie exactly, and the hit rule
+/// reports the instance with the lowest index. Masked ones stay, because their hits may differ.
 void SceneTrees::remove_copies(const Resolver& resolver) {
   copies_.assign(poses_.size(), 0);
   if (instances_.size() < 2) return;
@@ -149,11 +150,10 @@ void SceneTrees::remove_copies(const Resolver& resolver) {
     const int found = order(a, b);
     return found != 0 ? found < 0 : a < b;
   });
-  const auto may_differ = [&](std::uint32_t i) { return resolver.is_masked(i); };
   std::vector<std::uint8_t> is_copy(poses_.size(), 0);
   for (std::size_t k = 1, first = 0; k < sorted.size(); ++k) {
     if (order(sorted[first], sorted[k]) != 0) first = k;
-    if (first == k || may_differ(sorted[first]) || may_differ(sorted[k])) continue;
+    if (first == k || resolver.is_masked(sorted[first]) || resolver.is_masked(sorted[k])) continue;
     is_copy[sorted[k]] = 1;
     copies_[sorted[k]] = copies_[sorted[first]] = 1;
   }

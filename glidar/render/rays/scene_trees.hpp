@@ -45,8 +45,8 @@ class SceneTrees {
     return mesh_reach_[scene_.instances[instance].mesh];
   }
 
-  /// Enabled instances with triangles. Of instances of one mesh at the same place without alpha
-  /// masks it has the lowest only, which is the one that the hit rule reports.
+  /// Enabled instances with triangles. Of unmasked instances of one mesh at one pose it
+  /// has only the one with the lowest index, which the hit rule reports.
   [[nodiscard]] const std::vector<std::uint32_t>& instances() const { return instances_; }
 
   /// instances() by increasing reach: few groups, mostly one.

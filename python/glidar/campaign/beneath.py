@@ -129,10 +129,6 @@ class Inside:
         found = self._stat()
         return found is not None and stat.S_ISREG(found.st_mode)
 
-    def is_folder(self):
-        found = self._stat()
-        return found is not None and stat.S_ISDIR(found.st_mode)
-
     def size(self):
         """Of a regular file, in bytes; None when there is none."""
         found = self._stat()
@@ -142,7 +138,8 @@ class Inside:
         """The places of all that this folder has, by name; none when there is no such folder."""
         try:
             with self.opened() as folder:
-                return [Inside(self.root, *self.parts, name) for name in sorted(os.listdir(folder)) if name.endswith(suffix)]
+                names = sorted(os.listdir(folder))
+            return [Inside(self.root, *self.parts, name) for name in names if name.endswith(suffix)]
         except (FileNotFoundError, NotADirectoryError):
             return []
         except OSError as error:
@@ -175,7 +172,7 @@ class Inside:
     def write(self, text):
         """Writes a text file atomically. A link in the place is replaced."""
         part = self.parent / f".{self.name}.{os.getpid()}"
-        part.parent.make_folder()
+        self.parent.make_folder()
         part.unlink()
         try:
             with open(part.open(os.O_WRONLY | os.O_CREAT | os.O_EXCL), "w", encoding="utf-8") as file:

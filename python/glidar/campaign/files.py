@@ -34,7 +34,7 @@ LOGGER = logging.getLogger("glidar")
 
 
 def note(text):
-    """A warning for people, who may have the file from others."""
+    """Logs a warning as one printable line, because it may quote files of others."""
     LOGGER.warning("%s", printable(text))
 
 
@@ -122,8 +122,9 @@ def remove_stale_files(root):
 
 
 def publish_all(temp, pairs, kept=()):
-    """Renames finished files, given as pairs (written, final): a path in `temp` and a place in the campaign's folder. For a durable folder their data is on the disk before,
-    and their names when this returns. The same then holds for `kept`, files that have their final names already."""
+    """Renames finished files, given as pairs (written, final): a path in `temp` and a place in the campaign's folder.
+    For a durable folder their data is on the disk before, and their names when this returns. The same then holds for
+    `kept`, files that have their final names already."""
     if temp.folders:
         disk.sync_files([*(final.path for final in kept), *(written for written, _ in pairs)])
     for written, final in pairs:
@@ -166,8 +167,8 @@ def write_json(temp, final, value):
 
 
 def open_input(path, max_bytes=MAX_BYTES):
-    """Opens a regular file of at most `max_bytes` for reading: a path that the user has named, or a place in a campaign's
-    folder. A pipe or device is rejected and cannot block."""
+    """Opens a regular file of at most `max_bytes` for reading: a path from the user, or a place in a campaign's folder.
+    A pipe or device is rejected and cannot block."""
     flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
     try:
         descriptor = path.open(flags) if isinstance(path, Inside) else os.open(path, flags)

@@ -18,7 +18,7 @@ HIT = 0  # value in the column status
 NO_BEAM = 4
 WRITE_BYTES = 1 << 20  # size of the buffer for writing
 TEXTS = ["error", "scene", "sensor"]
-MAX_TEXT_BYTES = 1 << 12  # of a row in one column, in the mean
+MAX_TEXT_BYTES = 1 << 12  # of a row in one column, on average
 MAX_ROW_BYTES = 1 << 16
 MIN_TABLE_BYTES = 1 << 24
 
