@@ -5,6 +5,9 @@
 #include <glidar/motion/rotation_vector.hpp>
 #include <glidar/motion/times.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace glidar {
 namespace {
 
@@ -57,7 +60,66 @@ KinematicState state_of(const Mounted& mounted, std::int64_t t_ns) {
   return compose_extrinsic(std::visit(carrier, mounted.carrier), mounted.carrier_from_body);
 }
 
+/// Bounds of a point's motion: a drift, and a rotation with an arm.
+struct PointRates {
+  double drift_m_s = 0.0;
+  double angular_rad_s = 0.0;
+  double arm_m = 0.0;
+};
+
+PointRates rates_of(const ConstantPose& /*constant*/, const Eigen::Vector3d& /*point_m*/,
+                    const TimeInterval& /*interval*/) {
+  return {};
+}
+
+/// On a screw motion every point of the body has a constant speed.
+PointRates rates_of(const ConstantTwist& twist, const Eigen::Vector3d& point_m,
+                    const TimeInterval& /*interval*/) {
+  const Eigen::Vector3d place_m =
+      twist.frame == TwistFrame::body ? point_m : Eigen::Vector3d(twist.pose * point_m);
+  return {.drift_m_s = (twist.linear_m_s + twist.angular_rad_s.cross(place_m)).norm()};
+}
+
+PointRates rates_of(const Spin& spin, const Eigen::Vector3d& point_m,
+                    const TimeInterval& /*interval*/) {
+  return {.angular_rad_s = spin.rate_rad_s.norm(), .arm_m = point_m.norm()};
+}
+
+PointRates rates_of(const TimedPoses& poses, const Eigen::Vector3d& point_m,
+                    const TimeInterval& interval) {
+  const MaxRates rates = poses.max_rates(interval);
+  return {rates.linear_m_s, rates.angular_rad_s, point_m.norm()};
+}
+
+/// The energy bounds the rate: 2 E = I_x w_x^2 + I_y w_y^2 + I_z w_z^2 >= I_min |w|^2.
+PointRates rates_of(const TorqueFreeRotation& tumbling, const Eigen::Vector3d& point_m,
+                    const TimeInterval& /*interval*/) {
+  const InitialRotation& start = tumbling.start();
+  const Eigen::Vector3d ratios = start.moments_kg_m2 / start.moments_kg_m2.minCoeff();
+  return {.drift_m_s = start.velocity_m_s.norm(),
+          .angular_rad_s = std::sqrt(ratios.dot(start.rate_rad_s.cwiseAbs2())),
+          .arm_m = (point_m - start.body_from_principal.translation()).norm()};
+}
+
+PointRates rates_of(const Mounted& mounted, const Eigen::Vector3d& point_m,
+                    const TimeInterval& interval) {
+  const Eigen::Vector3d on_carrier_m = mounted.carrier_from_body * point_m;
+  const auto carrier = [&](const auto& kind) { return rates_of(kind, on_carrier_m, interval); };
+  return std::visit(carrier, mounted.carrier);
+}
+
 }  // namespace
+
+double max_displacement_m(const Trajectory& trajectory, const Eigen::Vector3d& point_m,
+                          std::int64_t t_ns, const TimeInterval& interval) {
+  constexpr double kRounding = 1.0 + 0x1p-40;
+  const PointRates rates =
+      std::visit([&](const auto& kind) { return rates_of(kind, point_m, interval); }, trajectory);
+  const double duration_s =
+      std::max(seconds_between(interval.first_ns, t_ns), seconds_between(t_ns, interval.last_ns));
+  const double chord = std::min(rates.angular_rad_s * duration_s, 2.0);
+  return kRounding * (rates.drift_m_s * duration_s + chord * rates.arm_m);
+}
 
 KinematicState state_at(const Trajectory& trajectory, std::int64_t t_ns) {
   return std::visit([t_ns](const auto& kind) { return state_of(kind, t_ns); }, trajectory);

@@ -28,6 +28,18 @@ KinematicState state_at(const Trajectory& trajectory, std::int64_t t_ns);
 /// (Siciliano et al., "Robotics: Modelling, Planning and Control" (2009), section 7.2.2).
 KinematicState compose_extrinsic(const KinematicState& body, const Pose& body_from_part);
 
+/// Bounds of a body's motion during an interval.
+struct MaxRates {
+  double linear_m_s = 0.0;     ///< of the body's origin
+  double angular_rad_s = 0.0;  ///< about any axis
+};
+
+/// An upper bound of the distance between the places of a body's point at `t_ns` and at any time of
+/// the interval, metres. `point_m`: in the body's frame. Less than twice the distance where rates
+/// are constant.
+double max_displacement_m(const Trajectory& trajectory, const Eigen::Vector3d& point_m,
+                          std::int64_t t_ns, const TimeInterval& interval);
+
 /// The state between the entries `before` and `before` + 1 of linearly interpolated poses, except
 /// its pose.
 KinematicState linear_state(std::span<const TimedPose> poses, std::size_t before);

@@ -43,6 +43,11 @@ struct Cubic {
     return first + s * (2.0 * second + 3.0 * s * third);
   }
   [[nodiscard]] Vector3d curvature(double s) const { return 2.0 * second + 6.0 * s * third; }
+  /// An upper bound of the slope's length up to `end`: the largest of the Bezier points of this
+  /// quadratic, whose convex hull contains it.
+  [[nodiscard]] double max_slope(double end) const {
+    return std::max({first.norm(), (first + end * second).norm(), slope(end).norm()});
+  }
 };
 
 /// Hermite's cubic with these slopes at the start and the end.
@@ -178,6 +183,19 @@ void check_lengths(std::span<const TimedPose> poses, const std::vector<Vector3d>
   }
 }
 
+/// The position from an entry on, relative to it.
+Cubic position_after(std::span<const TimedPose> poses, const std::vector<Vector3d>& velocities,
+                     std::size_t before) {
+  return make_cubic(position_step(poses, before), velocities[before], velocities[before + 1]);
+}
+
+/// The rotation vector from an entry on.
+Cubic rotation_after(std::span<const TimedPose> poses, const std::vector<Vector3d>& rates,
+                     std::size_t before) {
+  const Step turn = rotation_step(poses, before);
+  return make_cubic(turn, rates[before], end_slope(RotationVector(turn.change), rates[before + 1]));
+}
+
 }  // namespace
 
 PoseSpline::PoseSpline(std::span<const TimedPose> poses) {
@@ -188,6 +206,13 @@ PoseSpline::PoseSpline(std::span<const TimedPose> poses) {
   check_lengths(poses, rate_rad_s_);
 }
 
+/// A body turns no faster than its rotation vector changes: the norm of the Jacobian is at most 1.
+MaxRates PoseSpline::max_rates(std::span<const TimedPose> poses, std::size_t before) const {
+  const double duration_s = position_step(poses, before).duration_s;
+  return {position_after(poses, velocity_m_s_, before).max_slope(duration_s),
+          rotation_after(poses, rate_rad_s_, before).max_slope(duration_s)};
+}
+
 Pose PoseSpline::pose_at(std::span<const TimedPose> poses, std::size_t before,
                          double since_s) const {
   return state_at(poses, before, since_s).pose;
@@ -196,11 +221,8 @@ Pose PoseSpline::pose_at(std::span<const TimedPose> poses, std::size_t before,
 KinematicState PoseSpline::state_at(std::span<const TimedPose> poses, std::size_t before,
                                     double since_s) const {
   const TimedPose& from = poses[before];
-  const Cubic position =
-      make_cubic(position_step(poses, before), velocity_m_s_[before], velocity_m_s_[before + 1]);
-  const Step turn = rotation_step(poses, before);
-  const Cubic vector = make_cubic(turn, rate_rad_s_[before],
-                                  end_slope(RotationVector(turn.change), rate_rad_s_[before + 1]));
+  const Cubic position = position_after(poses, velocity_m_s_, before);
+  const Cubic vector = rotation_after(poses, rate_rad_s_, before);
   const RotationVector rotation(vector.value(since_s));
   const Vector3d slope = vector.slope(since_s);
   KinematicState state;

@@ -33,6 +33,9 @@ class PoseSpline {
   [[nodiscard]] KinematicState state_at(std::span<const TimedPose> poses, std::size_t before,
                                         double since_s) const;
 
+  /// Upper bounds of the rates between the entry `before`, which is not the last, and the next.
+  [[nodiscard]] MaxRates max_rates(std::span<const TimedPose> poses, std::size_t before) const;
+
  private:
   std::vector<Eigen::Vector3d> velocity_m_s_;  ///< at each entry, world axes
   std::vector<Eigen::Vector3d> rate_rad_s_;    ///< at each entry, body axes

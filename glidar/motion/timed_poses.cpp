@@ -134,6 +134,24 @@ KinematicState TimedPoses::state_at(std::int64_t t_ns) const {
   return state;
 }
 
+MaxRates TimedPoses::max_rates(const TimeInterval& interval) const {
+  MaxRates rates;
+  const std::size_t end = std::min(next_after(interval.last_ns), poses_.size() - 1);
+  const std::size_t next = next_after(interval.first_ns);
+  for (std::size_t before = next == 0 ? 0 : next - 1; before < end; ++before) {
+    MaxRates part;
+    if (spline_) {
+      part = spline_->max_rates(poses_, before);
+    } else {
+      const KinematicState state = linear_state(poses_, before);
+      part = {state.velocity_m_s.norm(), state.angular_velocity_rad_s.norm()};
+    }
+    rates = {std::max(rates.linear_m_s, part.linear_m_s),
+             std::max(rates.angular_rad_s, part.angular_rad_s)};
+  }
+  return rates;
+}
+
 void TimedPoses::poses_at(std::span<const std::int64_t> t_ns, std::span<Pose> out) const {
   constexpr std::size_t kSteps = 8;  // farther ahead, a binary search is faster
   std::size_t next = 0;

@@ -16,6 +16,8 @@ namespace glidar {
 
 class PoseSpline;
 struct KinematicState;
+struct MaxRates;
+struct TimeInterval;
 
 /// A pose at a time, as files store it.
 struct TimedPose {
@@ -76,6 +78,9 @@ class TimedPoses {
   /// The pose and its derivatives. At an entry they are those of the interval that begins there, at
   /// the last entry those of the interval that ends there; outside, the body is at rest.
   [[nodiscard]] KinematicState state_at(std::int64_t t_ns) const;
+
+  /// Upper bounds of the rates during an interval.
+  [[nodiscard]] MaxRates max_rates(const TimeInterval& interval) const;
 
   [[nodiscard]] std::int64_t first_ns() const { return poses_.front().t_ns; }
   [[nodiscard]] std::int64_t last_ns() const { return poses_.back().t_ns; }

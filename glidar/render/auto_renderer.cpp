@@ -62,7 +62,8 @@ class AutoRenderer final : public Renderer {
 
   /// If true, the cast is prepared.
   bool is_for_scan_raster(const CastRequest& request) {
-    if (!request.beams_recur || !any_instance_enabled(request, base_->resolver.scene()) ||
+    if (!request.beams_recur || !request.targets.empty() ||
+        !any_instance_enabled(request, base_->resolver.scene()) ||
         rasterizer_limitation(request.beams) == nullptr ||
         !scan_raster::may_form_grid(request.beams)) {
       return false;

@@ -5,6 +5,7 @@
 #include <glidar/render/cpu_base.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
+#include <glidar/render/rays/rays_renderer.hpp>
 #include <glidar/render/scan_raster/scan_renderer.hpp>
 
 namespace glidar {
@@ -19,11 +20,16 @@ class CpuRasterRenderer final : public Renderer {
   [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
 
   void cast(const CastRequest& request, Hits& hits) override {
-    renderer_for(request.beams).cast(request, hits);
+    renderer_for(request).cast(request, hits);
   }
 
  private:
-  Renderer& renderer_for(const Beams& beams) {
+  Renderer& renderer_for(const CastRequest& request) {
+    if (!request.targets.empty()) {
+      if (rays_ == nullptr) rays_ = make_rays_renderer(base_);
+      return *rays_;
+    }
+    const Beams& beams = request.beams;
     if (rasterizer_limitation(beams) == nullptr) {
       if (pinhole_ == nullptr) pinhole_ = make_raster_renderer(base_);
       return *pinhole_;
@@ -35,6 +41,7 @@ class CpuRasterRenderer final : public Renderer {
   std::shared_ptr<CpuBase> base_;
   std::unique_ptr<Renderer> pinhole_;
   std::unique_ptr<Renderer> scan_;
+  std::unique_ptr<Renderer> rays_;  ///< for beams with targets, which have no grid
 };
 
 }  // namespace

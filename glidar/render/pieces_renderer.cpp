@@ -31,6 +31,7 @@ class PiecesScene {
   struct Arrays {
     std::vector<Pose> poses;
     std::vector<std::uint8_t> instance_enabled;
+    std::vector<InstanceRange> targets;  ///< per beam
   };
 
   /// The request for the pieces. Throws Error unless it fits the whole scene.
@@ -38,6 +39,7 @@ class PiecesScene {
     check(request, whole_);
     arrays.poses.clear();
     arrays.instance_enabled.clear();
+    arrays.targets.clear();
     for (const std::uint32_t instance : instance_of_) {
       arrays.poses.push_back(request.world_from_instance.empty()
                                  ? whole_.instances[instance].world_from_object
@@ -45,9 +47,13 @@ class PiecesScene {
       if (!request.instance_enabled.empty())
         arrays.instance_enabled.push_back(request.instance_enabled[instance]);
     }
+    for (const InstanceRange& target : request.targets) {
+      arrays.targets.push_back({first_piece_[target.begin], first_piece_[target.end]});
+    }
     CastRequest pieces = request;
     pieces.world_from_instance = arrays.poses;
     pieces.instance_enabled = arrays.instance_enabled;
+    pieces.targets = arrays.targets;
     return pieces;
   }
 
@@ -83,6 +89,7 @@ class PiecesScene {
       scene_.instances.back().mesh = mesh;
       instance_of_.push_back(index);
     }
+    first_piece_.push_back(static_cast<std::uint32_t>(instance_of_.size()));
   }
 
   const Scene& whole_;
@@ -90,6 +97,7 @@ class PiecesScene {
   std::vector<std::vector<std::uint32_t>> pieces_of_mesh_;
   std::vector<std::vector<std::uint32_t>> triangles_;  ///< per piece; empty: as in the mesh
   std::vector<std::uint32_t> instance_of_;             ///< per piece that is placed
+  std::vector<std::uint32_t> first_piece_ = {0};       ///< per instance, and the end of the last
 };
 
 class PiecesRenderer final : public Renderer {

@@ -71,6 +71,15 @@ void check(const CastRequest& request, const Scene& scene) {
   require(
       request.instance_enabled.empty() || request.instance_enabled.size() == scene.instances.size(),
       "enabled flags for another number of instances", "one entry per instance, or none");
+  const auto is_in_scene = [&](const InstanceRange& target) {
+    return target.begin < target.end && target.end <= scene.instances.size();
+  };
+  require(request.targets.empty() || request.targets.size() == beams.size(),
+          "a number of targets that differs from the beams", "one target per beam, or none");
+  require(std::all_of(request.targets.begin(), request.targets.end(), is_in_scene),
+          "a target outside of the scene", "instances of the scene");
+  require(request.targets.empty() || !beams.pinhole, "targets for the pixels of a pinhole",
+          "targets for beams without such a grid");
   require(is_within_reach(request.world_from_sensor.translation()), "the sensor is out of reach",
           "up to 1e15 m from the world's origin", "move the world's origin nearer to it");
   check_poses(request, scene);

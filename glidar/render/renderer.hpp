@@ -20,6 +20,14 @@
 
 namespace glidar {
 
+/// The instances begin, begin + 1, ..., end - 1.
+struct InstanceRange {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+
+  bool operator==(const InstanceRange&) const = default;
+};
+
 /// One cast: beams from a pose into the scene.
 struct CastRequest {
   const Beams& beams;
@@ -30,6 +38,9 @@ struct CastRequest {
   bool cull_back_faces = false;
   /// One per instance; 0: not part of this cast; empty: all are.
   std::span<const std::uint8_t> instance_enabled = {};
+  /// One per beam: all that it may hit, enabled or not; empty: every enabled instance. Fastest if
+  /// beams with equal targets follow each other.
+  std::span<const InstanceRange> targets = {};
   /// False: later casts have other beams, so it does not pay to prepare anything for these.
   bool beams_recur = true;
   /// Called in runs, once for every beam, when its hits are known, by the thread that found them,

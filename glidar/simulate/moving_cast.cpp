@@ -5,106 +5,12 @@
 #include <glidar/simulate/start_from_sensor.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <span>
 
 namespace glidar {
 namespace {
 
 constexpr std::size_t kMovedBeamsPerTask = 1024;
-
-bool is_static(const Trajectory& trajectory) {
-  return std::holds_alternative<ConstantPose>(trajectory);
-}
-
-/// A sphere around an instance at the start of the frame, in the sensor's frame of that time.
-struct Sphere {
-  Eigen::Vector3d centre;
-  double radius = std::numeric_limits<double>::infinity();
-};
-
-Sphere bounding_sphere(const Instance& instance, const Eigen::AlignedBox3d& box,
-                       const Pose& world_from_object, const Pose& world_from_sensor) {
-  constexpr double kClear = 1.001;  // also after rounding
-  if (box.isEmpty()) return {Eigen::Vector3d::Zero(), 0.0};
-  const Eigen::Vector3d middle =
-      world_from_object.linear() * (instance.scale * box.center()) +
-      (world_from_object.translation() - world_from_sensor.translation());
-  return {world_from_sensor.linear().transpose() * middle,
-          kClear * instance.scale * 0.5 * box.diagonal().norm()};
-}
-
-bool may_hit(const Sphere& sphere, const Eigen::Vector3d& origin,
-             const Eigen::Vector3d& direction) {
-  if (std::isinf(sphere.radius)) return true;
-  const Eigen::Vector3d to_centre = sphere.centre - origin;
-  const double along = std::max(0.0, to_centre.dot(direction));
-  return (to_centre - along * direction).squaredNorm() <= sphere.radius * sphere.radius;
-}
-
-/// A moving instance and its pose during a frame.
-struct Body {
-  const Trajectory& world_from_body;
-  Pose at_start;
-  Sphere sphere;
-};
-
-/// The pose of the sensor at a time relative to the body at rest, in the sensor's frame at the
-/// start: S0^-1 * B0 * B^-1 * S with the poses B and S at that time. Positions are subtracted
-/// first, for full precision far from the world's origin.
-Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& b, const Pose& s) {
-  Pose pose = Pose::Identity();
-  const Eigen::Matrix3d back = s0.linear().transpose();
-  const Pose& b0 = body.at_start;
-  const Eigen::Matrix3d held = b0.linear() * b.linear().transpose();
-  pose.linear() = back * held * s.linear();
-  pose.translation() =
-      back * (held * (s.translation() - b.translation()) + (b0.translation() - s0.translation()));
-  return pose;
-}
-
-/// Calls work(beam, world_from_sensor, world_from_body) for beams of a run with the poses at their
-/// firing times.
-template <class Work>
-void for_each_firing(const Trajectory& sensor, const Body& body, std::int64_t stamp_ns,
-                     const Beams& beams, BeamRange range, const Work& work) {
-  constexpr std::size_t kAtOnce = 128;
-  std::array<std::int64_t, kAtOnce> t_ns;
-  std::array<Pose, kAtOnce> sensors;
-  std::array<Pose, kAtOnce> bodies;
-  for (std::size_t first = range.begin; first < range.end; first += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, range.end - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      t_ns[k] = stamp_ns + (beams.times_ns.empty() ? 0 : beams.times_ns[first + k]);
-    }
-    const std::span<const std::int64_t> times(t_ns.data(), count);
-    poses_at(sensor, times, {sensors.data(), count});
-    poses_at(body.world_from_body, times, {bodies.data(), count});
-    for (std::size_t k = 0; k < count; ++k) work(first + k, sensors[k], bodies[k]);
-  }
-}
-
-/// Expresses a run of beams in the frame in which a body is at rest; those that cannot hit it get
-/// no direction.
-void express_beams(const CastRequest& request, const Motion& motion, const Body& body,
-                   std::int64_t stamp_ns, BeamRange range, MovingCastWorkspace& memory) {
-  const Beams& beams = request.beams;
-  const auto move = [&](std::size_t i, const Pose& sensor, const Pose& body_pose) {
-    const Pose pose = start_from_sensor(body, request.world_from_sensor, body_pose, sensor);
-    memory.start_from_sensor[i] = pose.linear();
-    Eigen::Vector3d& direction = memory.beams.directions[i];
-    Eigen::Vector3d& origin = memory.beams.origins_m[i];
-    direction = (pose.linear() * beams.directions[i]).normalized();
-    origin =
-        beams.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * beams.origins_m[i];
-    if (!may_hit(body.sphere, origin, direction)) {
-      direction.setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-  };
-  for_each_firing(motion.world_from_sensor, body, stamp_ns, beams, range, move);
-}
 
 /// The part of a column in a run of beams; empty for an empty column.
 template <class Column>
@@ -145,70 +51,13 @@ void express_beams(const CastRequest& request, const MovingSensor& sensor, BeamR
   });
 }
 
-/// Expresses what depends on the sensor's frame in its frame at the beam's firing time.
-void rotate_to_firing_time(const CastRequest& request, const MovingCastWorkspace& memory,
-                           BeamRange range, Hits& hits) {
-  if (!has_vectors(request.hit_columns) && !request.hit_columns.depth) return;
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    if (hits.instance[i] == kInvalidId) continue;
-    const Eigen::Matrix3d back = memory.start_from_sensor[i].transpose();
-    const auto rotate = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
-    if (request.hit_columns.normal) rotate(hits.normal[i]);
-    if (request.hit_columns.shading_normal) rotate(hits.shading_normal[i]);
-    if (request.hit_columns.depth) hits.depth_m[i] = depth_m(request.beams, i, hits.range_m[i]);
-  }
-}
-
-/// Keeps the nearer of two hits; at the same range that of the body cast first.
-void merge(const Hits& from, const HitColumnMask& hit_columns, BeamRange range, Hits& to) {
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    if (from.instance[i] == kInvalidId) continue;
-    if (to.instance[i] == kInvalidId || from.range_m[i] < to.range_m[i])
-      copy_hit(from, i, hit_columns, to, i);
-  }
-}
-
-/// Sizes the memory and fills in what all bodies share.
-void prepare(const Scene& scene, const Beams& beams, MovingCastWorkspace& memory) {
-  memory.beams.rows = beams.rows;
-  memory.beams.cols = beams.cols;
-  memory.beams.frame_id = beams.frame_id;
-  memory.beams.boresight = beams.boresight;
-  memory.beams.directions.resize(beams.size());
-  memory.beams.origins_m.resize(beams.size());
-  memory.start_from_sensor.resize(beams.size());
-  memory.mesh_boxes.resize(scene.meshes.size());
-}
-
-/// The box of a mesh, which is computed once.
-const Eigen::AlignedBox3d& mesh_box(const Scene& scene, std::uint32_t mesh,
-                                    MovingCastWorkspace& memory) {
-  std::optional<Eigen::AlignedBox3d>& box = memory.mesh_boxes[mesh];
-  if (!box) box = bounds(scene.meshes[mesh]);
-  return *box;
-}
-
-/// Expresses all beams in the frame in which a body is at rest; nullptr: all that is static.
-void express_all_beams(const TimedScene& timed, const CastRequest& request, const Body* body,
-                       MovingCastWorkspace& memory) {
-  const Motion& motion = timed.motion;
-  const MovingSensor sensor{motion.world_from_sensor, request.world_from_sensor, timed.stamp_ns};
-  timed.renderer.thread_pool().parallel_for(
-      request.beams.size(), kMovedBeamsPerTask, [&](std::size_t begin, std::size_t end) {
-        if (body == nullptr) return express_beams(request, sensor, {begin, end}, memory);
-        express_beams(request, motion, *body, timed.stamp_ns, {begin, end}, memory);
-      });
-}
-
-/// An instance as a moving body.
-Body body_of(const TimedScene& timed, const CastRequest& request, std::uint32_t i,
-             MovingCastWorkspace& memory) {
-  const Instance& instance = timed.scene.instances[i];
-  const Pose& at_start = request.world_from_instance[i];
-  return {.world_from_body = timed.motion.world_from_instance[i],
-          .at_start = at_start,
-          .sphere = bounding_sphere(instance, mesh_box(timed.scene, instance.mesh, memory),
-                                    at_start, request.world_from_sensor)};
+/// Expresses a hit's vectors in the sensor's frame at the beam's firing time.
+void rotate_to_firing_time(const CastRequest& request, const Eigen::Matrix3d& start_from_sensor,
+                           std::size_t beam, Hits& hits) {
+  const Eigen::Matrix3d back = start_from_sensor.transpose();
+  const auto rotate = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
+  if (request.hit_columns.normal) rotate(hits.normal[beam]);
+  if (request.hit_columns.shading_normal) rotate(hits.shading_normal[beam]);
 }
 
 /// One cast that is in progress.
@@ -216,72 +65,138 @@ struct MovingCast {
   const TimedScene& timed;
   const CastRequest& request;
   MovingCastWorkspace& memory;
-  Hits& hits;
 
   template <class Work>
-  void parallel_for(const Work& work) const {
-    timed.renderer.thread_pool().parallel_for(request.beams.size(), kMovedBeamsPerTask,
-                                              [&](std::size_t begin, std::size_t end) {
-                                                work(BeamRange{begin, end});
-                                              });
+  void parallel_for(std::size_t size, std::size_t grain, const Work& work) const {
+    timed.renderer.thread_pool().parallel_for(size, grain, work);
   }
 };
 
-/// Which of the bodies is cast.
-struct BodyIndex {
-  std::size_t number = 0;
-  std::size_t count = 1;
-};
-
-/// Casts the instances of memory.instance_enabled, which are the body; nullptr: all that is static.
-/// The first body fills the hits.
-void cast_body(const MovingCast& cast, const Body* body, const BodyIndex& body_index) {
-  const bool is_first = body_index.number == 0;
+/// Expresses all beams in the sensor's frame at the start.
+void express_all_beams(const MovingCast& cast) {
   MovingCastWorkspace& memory = cast.memory;
+  const Beams& beams = cast.request.beams;
+  memory.beams.rows = beams.rows;
+  memory.beams.cols = beams.cols;
+  memory.beams.frame_id = beams.frame_id;
+  memory.beams.boresight = beams.boresight;
+  memory.beams.directions.resize(beams.size());
+  memory.beams.origins_m.resize(beams.size());
+  memory.start_from_sensor.resize(beams.size());
+  const MovingSensor sensor{cast.timed.motion.world_from_sensor, cast.request.world_from_sensor,
+                            cast.timed.stamp_ns};
+  cast.parallel_for(beams.size(), kMovedBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+    express_beams(cast.request, sensor, {begin, end}, memory);
+  });
+}
+
+/// Casts the beams of the workspace into all that is static.
+void cast_static(const MovingCast& cast, const ProgressCallback& progress, Hits& hits) {
   const CastRequest& request = cast.request;
-  Hits& hits = is_first ? cast.hits : memory.hits;
-  const auto part = [&](std::size_t number) {
-    return static_cast<double>(number) / static_cast<double>(body_index.count);
-  };
-  express_all_beams(cast.timed, request, body, memory);
-  const bool is_sensor_static = is_static(cast.timed.motion.world_from_sensor);
+  MovingCastWorkspace& memory = cast.memory;
+  const std::vector<Trajectory>& trajectories = cast.timed.motion.world_from_instance;
+  memory.instance_enabled.resize(trajectories.size());
+  for (std::size_t i = 0; i < trajectories.size(); ++i) {
+    memory.instance_enabled[i] =
+        static_cast<std::uint8_t>(is_static(trajectories[i]) && is_enabled(request, i));
+  }
   cast.timed.renderer.cast({.beams = memory.beams,
                             .world_from_sensor = request.world_from_sensor,
                             .world_from_instance = request.world_from_instance,
                             .hit_columns = request.hit_columns,
                             .cull_back_faces = request.cull_back_faces,
                             .instance_enabled = memory.instance_enabled,
-                            .beams_recur = body == nullptr && is_sensor_static,
-                            .progress = subrange(request.progress, part(body_index.number),
-                                                 part(body_index.number + 1))},
+                            .beams_recur = is_static(cast.timed.motion.world_from_sensor),
+                            .progress = progress},
                            hits);
-  cast.parallel_for([&](BeamRange range) {
-    rotate_to_firing_time(request, memory, range, hits);
-    if (!is_first) merge(hits, request.hit_columns, range, cast.hits);
+  if (!has_vectors(request.hit_columns) && !request.hit_columns.depth) return;
+  cast.parallel_for(hits.instance.size(), kMovedBeamsPerTask,
+                    [&](std::size_t begin, std::size_t end) {
+                      for (std::size_t i = begin; i < end; ++i) {
+                        if (hits.instance[i] == kInvalidId) continue;
+                        if (has_vectors(request.hit_columns)) {
+                          rotate_to_firing_time(request, memory.start_from_sensor[i], i, hits);
+                        }
+                        if (request.hit_columns.depth) {
+                          hits.depth_m[i] = depth_m(request.beams, i, hits.range_m[i]);
+                        }
+                      }
+                    });
+}
+
+/// Collects the body beams of all slices.
+void collect_body_beams(const MovingCast& cast) {
+  MovingCastWorkspace& memory = cast.memory;
+  const std::vector<std::vector<BodyBeam>>& slices = memory.search.slices;
+  memory.first_of_slice.assign(1, 0);
+  for (const std::vector<BodyBeam>& slice : slices) {
+    memory.first_of_slice.push_back(memory.first_of_slice.back() + slice.size());
+  }
+  const std::size_t count = memory.first_of_slice.back();
+  Beams& beams = memory.body_beams;
+  beams.rows = 1;
+  beams.cols = static_cast<std::uint32_t>(count);
+  beams.frame_id = cast.request.beams.frame_id;
+  beams.boresight = cast.request.beams.boresight;
+  beams.directions.resize(count);
+  beams.origins_m.resize(count);
+  memory.targets.resize(count);
+  cast.parallel_for(slices.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slice = begin; slice < end; ++slice) {
+      std::size_t to = memory.first_of_slice[slice];
+      for (const BodyBeam& found : slices[slice]) {
+        beams.directions[to] = found.direction;
+        beams.origins_m[to] = found.origin_m;
+        memory.targets[to++] = {found.instance, found.instance + 1};
+      }
+    }
   });
 }
 
-/// Casts all that is static, then every moving instance.
-void cast_bodies(const MovingCast& cast) {
+/// Casts the body beams that were found.
+void cast_body_beams(const MovingCast& cast, const HitColumnMask& hit_columns,
+                     const ProgressCallback& progress) {
   MovingCastWorkspace& memory = cast.memory;
-  const Scene& scene = cast.timed.scene;
-  const std::vector<Trajectory>& trajectories = cast.timed.motion.world_from_instance;
-  memory.instance_enabled.assign(scene.instances.size(), 0);
-  for (std::size_t i = 0; i < memory.instance_enabled.size(); ++i) {
-    memory.instance_enabled[i] = static_cast<std::uint8_t>(is_static(trajectories[i]));
+  collect_body_beams(cast);
+  if (memory.targets.empty()) {  // which would be a cast into all instances
+    resize(memory.body_hits, 0, hit_columns);
+    if (progress) progress(1.0);
+    return;
   }
-  const auto static_count = std::count_if(trajectories.begin(), trajectories.end(), is_static);
-  BodyIndex body_index{.count = 1 + memory.instance_enabled.size() -
-                                static_cast<std::size_t>(static_count)};
-  cast_body(cast, nullptr, body_index);
-  for (std::uint32_t i = 0; i < memory.instance_enabled.size(); ++i) {
-    if (is_static(trajectories[i])) continue;
-    memory.instance_enabled.assign(scene.instances.size(), 0);
-    memory.instance_enabled[i] = 1;
-    ++body_index.number;
-    const Body body = body_of(cast.timed, cast.request, i, memory);
-    cast_body(cast, &body, body_index);
-  }
+  cast.timed.renderer.cast({.beams = memory.body_beams,
+                            .world_from_sensor = cast.request.world_from_sensor,
+                            .world_from_instance = cast.request.world_from_instance,
+                            .hit_columns = hit_columns,
+                            .cull_back_faces = cast.request.cull_back_faces,
+                            .targets = memory.targets,
+                            .beams_recur = false,
+                            .progress = progress},
+                           memory.body_hits);
+}
+
+/// Keeps the nearer of two hits; at the same range that of the scene at rest, then that of the
+/// instance with the lowest index.
+void merge_body_hits(const MovingCast& cast, Hits& hits) {
+  MovingCastWorkspace& memory = cast.memory;
+  const CastRequest& request = cast.request;
+  const Hits& found = memory.body_hits;
+  const auto merge = [&](std::size_t from, const BodyBeam& body_beam) {
+    const std::size_t to = body_beam.beam;
+    if (found.instance[from] == kInvalidId) return;
+    if (hits.instance[to] != kInvalidId && !(found.range_m[from] < hits.range_m[to])) return;
+    copy_hit(found, from, request.hit_columns, hits, to);
+    if (has_vectors(request.hit_columns)) {
+      rotate_to_firing_time(request, body_beam.start_from_sensor, to, hits);
+    }
+    if (request.hit_columns.depth) hits.depth_m[to] = depth_m(request.beams, to, hits.range_m[to]);
+  };
+  const std::vector<std::vector<BodyBeam>>& slices = memory.search.slices;
+  cast.parallel_for(slices.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slice = begin; slice < end; ++slice) {
+      std::size_t from = memory.first_of_slice[slice];
+      for (const BodyBeam& body_beam : slices[slice]) merge(from++, body_beam);
+    }
+  });
 }
 
 }  // namespace
@@ -298,22 +213,39 @@ bool moves_during_frame(const Motion& motion, const Beams& beams) {
 
 void cast_moving(const TimedScene& scene, const CastRequest& request,
                  MovingCastWorkspace& workspace, Hits& hits) {
-  prepare(scene.scene, request.beams, workspace);
-  const MovingCast cast{scene, request, workspace, hits};
-  cast_bodies(cast);
-  if (request.on_tile_done) cast.parallel_for(request.on_tile_done);
+  const MovingCast cast{scene, request, workspace};
+  const std::vector<Trajectory>& trajectories = scene.motion.world_from_instance;
+  const bool has_bodies = !std::all_of(trajectories.begin(), trajectories.end(), is_static);
+  express_all_beams(cast);
+  cast_static(cast, subrange(request.progress, 0.0, has_bodies ? 0.5 : 1.0), hits);
+  if (has_bodies) {
+    find_body_beams(scene, request, workspace.beams, hits.range_m, workspace.search);
+    cast_body_beams(cast, request.hit_columns, subrange(request.progress, 0.5, 1.0));
+    merge_body_hits(cast, hits);
+  }
+  if (request.on_tile_done) {
+    cast.parallel_for(request.beams.size(), kMovedBeamsPerTask,
+                      [&](std::size_t begin, std::size_t end) {
+                        request.on_tile_done({begin, end});
+                      });
+  }
 }
 
 const Beams& beams_at_rest(const TimedScene& scene, const CastRequest& request,
-                           std::uint32_t instance, MovingCastWorkspace& workspace) {
-  prepare(scene.scene, request.beams, workspace);
-  if (instance == kInvalidId || is_static(scene.motion.world_from_instance[instance])) {
-    express_all_beams(scene, request, nullptr, workspace);
-  } else {
-    const Body body = body_of(scene, request, instance, workspace);
-    express_all_beams(scene, request, &body, workspace);
-  }
+                           MovingCastWorkspace& workspace) {
+  express_all_beams({scene, request, workspace});
   return workspace.beams;
+}
+
+void count_body_hits(const TimedScene& scene, const CastRequest& request,
+                     MovingCastWorkspace& workspace, std::span<std::uint32_t> count) {
+  const MovingCast cast{scene, request, workspace};
+  express_all_beams(cast);
+  find_body_beams(scene, request, workspace.beams, {}, workspace.search);
+  cast_body_beams(cast, {}, {});
+  for (const std::uint32_t instance : workspace.body_hits.instance) {
+    if (instance != kInvalidId) ++count[instance];
+  }
 }
 
 void deskew(const TimedScene& scene, const Beams& reported, const Beams& fired,

@@ -3,31 +3,26 @@
 #pragma once
 
 #include <glidar/core/frame.hpp>
-#include <glidar/motion/motion.hpp>
-#include <glidar/render/renderer.hpp>
+#include <glidar/simulate/body_beams.hpp>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
 namespace glidar {
 
-/// A scene in motion, and when a frame of it starts.
-struct TimedScene {
-  Renderer& renderer;
-  const Scene& scene;
-  const Motion& motion;
-  std::int64_t stamp_ns = 0;
-};
-
-/// Memory that casts in one moving scene reuse. N = number of beams.
+/// Memory that casts in one moving scene reuse. N = number of beams, P = of body beams.
 struct MovingCastWorkspace {
-  Beams beams;                                                 ///< as a rigid body sees them
-  std::vector<Eigen::Matrix3d> start_from_sensor;              ///< N, as that body sees the sensor
-  Hits hits;                                                   ///< on that body
-  std::vector<std::uint8_t> instance_enabled;                  ///< per instance
-  std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it has moved
+  Beams beams;                                     ///< as all that is static sees them
+  std::vector<Eigen::Matrix3d> start_from_sensor;  ///< N, as that sees the sensor
+  std::vector<std::uint8_t> instance_enabled;      ///< per instance: whether it is static
+  BodyBeamSearch search;
+  std::vector<std::size_t> first_of_slice;  ///< per slice of the search, and P
+  Beams body_beams;                         ///< P
+  std::vector<InstanceRange> targets;       ///< P
+  Hits body_hits;                           ///< P
 };
 
 /// True when the sensor or an instance moves.
@@ -37,8 +32,9 @@ bool moves(const Motion& motion);
 bool moves_during_frame(const Motion& motion, const Beams& beams);
 
 /// Casts beams of which each sees the scene at its own firing time, exactly, without time steps.
-/// All that is static is one rigid body, every moving instance another. For each body the beams are
-/// expressed in the frame in which the body is at rest and cast; a beam keeps the nearest hit.
+/// All that is static is cast first, with the beams expressed in the sensor's frame at the start.
+/// Then every beam is cast into the moving instances whose boxes it meets at its firing time,
+/// expressed in the frame in which the instance is at rest. A beam keeps the nearest hit.
 ///
 /// `request` is that of a static frame: beams in the sensor's frame, poses at stamp_ns. Hits are as
 /// if each beam had been cast alone at stamp_ns + times_ns: normals in the sensor's frame of that
@@ -46,11 +42,15 @@ bool moves_during_frame(const Motion& motion, const Beams& beams);
 void cast_moving(const TimedScene& scene, const CastRequest& request,
                  MovingCastWorkspace& workspace, Hits& hits);
 
-/// The beams of a request as a rigid body sees them that keeps its pose of stamp_ns, in the sensor
-/// frame of that time: an instance, or with kInvalidId all that is static. Beams that cannot hit a
-/// moving instance have no direction. They are in the workspace, until the next call.
+/// The beams of a request in the sensor's frame at stamp_ns, as all that is static sees them. They
+/// are in the workspace, until the next call.
 const Beams& beams_at_rest(const TimedScene& scene, const CastRequest& request,
-                           std::uint32_t instance, MovingCastWorkspace& workspace);
+                           MovingCastWorkspace& workspace);
+
+/// Adds to `count`, per instance, the beams of a request that would hit it if it were alone, for
+/// moving instances.
+void count_body_hits(const TimedScene& scene, const CastRequest& request,
+                     MovingCastWorkspace& workspace, std::span<std::uint32_t> count);
 
 /// The reported and the fired beams, which are the same without pointing errors, as seen from the
 /// sensor's pose at stamp_ns. Changes nothing when the sensor does not move while they are fired.

@@ -289,7 +289,7 @@ void count_hidden(const ObservedBeams& observed, std::span<const ObjectBox> boxe
 }
 
 bool is_at_rest(const Simulation& s, std::uint32_t instance) {
-  return std::holds_alternative<ConstantPose>(s.motion.world_from_instance[instance]);
+  return is_static(s.motion.world_from_instance[instance]);
 }
 
 double greatest_norm(const std::vector<Eigen::Vector3d>& vectors) {
@@ -305,23 +305,22 @@ void count_hidden_of(const Simulation& s, const Beams& beams,
   count_hidden({s, beams, greatest_norm(beams.origins_m), first}, boxes);
 }
 
-/// Counts the hidden beams while something moves. Each moving object sees the beams in its own way.
+/// Counts the hidden beams while something moves. Those of a moving object are the beams that would
+/// hit it alone, without those that hit it first.
 void count_hidden_in_motion(const Simulation& s, const Beams& nominal,
                             const std::vector<std::uint32_t>& first,
                             std::span<const ObjectBox> boxes) {
+  BoxWorkspace& memory = s.workspace.boxes;
   const CastRequest request = cast_request(s, nominal, {});
-  const auto beams_of = [&](std::uint32_t body) -> const Beams& {
-    return beams_at_rest(timed_scene(s), request, body, s.workspace.boxes.moving);
-  };
-  std::vector<ObjectBox> at_rest;
-  for (const ObjectBox& box : boxes) {
-    if (is_at_rest(s, box.instance)) {
-      at_rest.push_back(box);
-    } else {
-      count_hidden_of(s, beams_of(box.instance), first, {&box, 1});
-    }
+  count_body_hits(timed_scene(s), request, memory.moving, memory.hidden);
+  for (const std::uint32_t instance : first) {
+    if (instance != kInvalidId && !is_at_rest(s, instance)) --memory.hidden[instance];
   }
-  if (!at_rest.empty()) count_hidden_of(s, beams_of(kInvalidId), first, at_rest);
+  std::vector<ObjectBox> at_rest;
+  std::copy_if(boxes.begin(), boxes.end(), std::back_inserter(at_rest),
+               [&](const ObjectBox& box) { return is_at_rest(s, box.instance); });
+  if (at_rest.empty()) return;
+  count_hidden_of(s, beams_at_rest(timed_scene(s), request, memory.moving), first, at_rest);
 }
 
 /// Counts the beams that would hit each object, and that do.

@@ -269,5 +269,50 @@ TEST(TimedPoses, AreReportedWhenInertialSensorsReadThemLinearly) {
   EXPECT_NE(warning.find("interpolation: spline"), std::string::npos) << warning;
 }
 
+TEST(MaxDisplacement, EnclosesTheMotionOfAPointOfEveryKind) {
+  const Vector3d point_m(0.7, -1.2, 0.4);
+  for (const NamedTrajectory& kind : all_kinds()) {
+    for (const std::int64_t first_ns : {-100'000'000LL, 50'000'000LL, 1'234'567'891LL}) {
+      for (const std::int64_t duration_ns : {1'000LL, 7'000'000LL, 400'000'000LL}) {
+        const TimeInterval interval{first_ns, first_ns + duration_ns};
+        const std::int64_t middle_ns = first_ns + duration_ns / 2;
+        const double bound_m = max_displacement_m(kind.trajectory, point_m, middle_ns, interval);
+        const Vector3d middle_m = pose_at(kind.trajectory, middle_ns) * point_m;
+        double farthest_m = 0.0;
+        constexpr std::int64_t kSamples = 64;
+        for (std::int64_t i = 0; i <= kSamples; ++i) {
+          const Pose pose = pose_at(kind.trajectory, first_ns + i * duration_ns / kSamples);
+          farthest_m = std::max(farthest_m, (pose * point_m - middle_m).norm());
+        }
+        constexpr double kPoseRounding_m = 1e-14;
+        EXPECT_LE(farthest_m, bound_m + kPoseRounding_m) << kind.name << " from " << first_ns;
+        if (duration_ns < 10'000'000 && first_ns > 0) {
+          EXPECT_LE(bound_m, 4.0 * farthest_m + kPoseRounding_m) << kind.name << ": too loose";
+        }
+      }
+    }
+  }
+}
+
+TEST(MaxDisplacement, IsThatOfTheFastestIntervalOfLinearPoses) {
+  std::vector<TimedPose> poses;
+  for (const double x_m : {0.0, 1.0, 1.0, 4.0}) {
+    poses.push_back({.t_ns = static_cast<std::int64_t>(poses.size()) * 1'000'000'000,
+                     .position_m = {x_m, 0.0, 0.0}});
+  }
+  const Trajectory path = TimedPoses(poses);
+  const auto bound_m = [&](std::int64_t first_ms, std::int64_t last_ms) {
+    constexpr std::int64_t kMillisecond_ns = 1'000'000;
+    return max_displacement_m(path, {0, 0, 0}, first_ms * kMillisecond_ns,
+                              {first_ms * kMillisecond_ns, last_ms * kMillisecond_ns});
+  };
+  constexpr double kRounding = 1e-11;
+  EXPECT_NEAR(bound_m(100, 200), 0.1, kRounding);
+  EXPECT_NEAR(bound_m(1'100, 1'900), 0.0, kRounding);
+  EXPECT_NEAR(bound_m(1'900, 2'100), 0.6, kRounding) << "0.2 s at 3 m/s";
+  EXPECT_NEAR(bound_m(-500, 500), 1.0, kRounding);
+  EXPECT_NEAR(bound_m(5'000, 6'000), 0.0, kRounding);
+}
+
 }  // namespace
 }  // namespace glidar

@@ -160,6 +160,36 @@ TEST_P(PiecesSuite, PosesEnabledInstancesAndBatchesReferToTheScene) {
   EXPECT_THROW(device->cast({.beams = beams, .world_from_instance = too_many}, one), Error);
 }
 
+TEST_P(PiecesSuite, ATargetIncludesAllPieces) {
+  const Scene scene = scene_of_boxes();
+  const Pose pose = look_at(places_m()[0] + Eigen::Vector3d(2.0, 1.0, 1.0), places_m()[0]);
+  Beams beams = camera_beams(20, 20, 40.0);
+  const auto device = renderer(scene);
+  std::vector<InstanceRange> targets(beams.size(), {1, 2});
+  targets.front() = {0, 1};  // the sphere is not in view
+  const CastRequest request{.beams = beams, .world_from_sensor = pose, .targets = targets};
+  Hits hits;
+  EXPECT_THROW(device->cast(request, hits), Error) << "targets for pixels";
+  beams.pinhole.reset();
+  if (GetParam() == "opengl") {
+    EXPECT_THROW(device->cast(request, hits), Error) << "no pinhole";
+    return;
+  }
+  device->cast(request, hits);
+  Hits all;
+  make_renderer(scene, {.kind = "rays"})->cast({.beams = beams, .world_from_sensor = pose}, all);
+  EXPECT_EQ(hits.instance.front(), kInvalidId);
+  EXPECT_GT(std::count(hits.instance.begin(), hits.instance.end(), 1U), 50);
+  for (std::size_t i = 1; i < beams.size(); ++i) {
+    EXPECT_EQ(hits.instance[i], all.instance[i]);
+    EXPECT_EQ(hits.primitive[i], all.primitive[i]);
+  }
+  targets.back() = {1, 3};
+  EXPECT_THROW(device->cast(request, hits), Error) << "a target outside of the scene";
+  targets.pop_back();
+  EXPECT_THROW(device->cast(request, hits), Error) << "too few targets";
+}
+
 INSTANTIATE_TEST_SUITE_P(All, PiecesSuite, ::testing::ValuesIn(renderer_kinds()),
                          [](const auto& test) { return test.param; });
 

@@ -106,15 +106,15 @@ struct Nearest {
   double high_m = kInfinity;
 };
 
-/// Casts up to sixteen beams through all instances.
+/// Casts up to sixteen beams through several instances.
 class SceneTrace {
  public:
   SceneTrace(const CastView& cast, const Kernel& kernel, const BeamBlock& beams,
              const HitBlock& block)
       : cast_(cast), kernel_(kernel), beams_(beams), block_(block), inner_(cast, kernel, block) {}
 
-  /// Returns the lanes for which some distances tie.
-  std::uint32_t trace(std::uint32_t lanes) {
+  /// Casts them through all instances.
+  void trace(std::uint32_t lanes) {
     Lanes3<double> origin;
     Lanes3<double> direction;
     // The trees' frame is treated as that of an instance.
@@ -124,19 +124,30 @@ class SceneTrace {
     set_rays(origin, direction, packet);
     for (const InstanceGroup& group : cast_.trees.groups()) {
       group_ = &group;
+      reach_m_ = group.reach_m;
       kernel_.start(packet, group.boxes.sphere(), lanes);
       end_at_nearest(lanes, packet);
       kernel_.visit_leaves(
           group.tree(), packet,
           [](void* self, std::uint32_t leaf, RayPacket& outer, std::uint32_t entering) {
-            static_cast<SceneTrace*>(self)->visit(leaf, outer, entering);
+            static_cast<SceneTrace*>(self)->visit_leaf(leaf, outer, entering);
           },
           this);
     }
-    return tied_;
+  }
+
+  /// Casts them through these instances only.
+  void trace(const InstanceRange& instances, std::uint32_t lanes) {
+    reach_m_ = max_reach_m(cast_, instances);
+    for (std::uint32_t i = instances.begin; i < instances.end; ++i) {
+      if (!cast_.trees.of_instance(i).nodes.empty()) visit(i, lanes);
+    }
   }
 
   [[nodiscard]] const PrimitiveRef& found(unsigned lane) const { return nearest_[lane].primitive; }
+
+  /// The lanes for which some distances tie.
+  [[nodiscard]] std::uint32_t tied() const { return tied_; }
 
  private:
   /// Ends rays at their hits in the groups before. The bounds of these now include ties with
@@ -146,7 +157,7 @@ class SceneTrace {
       Nearest& nearest = nearest_[i];
       if (nearest.primitive.instance == kInvalidId) return;
       const double window_m =
-          1.01 * tie_window_m(cast_, block_.beam[i], nearest.primitive, group_->reach_m);
+          1.01 * tie_window_m(cast_, block_.beam[i], nearest.primitive, reach_m_);
       nearest.low_m -= window_m;
       nearest.high_m += window_m;
       outer.high[i] = bound_in(outer, i, nearest.high_m);
@@ -158,11 +169,16 @@ class SceneTrace {
     return well_above(distance_m - outer.shift[lane] + 0x1p-50 * distance_m);
   }
 
-  void visit(std::uint32_t leaf, RayPacket& outer, std::uint32_t lanes) {
-    const std::uint32_t instance = group_->boxes.index_in(leaf);
+  void visit_leaf(std::uint32_t leaf, RayPacket& outer, std::uint32_t lanes) {
+    for_lanes(visit(group_->boxes.index_in(leaf), lanes),
+              [&](unsigned i) { outer.high[i] = bound_in(outer, i, nearest_[i].high_m); });
+  }
+
+  /// Returns the lanes that hit the instance.
+  std::uint32_t visit(std::uint32_t instance, std::uint32_t lanes) {
     const double scale = cast_.resolver.view(instance).scale;
     RayPacket& p = inner_.packet;
-    inner_.start(instance, group_->reach_m, beams_, lanes);
+    inner_.start(instance, reach_m_, beams_, lanes);
     for_lanes(lanes, [&](unsigned i) {
       if (nearest_[i].primitive.instance == kInvalidId) return;
       const double end = nearest_[i].high_m / scale;
@@ -170,11 +186,13 @@ class SceneTrace {
     });
     inner_.trace();
     tied_ |= p.tied;
+    std::uint32_t hit = 0;
     for_lanes(lanes, [&](unsigned i) {
       if (p.slot[i] == kNoTriangle) return;
       update_nearest(i, {instance, inner_.primitive(i)}, scale);
-      outer.high[i] = bound_in(outer, i, nearest_[i].high_m);
+      hit |= 1U << i;
     });
+    return hit;
   }
 
   /// Keeps the nearer of the lane's hit and that of the inner packet.
@@ -192,7 +210,7 @@ class SceneTrace {
   /// True when the beam hits this triangle before the nearest so far.
   bool retest_exactly(unsigned lane, const PrimitiveRef& found) {
     const HitOrder order =
-        order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].primitive, group_->reach_m);
+        order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].primitive, reach_m_);
     if (order.ties) tied_ |= 1U << lane;
     return order.is_nearer;
   }
@@ -203,41 +221,93 @@ class SceneTrace {
   const HitBlock& block_;
   InstanceTrace inner_;
   const InstanceGroup* group_ = nullptr;  ///< that is being traced
+  double reach_m_ = 0.0;                  ///< upper bound of those of the instances so far
   std::array<Nearest, kLanes> nearest_;
   std::uint32_t tied_ = 0;
+};
+
+/// Casts up to sixteen beams, and writes what they hit to their block.
+class BlockTrace {
+ public:
+  BlockTrace(const CastView& cast, const Kernel& kernel, const BeamBlock& beams, HitBlock& block)
+      : cast_(cast), kernel_(kernel), beams_(beams), block_(block) {}
+
+  void trace_one(std::uint32_t instance, double reach_m, std::uint32_t lanes) {
+    InstanceTrace trace(cast_, kernel_, block_);
+    trace.start(instance, reach_m, beams_, lanes);
+    trace.trace();
+    for_lanes(lanes, [&](unsigned i) {
+      const std::uint32_t primitive = trace.primitive(i);
+      if (primitive != kNoTriangle) set(i, {instance, primitive});
+    });
+    set_lowest_of_ties(trace.packet.tied);
+  }
+
+  void trace_all(std::uint32_t lanes) {
+    SceneTrace trace(cast_, kernel_, beams_, block_);
+    trace.trace(lanes);
+    finish(trace, lanes);
+  }
+
+  /// Casts every lane through its beam's target; lanes with equal targets together.
+  void trace_targets(std::uint32_t lanes) {
+    while (lanes != 0) {
+      const InstanceRange& target = target_of(static_cast<unsigned>(std::countr_zero(lanes)));
+      std::uint32_t alike = 0;
+      for_lanes(lanes, [&](unsigned i) {
+        alike |= static_cast<std::uint32_t>(target_of(i) == target) << i;
+      });
+      SceneTrace trace(cast_, kernel_, beams_, block_);
+      trace.trace(target, alike);
+      finish(trace, alike);
+      lanes &= ~alike;
+    }
+  }
+
+ private:
+  [[nodiscard]] const InstanceRange& target_of(unsigned lane) const {
+    return cast_.request.targets[block_.beam[lane]];
+  }
+
+  void finish(const SceneTrace& trace, std::uint32_t lanes) {
+    for_lanes(lanes, [&](unsigned i) { set(i, trace.found(i)); });
+    set_lowest_of_ties(trace.tied());
+  }
+
+  void set_lowest_of_ties(std::uint32_t tied) {
+    for_lanes(tied & block_.mask, [&](unsigned i) {
+      set(i, lowest_of_ties(cast_, block_.beam[i], {block_.instance[i], block_.primitive[i]}));
+    });
+  }
+
+  void set(unsigned lane, const PrimitiveRef& found) {
+    if (found.instance == kInvalidId) return;
+    block_.mask |= 1U << lane;
+    block_.instance[lane] = found.instance;
+    block_.primitive[lane] = found.primitive;
+  }
+
+  const CastView& cast_;
+  const Kernel& kernel_;
+  const BeamBlock& beams_;
+  HitBlock& block_;
 };
 
 }  // namespace
 
 void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   const std::uint32_t lanes = block.mask & usable_lanes(beams);
-  const std::vector<std::uint32_t>& instances = cast_.trees.instances();
   block.mask = 0;
-  if (lanes == 0 || instances.empty()) return;
-  std::uint32_t tied = 0;
-  const auto set = [&](unsigned lane, const PrimitiveRef& found) {
-    if (found.instance == kInvalidId) return;
-    block.mask |= 1U << lane;
-    block.instance[lane] = found.instance;
-    block.primitive[lane] = found.primitive;
-  };
-  if (instances.size() == 1) {
-    InstanceTrace trace(cast_, kernel_, block);
-    trace.start(instances[0], cast_.trees.max_reach_m(), beams, lanes);
-    trace.trace();
-    tied = trace.packet.tied;
-    for_lanes(lanes, [&](unsigned i) {
-      const std::uint32_t primitive = trace.primitive(i);
-      if (primitive != kNoTriangle) set(i, {instances[0], primitive});
-    });
-  } else {
-    SceneTrace trace(cast_, kernel_, beams, block);
-    tied = trace.trace(lanes);
-    for_lanes(lanes, [&](unsigned i) { set(i, trace.found(i)); });
+  if (lanes == 0) return;
+  BlockTrace trace(cast_, kernel_, beams, block);
+  const std::vector<std::uint32_t>& instances = cast_.trees.instances();
+  if (!cast_.request.targets.empty()) {
+    trace.trace_targets(lanes);
+  } else if (instances.size() == 1) {
+    trace.trace_one(instances[0], cast_.trees.max_reach_m(), lanes);
+  } else if (!instances.empty()) {
+    trace.trace_all(lanes);
   }
-  for_lanes(tied & block.mask, [&](unsigned i) {
-    set(i, lowest_of_ties(cast_, block.beam[i], {block.instance[i], block.primitive[i]}));
-  });
 }
 
 PrimitiveRef BeamSearch::find(std::size_t beam) const {

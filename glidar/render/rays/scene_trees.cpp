@@ -45,6 +45,7 @@ SceneTrees::SceneTrees(const Resolver& resolver, ThreadPool& thread_pool)
 
 void SceneTrees::place(const CastRequest& request, const Resolver& resolver,
                        ThreadPool& thread_pool) {
+  if (!request.targets.empty()) return find_reaches(resolver);
   if (refit(request)) {
     find_reaches(resolver);
   } else {

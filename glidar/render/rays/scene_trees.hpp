@@ -32,7 +32,8 @@ class SceneTrees {
   SceneTrees(const Resolver& resolver, ThreadPool& thread_pool);
 
   /// Sets the poses of the next cast; the resolver has them too. The trees over the instances are
-  /// refitted when few moved, and rebuilt when many moved or the sensor moved far.
+  /// refitted when few moved, and rebuilt when many moved or the sensor moved far; a cast with
+  /// targets needs none of them, and leaves them as they are.
   void place(const CastRequest& request, const Resolver& resolver, ThreadPool& thread_pool);
 
   [[nodiscard]] const MeshTree& of_mesh(std::uint32_t mesh) const { return mesh_trees_[mesh]; }

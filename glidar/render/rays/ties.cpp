@@ -65,8 +65,14 @@ class Candidates {
   /// with the given one.
   template <class Visit>
   void visit_all(const Visit& visit) const {
+    if (!cast_.request.targets.empty()) {
+      const InstanceRange& target = cast_.request.targets[beam_];
+      const double end_m = end_within(max_reach_m(cast_, target));
+      for (std::uint32_t i = target.begin; i < target.end; ++i) visit_instance(i, end_m, visit);
+      return;
+    }
     for (const InstanceGroup& group : cast_.trees.groups()) {
-      const double end_m = end_in(group);
+      const double end_m = end_within(group.reach_m);
       if (cast_.trees.instances().size() == 1) {
         return visit_instance(group.instances[0], end_m, visit);
       }
@@ -82,10 +88,10 @@ class Candidates {
  private:
   static constexpr double kTieMargin = 0x1p-40;  // many roundings of a coordinate
 
-  /// The maximum distance of a triangle of the group that ties.
-  [[nodiscard]] double end_in(const InstanceGroup& group) const {
-    const double reach_m = std::max(group.reach_m, cast_.trees.reach_m(nearest_.instance));
-    return nearest_m_ + tie_window_m(cast_, beam_, nearest_, reach_m);
+  /// The maximum distance of a triangle that ties, of an instance up to this reach.
+  [[nodiscard]] double end_within(double reach_m) const {
+    const double larger_m = std::max(reach_m, cast_.trees.reach_m(nearest_.instance));
+    return nearest_m_ + tie_window_m(cast_, beam_, nearest_, larger_m);
   }
 
   [[nodiscard]] ObjectRay ray_in_tree() const {
@@ -100,6 +106,7 @@ class Candidates {
   void visit_instance(std::uint32_t instance, double end_m, const Visit& visit) const {
     const InstanceView& view = cast_.resolver.view(instance);
     const MeshTree& tree = cast_.trees.of_instance(instance);
+    if (tree.nodes.empty()) return;
     const ObjectRay ray = ray_in(view, cast_.request.beams, beam_);
     const Segment segment{ray, kTieMargin * cast_.trees.reach_m(instance) / view.scale,
                           end_m / view.scale};
@@ -129,6 +136,14 @@ class Candidates {
 };
 
 }  // namespace
+
+double max_reach_m(const CastView& cast, const InstanceRange& instances) {
+  double reach_m = 0.0;
+  for (std::uint32_t i = instances.begin; i < instances.end; ++i) {
+    reach_m = std::max(reach_m, cast.trees.reach_m(i));
+  }
+  return reach_m;
+}
 
 double hit_distance_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle) {
   const InstanceView& view = cast.resolver.view(triangle.instance);

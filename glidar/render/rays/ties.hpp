@@ -16,6 +16,9 @@ struct CastView {
   const CastRequest& request;
 };
 
+/// The maximum of SceneTrees::reach_m().
+double max_reach_m(const CastView& cast, const InstanceRange& instances);
+
 /// The distance at which a beam meets a triangle by the hit rule, metres; 0: it does not.
 double hit_distance_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle);
 
@@ -42,7 +45,8 @@ inline HitOrder order_of_hits(const CastView& cast, std::size_t beam, const Prim
   return order_of_hits(cast, beam, found, before, cast.trees.max_reach_m());
 }
 
-/// The lowest instance and triangle of those that tie with the nearest one, see tie_window_m().
+/// The lowest instance and triangle of those that tie with the nearest one, see tie_window_m(),
+/// among the beam's targets.
 PrimitiveRef lowest_of_ties(const CastView& cast, std::size_t beam, const PrimitiveRef& nearest);
 
 }  // namespace glidar::rays

@@ -32,6 +32,7 @@ class Stage {
   Pose world_from_sensor;
   bool cull_back_faces;
   std::vector<std::uint8_t> present = {};
+  std::vector<InstanceRange> targets = {};
 
   Stage(Scene all, Beams some, const Pose& pose, bool culls = false)
       : scene(std::move(all)),
@@ -77,7 +78,8 @@ class Stage {
     request_.emplace(CastRequest{.beams = beams,
                                  .world_from_sensor = world_from_sensor,
                                  .cull_back_faces = cull_back_faces,
-                                 .instance_enabled = present});
+                                 .instance_enabled = present,
+                                 .targets = targets});
     resolver_.set_poses(world_from_sensor, {});
     search_.prepare(*request_);
   }
@@ -116,6 +118,8 @@ class Stage {
     std::vector<Candidate> all;
     for (std::uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
       if (!present.empty() && present[instance] == 0) continue;
+      if (!targets.empty() && (instance < targets[beam].begin || instance >= targets[beam].end))
+        continue;
       if (is_beside(spheres[instance], start_m, direction)) continue;
       const Mesh& mesh = resolver_.mesh(instance);
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -253,6 +257,45 @@ TEST(BeamSearch, SkipsDisabledInstancesAndCullsBackFaces) {
       EXPECT_TRUE(f.instance == kInvalidId || f.instance % 3 != 0);
     EXPECT_EQ(found, stage.search_by_rule());
   }
+}
+
+TEST(BeamSearch, FindsOnlyTheTargetsOfABeam) {
+  for (const bool culls : {false, true}) {
+    Stage stage(crowd(40, 6, Eigen::Vector3d::Zero()), some_beams(1600, true, true, 7),
+                Pose::Identity(), culls);
+    (void)stage.search();  // leaves trees over all instances
+    Draws draws(9);
+    InstanceRange target;
+    for (std::uint32_t i = 0; i < stage.beams.size(); ++i) {
+      if (i % 5 == 0) {  // not aligned with packets
+        target.begin = static_cast<std::uint32_t>(38.0 * draws.next());
+        target.end = i % 2 == 0 ? target.begin + 1 : 40;
+      }
+      stage.targets.push_back(target);
+    }
+    const std::vector<PrimitiveRef> found = stage.search();
+    EXPECT_GT(stage.hits(found), 15U);
+    EXPECT_EQ(found, stage.search_by_rule());
+    stage.targets.clear();
+    EXPECT_EQ(stage.search(), stage.search_by_rule()) << "without targets again";
+  }
+}
+
+TEST(BeamSearch, ReportsTheLowestOfCoincidentTilesAmongTheTargets) {
+  Scene scene = builtin_scene("plane");
+  scene.instances.resize(12, scene.instances[0]);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const double quarter = 0.5 * std::numbers::pi * static_cast<double>(i % 4);
+    scene.instances[i].world_from_object =
+        turned(0.4, {1.0, 2.0, 0.5}, {3.0, 1.0, 2.0}) *
+        turned(quarter, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero());
+  }
+  Stage stage(scene, some_beams(2000, true, false, 11), Pose::Identity());
+  stage.targets.assign(stage.beams.size(), {5, 9});
+  const std::vector<PrimitiveRef> found = stage.search();
+  EXPECT_GT(stage.hits(found), 10U);
+  EXPECT_EQ(found, stage.search_by_rule());
+  for (const PrimitiveRef& f : found) EXPECT_TRUE(f.instance == kInvalidId || f.instance == 5);
 }
 
 TEST(BeamSearch, ReportsTheLowestOfCoincidentTiles) {
