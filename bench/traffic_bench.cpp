@@ -34,8 +34,9 @@ Traffic boxes(int count, int moving) {
   const int side = static_cast<int>(std::ceil(std::sqrt(count)));
   std::vector<Trajectory> motions;
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3d place(3.0 * (i % side - side / 2) + 1.5,
-                                3.0 * (i / side - side / 2) + 1.5, 0.0);
+    const int row = i / side - side / 2;
+    const int column = i % side - side / 2;
+    const Eigen::Vector3d place(3.0 * column + 1.5, 3.0 * row + 1.5, 0.0);
     box.world_from_object.translation() = place;
     traffic.scene.instances.push_back(box);
     if (i < moving) {
@@ -119,11 +120,7 @@ void register_frames(const Traffic& traffic, const std::string& sensor, bool is_
       ->Unit(benchmark::kMillisecond);
 }
 
-}  // namespace
-}  // namespace glidar::bench
-
-int main(int argc, char** argv) {
-  using namespace glidar::bench;
+int run_all(int argc, char** argv) {
   const Traffic parked = boxes(400, 0);
   const Traffic some = boxes(400, 100);
   const Traffic all = boxes(400, 400);
@@ -140,11 +137,18 @@ int main(int argc, char** argv) {
     register_frames(parked_street, sensor, false, sensor + ", parked street");
     register_frames(driving_street, sensor, false, sensor + ", traffic");
   }
-  return glidar::bench::run(
+  return run(
       argc, argv,
       {{"100 of 400 boxes move / none", "400 parked", "100 of 400 move", 1.0 / 1.5},
        {"400 of 400 boxes move / none", "400 parked", "400 of 400 move", 0.5},
        {"1,000 of 11,000 boxes move / none", "11,000 parked", "1,000 of 11,000 move", 0.5},
        {"VLP-16 in traffic / parked street", "VLP-16, parked street", "VLP-16, traffic", 0.5},
        {"OS1-128 in traffic / parked street", "OS1-128, parked street", "OS1-128, traffic", 0.5}});
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  return glidar::bench::run_all(argc, argv);
 }

@@ -19,6 +19,11 @@ using Eigen::Vector3d;
 constexpr double kSizeMargin = 1e-6;
 constexpr double kDistanceMargin = 0x1p-40;
 
+template <class Visit>
+void for_each_beam(BeamRange range, const Visit& visit) {
+  for (std::size_t i = range.begin; i < range.end; ++i) visit(i);
+}
+
 /// A part of the beam grid that fires within a short time: few enough beams that poses in the
 /// middle of it suffice to reject most bodies.
 class Slices {
@@ -45,6 +50,12 @@ class Slices {
         visit(BeamRange{begin, begin + std::min(kRun, end_col - col)});
       }
     }
+  }
+
+  /// Calls visit(beam) for all beams of a slice.
+  template <class Visit>
+  void for_beams(std::size_t slice, const Visit& visit) const {
+    for_runs(slice, [&](BeamRange run) { for_each_beam(run, visit); });
   }
 
  private:
@@ -171,7 +182,7 @@ class FrameSearch {
     search.mesh_boxes.resize(scene.meshes.size());
     search.bodies.clear();
     const TimeInterval frame = firing_interval([&](const auto& visit) {
-      for (std::size_t i = 0; i < request_.beams.size(); ++i) visit(i);
+      for_each_beam({0, request_.beams.size()}, visit);
     });
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
       const Instance& instance = scene.instances[i];
@@ -192,11 +203,7 @@ class FrameSearch {
   void search(const Slices& slices, std::size_t slice, std::span<const MovingBody> bodies,
               std::vector<BodyBeam>& found) const {
     found.clear();
-    const auto for_beams = [&](const auto& visit) {
-      slices.for_runs(slice, [&](BeamRange run) {
-        for (std::size_t i = run.begin; i < run.end; ++i) visit(i);
-      });
-    };
+    const auto for_beams = [&](const auto& visit) { slices.for_beams(slice, visit); };
     const Cone cone = cone_around(rest_, for_beams);
     if (cone.farthest_m < 0.0) return;
     const TimeInterval interval = firing_interval(for_beams);
@@ -207,12 +214,7 @@ class FrameSearch {
       place_sphere(body, interval, sphere.centre_m, sphere.radius_m);
       if (!cone.meets(sphere.centre_m, sphere.radius_m)) continue;
       if (runs.empty()) runs = runs_of(slices, slice);
-      BodyTest test(*this, body);
-      for (const Run& run : runs) {
-        if (run.cone.meets(sphere.centre_m, sphere.radius_m)) {
-          search_run(run.range, sphere, test, found);
-        }
-      }
+      search_runs(runs, body, sphere, found);
     }
   }
 
@@ -263,9 +265,7 @@ class FrameSearch {
   [[nodiscard]] std::vector<Run> runs_of(const Slices& slices, std::size_t slice) const {
     std::vector<Run> runs;
     slices.for_runs(slice, [&](BeamRange range) {
-      const auto for_beams = [&](const auto& visit) {
-        for (std::size_t i = range.begin; i < range.end; ++i) visit(i);
-      };
+      const auto for_beams = [&](const auto& visit) { for_each_beam(range, visit); };
       const Cone cone = cone_around(rest_, for_beams);
       if (cone.farthest_m >= 0.0) runs.push_back({range, cone});
     });
@@ -331,6 +331,16 @@ class FrameSearch {
     Eigen::AlignedBox3d box_m_;
     std::array<KeptPose, kKept> kept_;
   };
+
+  void search_runs(std::span<const Run> runs, const MovingBody& body, const Sphere& sphere,
+                   std::vector<BodyBeam>& found) const {
+    BodyTest test(*this, body);
+    for (const Run& run : runs) {
+      if (run.cone.meets(sphere.centre_m, sphere.radius_m)) {
+        search_run(run.range, sphere, test, found);
+      }
+    }
+  }
 
   void search_run(BeamRange run, const Sphere& sphere, BodyTest& test,
                   std::vector<BodyBeam>& found) const {

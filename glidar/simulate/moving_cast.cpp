@@ -90,6 +90,18 @@ void express_all_beams(const MovingCast& cast) {
   });
 }
 
+/// Expresses hits on all that is static in the sensor's frame at the firing times.
+void express_static_hits(const MovingCast& cast, BeamRange range, Hits& hits) {
+  const HitColumnMask& columns = cast.request.hit_columns;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    if (hits.instance[i] == kInvalidId) continue;
+    if (has_vectors(columns)) {
+      rotate_to_firing_time(cast.request, cast.memory.start_from_sensor[i], i, hits);
+    }
+    if (columns.depth) hits.depth_m[i] = depth_m(cast.request.beams, i, hits.range_m[i]);
+  }
+}
+
 /// Casts the beams of the workspace into all that is static.
 void cast_static(const MovingCast& cast, const ProgressCallback& progress, Hits& hits) {
   const CastRequest& request = cast.request;
@@ -109,19 +121,20 @@ void cast_static(const MovingCast& cast, const ProgressCallback& progress, Hits&
                             .beams_recur = is_static(cast.timed.motion.world_from_sensor),
                             .progress = progress},
                            hits);
-  if (!has_vectors(request.hit_columns) && !request.hit_columns.depth) return;
   cast.parallel_for(hits.instance.size(), kMovedBeamsPerTask,
                     [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t i = begin; i < end; ++i) {
-                        if (hits.instance[i] == kInvalidId) continue;
-                        if (has_vectors(request.hit_columns)) {
-                          rotate_to_firing_time(request, memory.start_from_sensor[i], i, hits);
-                        }
-                        if (request.hit_columns.depth) {
-                          hits.depth_m[i] = depth_m(request.beams, i, hits.range_m[i]);
-                        }
-                      }
+                      express_static_hits(cast, {begin, end}, hits);
                     });
+}
+
+/// Copies a slice's body beams to their place among all.
+void copy_slice(std::size_t slice, MovingCastWorkspace& memory) {
+  std::size_t to = memory.first_of_slice[slice];
+  for (const BodyBeam& found : memory.search.slices[slice]) {
+    memory.body_beams.directions[to] = found.direction;
+    memory.body_beams.origins_m[to] = found.origin_m;
+    memory.targets[to++] = {found.instance, found.instance + 1};
+  }
 }
 
 /// Collects the body beams of all slices.
@@ -142,14 +155,7 @@ void collect_body_beams(const MovingCast& cast) {
   beams.origins_m.resize(count);
   memory.targets.resize(count);
   cast.parallel_for(slices.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t slice = begin; slice < end; ++slice) {
-      std::size_t to = memory.first_of_slice[slice];
-      for (const BodyBeam& found : slices[slice]) {
-        beams.directions[to] = found.direction;
-        beams.origins_m[to] = found.origin_m;
-        memory.targets[to++] = {found.instance, found.instance + 1};
-      }
-    }
+    for (std::size_t slice = begin; slice < end; ++slice) copy_slice(slice, memory);
   });
 }
 
