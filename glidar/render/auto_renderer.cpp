@@ -7,8 +7,6 @@
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
 #include <glidar/render/rays/rays_renderer.hpp>
-#include <glidar/render/scan_raster/scan_cost.hpp>
-#include <glidar/render/scan_raster/scan_renderer.hpp>
 #include <glidar/render/triangle_ids.hpp>
 
 #include <algorithm>
@@ -21,13 +19,6 @@ namespace {
 /// The raster processes every triangle in view, a ray only a few: above this many triangles per
 /// beam that may hit something, rays are faster (bench/renderers_bench.py: about 10).
 constexpr std::uint64_t kMaxPerBeam = 11;
-/// The same for scanners (bench/scan_bench: the raster takes half the time at 2 triangles per beam,
-/// and the same time at 25).
-constexpr double kMaxPerScannerBeam = 12.0;
-/// The same for cameras with lenses (bench/lens_bench and other image sizes): per beam that may hit
-/// something, and per beam, because rays that miss take longer than an empty pixel.
-constexpr double kMaxPerLensBeam = 4.0;
-constexpr double kMaxPerAnyLensBeam = 0.6;
 
 class AutoRenderer final : public Renderer {
  public:
@@ -46,7 +37,6 @@ class AutoRenderer final : public Renderer {
 
   void cast(const CastRequest& request, Hits& hits) override {
     check(request, base_->resolver.scene());
-    if (is_for_scan_raster(request)) return scan_raster_->cast_prepared(request, hits);
     faster(request).cast(request, hits);
   }
 
@@ -58,29 +48,6 @@ class AutoRenderer final : public Renderer {
     }
     if (rays_ == nullptr) rays_ = make_rays_renderer(base_);
     return *rays_;
-  }
-
-  /// If true, the cast is prepared.
-  bool is_for_scan_raster(const CastRequest& request) {
-    if (!request.beams_recur || !request.targets.empty() ||
-        !any_instance_enabled(request, base_->resolver.scene()) ||
-        rasterizer_limitation(request.beams) == nullptr ||
-        !scan_raster::may_form_grid(request.beams)) {
-      return false;
-    }
-    if (scan_raster_ == nullptr) {
-      scan_raster_ = std::make_unique<scan_raster::ScanRenderer>(base_);
-    }
-    const scan_raster::BeamGrid& grid = scan_raster_->grid_of(request.beams);
-    if (!grid.misfit().empty()) return false;
-    base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
-    base_->search.prepare(request);
-    const auto visible = scan_raster::estimate_visible(grid, request.beams, *base_);
-    const double max_triangles =
-        grid.is_camera() ? kMaxPerLensBeam * visible.beams +
-                               kMaxPerAnyLensBeam * static_cast<double>(request.beams.size())
-                         : kMaxPerScannerBeam * visible.beams;
-    return visible.triangles <= max_triangles;
   }
 
   bool is_for_raster(const CastRequest& request) {
@@ -114,7 +81,6 @@ class AutoRenderer final : public Renderer {
   bool can_draw_;                           ///< the triangle ids suffice for all triangles
   PlanePoints points_;
   std::unique_ptr<Renderer> raster_;
-  std::unique_ptr<scan_raster::ScanRenderer> scan_raster_;
   std::unique_ptr<Renderer> rays_;
 };
 

@@ -4,9 +4,9 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/render/auto_renderer.hpp>
-#include <glidar/render/cpu_raster_renderer.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
 #include <glidar/render/pieces_renderer.hpp>
+#include <glidar/render/raster/raster_renderer.hpp>
 #include <glidar/render/rays/rays_renderer.hpp>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Kind {
 const std::array<Kind, 4>& kinds() {
   static const std::array<Kind, 4> all = {{{"auto", make_auto_renderer},
                                            {"rays", make_rays_renderer},
-                                           {"raster", make_cpu_raster_renderer},
+                                           {"raster", make_raster_renderer},
                                            {"opengl", make_opengl_renderer}}};
   return all;
 }

@@ -41,8 +41,6 @@ struct CastRequest {
   /// One per beam: all that it may hit, enabled or not; empty: every enabled instance. Fastest if
   /// beams with equal targets follow each other.
   std::span<const InstanceRange> targets = {};
-  /// False: later casts have other beams, so it does not pay to prepare anything for these.
-  bool beams_recur = true;
   /// Called in runs, once for every beam, when its hits are known, by the thread that found them,
   /// so that they are still in its cache. Empty: not called.
   FunctionRef<void(BeamRange)> on_tile_done = {};

@@ -91,7 +91,6 @@ class ShadowTest {
   void cast_beams() {
     CastRequest request = cast_request(s_, s_.workspace.infrared.shadow_rays, {});
     request.world_from_sensor = view_.world_from_eye;
-    request.beams_recur = false;
     cast(s_, request, s_.workspace.infrared.shadow_hits);
   }
 

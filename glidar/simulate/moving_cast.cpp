@@ -118,7 +118,6 @@ void cast_static(const MovingCast& cast, const ProgressCallback& progress, Hits&
                             .hit_columns = request.hit_columns,
                             .cull_back_faces = request.cull_back_faces,
                             .instance_enabled = memory.instance_enabled,
-                            .beams_recur = is_static(cast.timed.motion.world_from_sensor),
                             .progress = progress},
                            hits);
   cast.parallel_for(hits.instance.size(), kMovedBeamsPerTask,
@@ -175,7 +174,6 @@ void cast_body_beams(const MovingCast& cast, const HitColumnMask& hit_columns,
                             .hit_columns = hit_columns,
                             .cull_back_faces = cast.request.cull_back_faces,
                             .targets = memory.targets,
-                            .beams_recur = false,
                             .progress = progress},
                            memory.body_hits);
 }

@@ -252,7 +252,6 @@ void count_owned(const ObservedBeams& observed) {
   }
   CastRequest request = cast_request(s, candidates, {});
   request.instance_enabled = memory.is_object;
-  request.beams_recur = false;
   s.renderer.cast(request, memory.hits);
   for (std::size_t k = 0; k < memory.owned.size(); ++k) {
     std::uint32_t& owner = memory.owners[memory.owned[k]];

@@ -134,7 +134,6 @@ void size_rays(const Simulation& s, const TofExposure& exposure, std::size_t cou
 
 void cast_once(const Simulation& s, const Beams& rays, const HitColumnMask& columns, Hits& hits) {
   CastRequest request = cast_request(s, rays, columns);
-  request.beams_recur = false;
   cast(s, request, hits);
 }
 

@@ -116,8 +116,7 @@ std::vector<AccuracyCase> verify(const RendererOptions& options, const ProgressC
 }
 
 BeamKind beams_of_renderer(std::string_view kind) {
-  if (kind == "opengl") return BeamKind::pinhole;
-  return kind == "raster" ? BeamKind::scanner : BeamKind::any;
+  return kind == "opengl" || kind == "raster" ? BeamKind::pinhole : BeamKind::any;
 }
 
 bool all_passed(const std::vector<AccuracyCase>& rows) {

@@ -55,12 +55,8 @@ struct KnownFailure {
   [[nodiscard]] bool covers(const VerifyResult& result) const;
 };
 
-/// The beams that a renderer casts, or a case requires. Each kind includes the previous ones.
-enum class BeamKind : std::uint8_t {
-  pinhole,
-  scanner,  ///< rows of equal elevation, columns of equal azimuth
-  any,
-};
+/// The beams that a renderer casts, or a case requires.
+enum class BeamKind : std::uint8_t { pinhole, any };
 
 /// The beams that a renderer of this kind supports.
 BeamKind beams_of_renderer(std::string_view kind);

@@ -44,7 +44,7 @@ class Simulator(Immutable):
     Args:
         scene: the ``Scene`` to measure.
         sensor: the sensor; None: that of the scene file.
-        renderer: "auto": "raster" for cameras and scanners where it is faster, else "rays"; both run on the
+        renderer: "auto": "raster" for pinhole cameras where it is faster, else "rays"; both run on the
             processor. "opengl" renders on a graphics device (cameras without distortion only).
         threads: number of threads of the renderer; 0: one per processor.
 

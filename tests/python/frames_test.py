@@ -194,4 +194,4 @@ def test_verify_marks_rows_that_are_not_applicable_to_a_camera_only_renderer():
     assert found.passed, str(found)
     left_out = {row.name for row in found.rows if row.verdict == "not applicable"}
     assert left_out == {
-        "moving sensor and target", "at vertices and edges", "beside the outline", "lidar equation", "footprint", "measured motion"}
+        "scanner among bodies", "moving sensor and target", "at vertices and edges", "beside the outline", "lidar equation", "footprint", "measured motion"}

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <render/renderer_suite.hpp>
-#include <render/scan_raster/scanner.hpp>
+#include <render/same_hits.hpp>
 
 namespace glidar {
 namespace {
@@ -9,9 +9,6 @@ namespace {
 using testing::builtin_scene;
 using testing::camera_beams;
 using testing::expect_same_hits;
-using testing::lens_beams;
-using testing::Scanner;
-using testing::scanner_beams;
 
 Hits cast_by(const char* kind, const Scene& scene, const Beams& beams, const Pose& pose) {
   Hits hits;
@@ -38,11 +35,6 @@ TEST(AutoRenderer, TheChoiceOfTheRendererCannotChangeAnyBitOfACamera) {
   }
 }
 
-TEST(AutoRenderer, TheChoiceOfTheRendererCannotChangeAnyBitOfALens) {
-  const Beams beams = lens_beams(200, 160, 150.0, RadialTangential{.k1 = -0.1, .k2 = 0.01});
-  expect_same_by_all(builtin_scene("asteroid"), beams, kAlongEdges);
-}
-
 TEST(AutoRenderer, EqualsRaysForBeamsThatARasterCannotDraw) {
   const Scene scene = builtin_scene("asteroid");
   Beams beams = camera_beams(201, 151, 150.0);
@@ -63,26 +55,6 @@ TEST(AutoRenderer, ChoosesTheRendererForEachCast) {
           {.beams = *beams, .world_from_sensor = kAlongEdges, .hit_columns = kAllHitColumns}, hits);
       expect_same_hits(hits, cast_by("auto", scene, *beams, kAlongEdges));
     }
-  }
-}
-
-TEST(AutoRenderer, HitsDoNotDependOnWhetherBeamsRecur) {
-  const Scene scene = builtin_scene("asteroid");
-  const Beams beams = scanner_beams({.rows = 64, .cols = 1024});
-  const auto renderer = make_renderer(scene, {.threads = 2});
-  Hits hits;
-  Hits once;
-  renderer->cast({.beams = beams, .hit_columns = kAllHitColumns}, hits);
-  renderer->cast({.beams = beams, .hit_columns = kAllHitColumns, .beams_recur = false}, once);
-  EXPECT_GT(expect_same_hits(hits, once), 0U);
-}
-
-TEST(AutoRenderer, TheChoiceOfTheRendererCannotChangeAnyBitOfAScanner) {
-  const Scene scene = builtin_scene("asteroid");
-  for (const Scanner& scanner : {Scanner{.rows = 64, .cols = 1024},  // few triangles per beam
-                                 Scanner{.rows = 4, .cols = 128},    // many
-                                 Scanner{.rows = 16, .cols = 512, .origin_m = 0.05}}) {
-    expect_same_by_all(scene, scanner_beams(scanner), Pose::Identity());
   }
 }
 

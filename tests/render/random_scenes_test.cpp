@@ -3,7 +3,7 @@
 // Random scenes of difficult triangles: every renderer reports the bits of rays, and assertions in
 // the library hold: no renderer is sure of a hit that the hit rule refuses.
 #include <render/renderer_suite.hpp>
-#include <render/scan_raster/scanner.hpp>
+#include <render/same_hits.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,8 +17,6 @@ namespace {
 using testing::camera_beams;
 using testing::Draws;
 using testing::expect_same_hits;
-using testing::Scanner;
-using testing::scanner_beams;
 using testing::turned;
 
 double between(Draws& draws, double low, double high) {
@@ -101,16 +99,22 @@ Pose random_view(Draws& draws, const Scene& scene, const Eigen::Vector3d& centre
   return look_at(eye, target, draws.direction());
 }
 
+Hits cast_with(const char* kind, const Scene& scene, const CastRequest& request) {
+  Hits hits;
+  make_renderer(scene, {.kind = kind, .threads = 2})->cast(request, hits);
+  return hits;
+}
+
 /// Casts by rays and by others; returns the number of hits.
 std::size_t compare(const Scene& scene, const Beams& beams, const Pose& pose,
                     const std::vector<const char*>& others) {
   const CastRequest request{
       .beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns};
-  const Hits rays = testing::cast_with("rays", scene, request);
+  const Hits rays = cast_with("rays", scene, request);
   std::size_t hits = 0;
   for (const char* kind : others) {
     SCOPED_TRACE(kind);
-    hits = expect_same_hits(testing::cast_with(kind, scene, request), rays);
+    hits = expect_same_hits(cast_with(kind, scene, request), rays);
   }
   return hits;
 }
@@ -178,24 +182,6 @@ TEST(RandomScenes, ColumnsHaveTheSameBitsAloneAndWithAllOthers) {
     if (HasFailure()) return;
   }
   EXPECT_GT(hits, 100'000U);
-}
-
-TEST(RandomScenes, ScannersSeeTheSameBitsByEveryRenderer) {
-  std::size_t hits = 0;
-  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
-    SCOPED_TRACE(::testing::Message() << "seed " << seed);
-    Draws draws(1000 + seed);
-    const Eigen::Vector3d centre = (seed % 3 == 0 ? 1e6 : 0.0) * draws.direction();
-    const Scene scene = random_scene(draws, centre);
-    const Beams beams = scanner_beams({.rows = 16,
-                                       .cols = 256,
-                                       .stagger_rad = seed % 2 == 0 ? 0.0 : 0.01,
-                                       .origin_m = seed % 4 == 0 ? 0.02 : 0.0},
-                                      seed);
-    hits += compare(scene, beams, random_view(draws, scene, centre), {"raster", "auto"});
-    if (HasFailure()) return;
-  }
-  EXPECT_GT(hits, 20'000U);
 }
 
 }  // namespace

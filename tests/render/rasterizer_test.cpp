@@ -3,7 +3,7 @@
 // Rasterizers: which beams they accept, and that their results are those of rays, bit for bit.
 #include <glidar/core/error.hpp>
 #include <render/renderer_suite.hpp>
-#include <render/scan_raster/scanner.hpp>
+#include <render/same_hits.hpp>
 #include <support/error_text.hpp>
 
 #include <atomic>

@@ -167,7 +167,7 @@ Scene overlapping_parts() {
 
 TEST(Simulate, AllocatesNothingInTheSteadyStateForScannersWhoseBeamsChange) {
   const Scene scene = overlapping_parts();
-  for (const char* kind : {"raster", "auto"}) {
+  for (const char* kind : {"rays", "auto"}) {
     const std::unique_ptr<Renderer> renderer = make_renderer(scene, {.kind = kind, .threads = 1});
     Sensor sensor;
     LineScan& raster = sensor.optics.emplace<LineScan>();
