@@ -266,16 +266,19 @@ void cast_bodies(const MovingCast& cast) {
   MovingCastWorkspace& memory = cast.memory;
   const Scene& scene = cast.timed.scene;
   const std::vector<Trajectory>& trajectories = cast.timed.motion.world_from_instance;
+  const auto is_cast_apart = [&](std::size_t i) {
+    return !is_static(trajectories[i]) && is_enabled(cast.request, i);
+  };
   memory.instance_enabled.assign(scene.instances.size(), 0);
+  BodyIndex body_index;
   for (std::size_t i = 0; i < memory.instance_enabled.size(); ++i) {
-    memory.instance_enabled[i] = static_cast<std::uint8_t>(is_static(trajectories[i]));
+    const bool is_enabled_here = is_static(trajectories[i]) && is_enabled(cast.request, i);
+    memory.instance_enabled[i] = static_cast<std::uint8_t>(is_enabled_here);
+    body_index.count += is_cast_apart(i) ? 1 : 0;
   }
-  const auto static_count = std::count_if(trajectories.begin(), trajectories.end(), is_static);
-  BodyIndex body_index{.count = 1 + memory.instance_enabled.size() -
-                                static_cast<std::size_t>(static_count)};
   cast_body(cast, nullptr, body_index);
   for (std::uint32_t i = 0; i < memory.instance_enabled.size(); ++i) {
-    if (is_static(trajectories[i])) continue;
+    if (!is_cast_apart(i)) continue;
     memory.instance_enabled.assign(scene.instances.size(), 0);
     memory.instance_enabled[i] = 1;
     ++body_index.number;
