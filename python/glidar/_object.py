@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import Error
+from ._errors import Error, shown
 from ._inputs import FloatArray, floats, numbers, one_of, text_of, whole
 from ._mesh import Mesh
 from ._scene_data import SceneData
@@ -133,8 +133,8 @@ class SceneObject:
         return tuple(names.get(number, number) for number in self._info()[key])
 
     def _sensor_ids(self, sensors: Iterable[str | int], where: str) -> list[int]:
-        if isinstance(sensors, str):
-            raise Error(where, f"the text {sensors!r}", "a list of names or sensor_ids", f"[{sensors!r}]")
+        if isinstance(sensors, (str, bytes)) or not isinstance(sensors, Iterable):
+            raise Error(where, shown(sensors), "a list of names or sensor_ids")
         ids = {name: number for number, (name, *_) in enumerate(self._scene._core.rig()) if name}
         return [
             ids[one_of(sensor, where, tuple(ids))] if isinstance(sensor, str) else whole(sensor, where, 2**32 - 1)

@@ -177,6 +177,8 @@ class Scene(SceneData):
         entry.setdefault("name", self._free_name(stem, self.objects))
         entry.setdefault("id", self._free_id(len(self), self.objects))
         entry["split"] = split
+        if parts is not None and not isinstance(parts, Mapping):
+            raise Error("parts", shown(parts), "a dict of changes by names of parts")
         if parts:
             entry["parts"] = {name: _part_entry(changes, name) for name, changes in parts.items()}
         first = len(self)

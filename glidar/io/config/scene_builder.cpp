@@ -376,12 +376,12 @@ class SceneBuilder {
     std::uint32_t next = first_free_id(planned, pieces.size(), is_split);
     std::set<std::uint32_t> used;
     for (const ModelPiece& piece : pieces) {
-      const bool is_rest = piece.name.empty();
-      std::uint32_t id = is_rest ? planned.id : next;
-      next += is_rest ? 0 : 1;
-      if (!piece.overrides.empty() && piece.overrides.back()->id) {
-        const std::uint32_t given = *piece.overrides.back()->id;
-        if (!used.contains(given)) id = given;
+      std::uint32_t id = planned.id;
+      const PartOverride* last = piece.overrides.empty() ? nullptr : piece.overrides.back();
+      if (last != nullptr && last->id && !used.contains(*last->id)) {
+        id = *last->id;
+      } else if (!piece.name.empty()) {
+        id = next++;
       }
       used.insert(id);
       ids_.insert(id);

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include <map>
+#include <variant>
 
 namespace glidar {
 namespace {
@@ -266,7 +267,7 @@ models:
   EXPECT_TRUE(pose_at(file.world_from_instance[1], second_ns)
                   .translation()
                   .isApprox(Eigen::Vector3d(1, 2, 0), 1e-14));
-  EXPECT_TRUE(is_static(file.world_from_instance[2]));
+  EXPECT_TRUE(std::holds_alternative<ConstantPose>(file.world_from_instance[2]));
 }
 
 TEST(SceneParts, SensorsByNameSeeThemOrNot) {
