@@ -19,13 +19,15 @@ namespace {
 constexpr std::uint32_t kOther = 0;  ///< the sensor that sees all
 constexpr std::uint32_t kOwn = 1;    ///< the sensor that does not see its own robot
 
-/// A wall 3 m ahead along z and x, and an asteroid.
+/// A large box ahead along z and x, and a sphere before it.
 Scene surroundings() {
   Scene scene = testing::scene_of(make_builtin_model("box"));
   scene.instances[0].scale = 2.0;
   scene.instances[0].world_from_object.translation() << 4.0, 0.0, 4.0;
-  add_model(scene, make_builtin_model("asteroid"));
+  add_model(scene, make_builtin_model("sphere:radius=0.5"));
   scene.instances[1].world_from_object.translation() << 1.5, 0.0, 1.5;
+  scene.class_names.emplace_back("object");
+  for (Instance& instance : scene.instances) instance.class_id = 1;
   return scene;
 }
 
@@ -34,6 +36,7 @@ Scene with_robot() {
   Scene scene = surroundings();
   add_model(scene, make_builtin_model("box:size=0.8"));
   scene.instances[2].world_from_object.translation() << 0.3, 0.1, 0.3;
+  scene.instances[2].class_id = 1;
   scene.instances[2].hidden_from = {kOwn};
   return scene;
 }
