@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects that some sensors of a rig do not see.
+#include <glidar/core/error.hpp>
 #include <glidar/io/model/builtin_models.hpp>
+#include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/simulate/simulator.hpp>
 #include <support/data.hpp>
 #include <support/parameter_name.hpp>
@@ -87,18 +89,32 @@ INSTANTIATE_TEST_SUITE_P(Sensors, Visibility,
                          ::testing::Values("VLP-16", "OS1", "Azure-Kinect-NFOV-2x2", "D405"),
                          testing::parameter_name<std::string>);
 
-TEST(VisibilityOfSensors, HoldsInEveryCpuRenderer) {
+class VisibilityInRenderer : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    try {
+      if (GetParam() == "opengl") const opengl::EglContext context({});
+    } catch (const Error& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+};
+
+TEST_P(VisibilityInRenderer, AHiddenObjectIsAsIfItWereNotThere) {
   const Scene scene = with_robot();
   const Scene without = surroundings();
   const Pose pose = look_at({0.0, 0.0, 0.0}, {1.0, 0.0, 1.0}, Eigen::Vector3d::UnitY());
-  for (const char* kind : {"rays", "raster", "auto"}) {
-    const Frame other = measure(scene, small_camera(), kOther, static_motion(scene, pose), kind);
-    EXPECT_TRUE(sees_robot(other)) << kind;
-    EXPECT_EQ(other.boxes.size(), 3U);
-    expect_equal(measure(scene, small_camera(), kOwn, static_motion(scene, pose), kind),
-                 measure(without, small_camera(), kOwn, static_motion(without, pose), kind));
-  }
+  const auto measure_in = [&](const Scene& measured, std::uint32_t sensor_id) {
+    return measure(measured, small_camera(), sensor_id, static_motion(measured, pose), GetParam());
+  };
+  const Frame other = measure_in(scene, kOther);
+  EXPECT_TRUE(sees_robot(other));
+  EXPECT_EQ(other.boxes.size(), 3U);
+  expect_equal(measure_in(scene, kOwn), measure_in(without, kOwn));
 }
+
+INSTANTIATE_TEST_SUITE_P(All, VisibilityInRenderer, ::testing::ValuesIn(renderer_kinds()),
+                         [](const auto& test) { return test.param; });
 
 TEST(VisibilityOfSensors, HoldsWhileEverythingMoves) {
   const Scene scene = with_robot();
