@@ -139,7 +139,7 @@ def labels_of_image(path):
     from PIL import Image
 
     pixels = np.asarray(Image.open(path)).ravel()
-    return pixels[pixels != 65535]
+    return pixels[pixels != 0]
 
 
 def labels_of_bag(path):
@@ -166,6 +166,8 @@ FORMATS = {
     "a.las": ({}, labels_of_las),
     "a.instance.png": ({}, labels_of_image),
     "a.mcap": ({"columns": ["xyz", "instance"]}, labels_of_bag),
+    "a.bag": ({"columns": ["xyz", "instance"]}, labels_of_bag),
+    "a.rosbag2": ({"columns": ["xyz", "instance"]}, labels_of_bag),
 }
 
 
@@ -203,7 +205,7 @@ def test_a_sensor_does_not_see_its_own_robot(model):
     assert scene["wall"].hidden_from == ("front",)
     assert scene["wall/middle/window"].visible_to == ("rear",)
     frames = glidar.simulate_rig(scene, columns="all")
-    seen = {name: set(np.unique(frame.ground_truth.instance[frame.valid])) for name, frame in frames.items()}
+    seen = {name: set(np.unique(frame.ground_truth.instance[np.isfinite(frame.range_m)])) for name, frame in frames.items()}
     box = scene["box"].index
     assert seen["front"] == {box}
     assert seen["rear"] > {scene["wall"].index, scene["wall/middle/window"].index}
@@ -213,12 +215,12 @@ def test_objects_hide_from_sensors_by_name_or_number(model):
     scene = glidar.Scene()
     wall = scene.add_model(model, hidden_from=[1])
     assert wall.hidden_from == (1,)
-    assert measured(scene, sensor_id=0).valid.any()
-    assert not measured(scene, sensor_id=1).valid.any()
+    assert measured(scene, sensor_id=0).hits
+    assert not measured(scene, sensor_id=1).hits
     wall.hidden_from = []
     wall.visible_to = [3]
-    assert not measured(scene, sensor_id=1).valid.any()
-    assert measured(scene, sensor_id=3).valid.any()
+    assert not measured(scene, sensor_id=1).hits
+    assert measured(scene, sensor_id=3).hits
     with pytest.raises(glidar.Error, match="visible_to"):
         wall.visible_to = ["left"]
     with pytest.raises(glidar.Error, match="a list of names or sensor_ids"):

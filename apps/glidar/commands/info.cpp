@@ -276,7 +276,7 @@ Model load(const InfoFlags& flags, Console& console) {
 }
 
 /// names in files may be invalid UTF-8; invalid bytes are replaced
-void print_json(const Json& json) {
+void print_model_json(const Json& json) {
   print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
 }
 
@@ -291,7 +291,7 @@ int run_info(const InfoFlags& flags) {
   if (flags.parts) {
     const std::vector<PartSummary> parts = list_parts(model);
     if (flags.json) {
-      print_json(json_of(parts));
+      print_model_json(json_of(parts));
     } else {
       print_parts(parts);
     }
@@ -302,7 +302,7 @@ int run_info(const InfoFlags& flags) {
       flags.model.up ? ""
                      : up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m));
   if (flags.json) {
-    print_json(json_of(report, up_hint));
+    print_model_json(json_of(report, up_hint));
   } else {
     print_table(report, up_hint);
   }
