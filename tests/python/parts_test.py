@@ -83,10 +83,9 @@ def test_nodes_of_collada_are_parts_with_their_frames(tmp_path):
 
 
 def test_the_program_lists_the_same_parts(model, program):
-    printed = program("info", model, "--parts", "--json").stdout
-    listed = json.loads(printed)
+    listed = json.loads(program("info", model, "--parts", "--json"))
     assert [(part["name"], part["triangles"]) for part in listed] == [("left", 2), ("middle", 4), ("middle/window", 2)]
-    text = program("info", model, "--parts").stdout
+    text = program("info", model, "--parts")
     assert "middle/window" in text and "glass" in text
 
 

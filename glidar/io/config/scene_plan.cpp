@@ -77,17 +77,20 @@ void visit_sizes(FieldVisitor& visitor, std::string& source) {
 }
 
 void visit_scale(FieldVisitor& visitor, Eigen::Vector3d& scale) {
+  constexpr const char* kScale = "a number from 1e-15 to 1e15, or its negative, which mirrors";
   std::vector<double> factors = {scale.x(), scale.y(), scale.z()};
   visitor.numbers(
       {"scale", "along the model's own axes: one factor, or `[x, y, z]`", kNoUnit, false, "1"},
-      {.number = {-kMaxScale, kMaxScale, false,
-                  "a number from 1e-15 to 1e15, or its negative, which mirrors"},
+      {.number = {-kMaxScale, kMaxScale, false, kScale},
        .min_size = 3,
        .max_size = 3,
        .takes_one = true,
        .allowed = "a list of 3 numbers"},
       factors);
-  if (visitor.is_reading()) scale = Eigen::Vector3d(factors[0], factors[1], factors[2]);
+  if (!visitor.is_reading()) return;
+  scale = Eigen::Vector3d(factors[0], factors[1], factors[2]);
+  if ((scale.cwiseAbs().array() >= kMinScale).all()) return;
+  visitor.reject("scale", "a factor of 0, or nearly", kScale);
 }
 
 /// Where the model is at time 0, and its class and surface. `motion` follows the other keys.

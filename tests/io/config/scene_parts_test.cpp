@@ -314,6 +314,8 @@ TEST(SceneParts, ErrorsNameWhatIsKnown) {
                              "sensor: VLP-16}]\n"),
               HasSubstr("the rig has no sensor 'fornt'; allowed: 'front'; did you mean 'front'?"));
   EXPECT_THAT(error_of_scene("models: [{model: a, visible_to: []}]\n"), HasSubstr("an empty list"));
+  EXPECT_THAT(error_of_scene("models: [{model: a, scale: [1, 0, 1]}]\n"),
+              HasSubstr("models[0].scale: a factor of 0"));
 }
 
 }  // namespace
