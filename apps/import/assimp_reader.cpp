@@ -81,6 +81,7 @@ Eigen::Vector3f vector(const aiVector3D& v) {
 struct Visit {
   const aiNode* node;
   Eigen::Matrix4d model_from_parent;
+  std::uint32_t parent = 0;  ///< index into SourceModel::nodes
 };
 
 Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
@@ -272,9 +273,11 @@ class Tree {
       stack.pop_back();
       const Eigen::Matrix4d model_from_node =
           visit.model_from_parent * matrix(visit.node->mTransformation);
-      place_meshes(*visit.node, model_from_node);
+      const std::uint32_t part =
+          add_node(source_.nodes, part_name(*visit.node), visit.parent, model_from_node);
+      place_meshes(*visit.node, model_from_node, part);
       for (unsigned child = visit.node->mNumChildren; child-- > 0;) {
-        stack.push_back({visit.node->mChildren[child], model_from_node});
+        stack.push_back({visit.node->mChildren[child], model_from_node, part});
       }
     }
     if (skinned_ > 0) {
@@ -284,7 +287,17 @@ class Tree {
   }
 
  private:
-  void place_meshes(const aiNode& node, const Eigen::Matrix4d& model_from_node) {
+  /// Empty: it is no part. The root has the name of the file or of its format, and Assimp adds
+  /// nodes for the steps of a transform of FBX.
+  std::string part_name(const aiNode& node) const {
+    const std::string name = node.mName.C_Str();
+    if (&node == scene_.mRootNode || name.find("$AssimpFbx$") != std::string::npos) return "";
+    return name.empty() && node.mNumMeshes > 0 ? fmt::format("node_{}", source_.nodes.size())
+                                               : name;
+  }
+
+  void place_meshes(const aiNode& node, const Eigen::Matrix4d& model_from_node,
+                    std::uint32_t part) {
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const std::size_t index = node.mMeshes[i];
       if (index >= source_.meshes.size()) continue;
@@ -297,7 +310,10 @@ class Tree {
       const aiString& name = mesh.mName.length > 0 ? mesh.mName : node.mName;
       const Eigen::Matrix4d placed =
           is_posed ? Eigen::Matrix4d(Eigen::Matrix4d::Identity()) : model_from_node;
-      source_.placed.push_back({index, placed, std::string(name.C_Str())});
+      const std::uint32_t of = &node == scene_.mRootNode
+                                   ? add_node(source_.nodes, name.C_Str(), part, model_from_node)
+                                   : part;
+      source_.placed.push_back({index, placed, std::string(name.C_Str()), of});
       // A small file can place a mesh very often.
       if (triangles_ > kMaxTriangles || source_.placed.size() > kMaxRecords) check_size(source_);
     }

@@ -87,6 +87,38 @@ void note_precision(const Eigen::AlignedBox3d& box, bool is_single, Model& model
   }
 }
 
+/// Position and orientation, without scale; the identity's where they are not finite or flat.
+Pose frame_of(const Eigen::Matrix4d& model_from_node) {
+  Pose frame = Pose::Identity();
+  const Eigen::Vector3d position = model_from_node.topRightCorner<3, 1>();
+  if (is_within_reach(position)) frame.translation() = position;
+  const Eigen::Vector3d x = model_from_node.block<3, 1>(0, 0).stableNormalized();
+  const Eigen::Vector3d along_y = model_from_node.block<3, 1>(0, 1).stableNormalized();
+  const Eigen::Vector3d z = x.cross(along_y).stableNormalized();
+  Pose turned = frame;
+  turned.linear() << x, z.cross(x), z;
+  return is_rigid(turned) ? turned : frame;
+}
+
+/// The nodes above triangles, renumbered.
+void keep_nodes(const SourceModel& source, Model& model) {
+  const std::vector<SourceNode>& nodes = source.nodes;
+  std::vector<std::uint8_t> is_used(nodes.size(), 0);
+  is_used[0] = 1;
+  for (const ModelPart& part : model.parts) is_used[part.node] |= part.triangle_count > 0 ? 1 : 0;
+  for (std::size_t i = nodes.size(); i-- > 0;) is_used[nodes[i].parent] |= is_used[i];
+  std::vector<std::uint32_t> renumbered(nodes.size(), 0);
+  model.nodes.clear();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    renumbered[i] = static_cast<std::uint32_t>(model.nodes.size());
+    if (is_used[i] == 0) continue;
+    model.nodes.push_back(
+        {nodes[i].name, renumbered[nodes[i].parent], frame_of(nodes[i].model_from_node)});
+  }
+  for (ModelPart& part : model.parts)
+    part.node = is_used[part.node] != 0 ? renumbered[part.node] : 0;
+}
+
 }  // namespace
 
 void bake(SourceModel& source, double crease_angle_rad,
@@ -109,8 +141,9 @@ void bake(SourceModel& source, double crease_angle_rad,
     const auto count = static_cast<std::uint32_t>(part.triangles.size());
     begin_run(mesh, origins[i]);
     append(mesh, std::move(part), slot);
-    model.parts.push_back({placed.name, first, count});
+    model.parts.push_back({placed.name, first, count, placed.node});
   }
+  keep_nodes(source, model);
   note_repairs(source, repairs, model);
   if (mesh.triangles.empty()) {
     throw Refusal{fmt::format("all {} triangles touch coordinates that are not finite (NaN or "

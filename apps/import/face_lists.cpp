@@ -192,11 +192,13 @@ void add_meshes(FileLists lists, SourceModel& source) {
   }
   state_content(lists, source);
   if (lists.parts.empty()) lists.parts.emplace_back();
+  source.nodes = std::move(lists.nodes);
   std::size_t intersecting = 0;
   const auto place = [&source](SourceMesh mesh, const FilePart& part) {
     if (mesh.triangles.empty()) return;
     mesh.material = part.material;
-    source.placed.push_back({source.meshes.size(), Eigen::Matrix4d::Identity(), part.name});
+    source.placed.push_back(
+        {source.meshes.size(), Eigen::Matrix4d::Identity(), part.name, part.node});
     source.meshes.push_back(std::move(mesh));
   };
   if (is_one_list(lists)) {

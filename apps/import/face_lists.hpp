@@ -36,6 +36,7 @@ struct FaceLists {
 struct FilePart {
   std::string name;
   std::size_t material = 0;
+  std::uint32_t node = 0;  ///< index into FileLists::nodes
 };
 
 /// The lists of a file.
@@ -48,6 +49,7 @@ struct FileLists {
   std::vector<Eigen::Vector3f> corner_normals;  ///< that FaceLists::normals names
   FaceLists faces;
   std::vector<FilePart> parts;  ///< in the order of the model; empty: one without a name
+  std::vector<SourceNode> nodes = {SourceNode{}};  ///< as in SourceModel
 };
 
 /// Makes a mesh of each part with faces, places it, and states the content of the lists. All

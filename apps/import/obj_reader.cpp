@@ -306,10 +306,22 @@ class ObjReader {
     if (is_new) {
       const auto [used, is_first] = material_numbers_.try_emplace(material_, materials_.size());
       if (is_first) materials_.push_back(material_);
-      lists_.parts.push_back({group_.empty() ? object_ : group_, used->second});
+      lists_.parts.push_back({group_.empty() ? object_ : group_, used->second, current_node()});
     }
     part_ = static_cast<std::uint32_t>(known->second);
     return part_;
+  }
+
+  /// The group below its object; both may have several materials.
+  std::uint32_t current_node() {
+    const auto node_of = [this](const std::string& object, const std::string& group,
+                                std::uint32_t parent) {
+      const auto [known, is_new] = nodes_.try_emplace({object, group}, parent);
+      if (is_new) known->second = add_node(lists_.nodes, group.empty() ? object : group, parent);
+      return known->second;
+    };
+    const std::uint32_t object = node_of(object_, "", 0);
+    return group_.empty() ? object : node_of(object_, group_, object);
   }
 
   static std::string without_comment(std::string_view name) {
@@ -395,6 +407,7 @@ class ObjReader {
   std::string material_;
   std::uint32_t part_ = kNoIndex;
   std::map<std::tuple<std::string, std::string, std::string>, std::size_t> parts_;
+  std::map<std::pair<std::string, std::string>, std::uint32_t> nodes_;  ///< by object and group
   std::map<std::string, std::size_t> material_numbers_;
   std::vector<std::string> materials_;
   std::vector<std::string> libraries_;

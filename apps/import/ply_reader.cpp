@@ -473,10 +473,20 @@ class PlyReader {
         parts_.try_emplace({texture, object}, static_cast<std::uint32_t>(lists_.parts.size()));
     if (is_new) {
       FilePart& part = lists_.parts.emplace_back();
-      if (has_objects) part.name = fmt::format("object_id {:g}", object);
+      if (has_objects) {
+        part.name = fmt::format("object_id {:g}", object);
+        part.node = node_of(part.name);
+      }
       textures_.push_back(texture >= 0.0 && texture < 1e6 ? static_cast<std::size_t>(texture)
                                                           : PlyElement::kNone);
     }
+    return known->second;
+  }
+
+  /// Of an object, which may have several textures.
+  std::uint32_t node_of(const std::string& name) {
+    const auto [known, is_new] = nodes_.try_emplace(name, 0);
+    if (is_new) known->second = add_node(lists_.nodes, name, 0);
     return known->second;
   }
 
@@ -559,6 +569,7 @@ class PlyReader {
   FileLists lists_;
   std::vector<std::uint32_t> corners_;  ///< of the current face
   std::map<std::pair<double, double>, std::uint32_t> parts_;
+  std::map<std::string, std::uint32_t> nodes_;  ///< of objects
   std::vector<std::size_t> textures_;
   std::vector<std::string> notes_;
   std::size_t vertex_count_ = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/source_model.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 
 #include <fmt/format.h>
@@ -21,6 +22,17 @@ Material SourceMaterial::white_material() {
   Material white;
   white.diffuse = white.ambient = Eigen::Vector3f::Ones();
   return white;
+}
+
+std::uint32_t add_node(std::vector<SourceNode>& nodes, const std::string& name,
+                       std::uint32_t parent, const Eigen::Matrix4d& model_from_node) {
+  // The path of a part has the names of all nodes above it.
+  constexpr std::uint32_t kMaxDepth = 64;
+  constexpr std::size_t kMaxName_bytes = 100;
+  const std::uint32_t depth = nodes.at(parent).depth + 1;
+  if (name.empty() || depth > kMaxDepth || nodes.size() >= kMaxRecords) return parent;
+  nodes.push_back({excerpt(name, kMaxName_bytes), parent, depth, model_from_node});
+  return static_cast<std::uint32_t>(nodes.size() - 1);
 }
 
 void check_size(const SourceModel& source) {

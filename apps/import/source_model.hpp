@@ -72,11 +72,26 @@ struct SourceMaterial {
   static Material white_material();
 };
 
+/// A node, group or object with a name. The first of a file is the file itself, without one.
+struct SourceNode {
+  std::string name;
+  std::uint32_t parent = 0;  ///< index of an earlier node
+  std::uint32_t depth = 0;   ///< below the file
+  Eigen::Matrix4d model_from_node = Eigen::Matrix4d::Identity();
+};
+
+/// Adds a node and returns its index. Returns the parent for a node without a name, and where the
+/// file nests nodes deeper than 64 or has more than kMaxRecords.
+std::uint32_t add_node(std::vector<SourceNode>& nodes, const std::string& name,
+                       std::uint32_t parent,
+                       const Eigen::Matrix4d& model_from_node = Eigen::Matrix4d::Identity());
+
 /// An instance of a mesh, parents applied.
 struct Placed {
   std::size_t mesh = 0;  ///< index into SourceModel::meshes
   Eigen::Matrix4d model_from_mesh = Eigen::Matrix4d::Identity();
-  std::string name;  ///< of the part
+  std::string name;        ///< of the part
+  std::uint32_t node = 0;  ///< index into SourceModel::nodes
 };
 
 /// An image inside the model file.
@@ -92,6 +107,7 @@ struct SourceModel {
   std::vector<SourceMesh> meshes;
   std::vector<SourceMaterial> materials;  ///< at least one
   std::vector<Placed> placed;             ///< in the order of the model's parts
+  std::vector<SourceNode> nodes = {SourceNode{}};
   std::map<std::string, EmbeddedImage> images;
   std::uint64_t lines_and_points = 0;  ///< left out
   bool is_single_precision = false;    ///< positions or transforms were rounded before

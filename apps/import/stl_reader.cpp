@@ -100,7 +100,7 @@ class AsciiStl {
   void read_solid() {
     const std::string name = read_name();
     const auto part = static_cast<std::uint32_t>(lists_.parts.size());
-    lists_.parts.push_back({name, 0});
+    lists_.parts.push_back({name, 0, add_node(lists_.nodes, name, 0)});
     const std::size_t before = lists_.faces.size();
     for (;;) {
       const std::string word = next();

@@ -51,6 +51,22 @@ void append(const Mesh& whole, const Run& run, MeshPiece& piece) {
   }
 }
 
+/// The elements of a list, which may be empty, in this order.
+template <class T>
+std::vector<T> chosen(const std::vector<T>& from, std::span<const std::uint32_t> indices) {
+  std::vector<T> to;
+  if (from.empty()) return to;
+  to.reserve(indices.size());
+  for (const std::uint32_t i : indices) to.push_back(from[i]);
+  return to;
+}
+
+/// How many of the ascending numbers are below a limit.
+std::uint32_t count_below(std::span<const std::uint32_t> numbers, std::size_t limit) {
+  return static_cast<std::uint32_t>(std::lower_bound(numbers.begin(), numbers.end(), limit) -
+                                    numbers.begin());
+}
+
 }  // namespace
 
 std::vector<MeshPiece> cut_at_origins(const Mesh& mesh) {
@@ -68,6 +84,40 @@ std::vector<MeshPiece> cut_at_origins(const Mesh& mesh) {
     append(mesh, range_of(mesh, i), *piece);
   }
   return pieces;
+}
+
+Mesh extract_triangles(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+  std::vector<std::uint32_t> vertices;
+  for (const std::uint32_t t : triangles) {
+    vertices.insert(vertices.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  Mesh part;
+  part.name = mesh.name;
+  part.origin_m = mesh.origin_m;
+  part.positions_m = chosen(mesh.positions_m, vertices);
+  part.normals = chosen(mesh.normals, vertices);
+  part.uvs = {chosen(mesh.uvs[0], vertices), chosen(mesh.uvs[1], vertices)};
+  part.tangents = chosen(mesh.tangents, vertices);
+  part.colours = chosen(mesh.colours, vertices);
+  part.material_slots = chosen(mesh.material_slots, triangles);
+  part.triangles = chosen(mesh.triangles, triangles);
+  for (Triangle& corners : part.triangles) {
+    for (std::uint32_t& vertex : corners) vertex = count_below(vertices, vertex);
+  }
+  for (std::size_t i = 0; i < mesh.origins.size(); ++i) {
+    const Run run = range_of(mesh, i);
+    const std::uint32_t first = count_below(triangles, run.first_triangle);
+    if (first == count_below(triangles, run.end_triangle)) continue;
+    part.origins.push_back(
+        {count_below(vertices, run.first_vertex), first, mesh.origins[i].origin_m});
+  }
+  if (part.origins.size() == 1) {
+    part.origin_m = part.origins.front().origin_m;
+    part.origins.clear();
+  }
+  return part;
 }
 
 }  // namespace glidar

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -79,6 +80,14 @@ void validate(const TextureUse& use, const Scene& scene, const Material& materia
 }
 
 }  // namespace
+
+bool is_visible(const Instance& instance, std::uint32_t sensor_id) {
+  const auto contains = [sensor_id](const std::vector<std::uint32_t>& ids) {
+    return std::find(ids.begin(), ids.end(), sensor_id) != ids.end();
+  };
+  return (instance.visible_to.empty() || contains(instance.visible_to)) &&
+         !contains(instance.hidden_from);
+}
 
 const Material& material_of(const Scene& scene, const Instance& instance, std::uint32_t triangle) {
   return scene.materials[instance.materials[material_slot(scene.meshes[instance.mesh], triangle)]];

@@ -21,6 +21,9 @@ struct Instance {
   std::uint32_t id = 0;                  ///< the user's number, written to clouds
   std::uint32_t class_id = 0;            ///< index into Scene::class_names
   std::vector<std::uint32_t> materials;  ///< material slot -> index into Scene::materials
+  /// Sensors by Frame::sensor_id, their position on the rig: these alone see it; empty: all do.
+  std::vector<std::uint32_t> visible_to = {};
+  std::vector<std::uint32_t> hidden_from = {};  ///< these do not see it, even if in visible_to
 };
 
 /// The origin of a mesh, as written to the sidecar.
@@ -51,6 +54,9 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<std::string> class_names = {"unlabelled"};  ///< index = class_id
 };
+
+/// Whether a sensor sees the instance.
+bool is_visible(const Instance& instance, std::uint32_t sensor_id);
 
 /// The material of a triangle of an instance.
 const Material& material_of(const Scene& scene, const Instance& instance, std::uint32_t triangle);

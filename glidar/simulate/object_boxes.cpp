@@ -352,6 +352,7 @@ void find_boxes(const Simulation& s, BoxSelection selection, std::vector<ObjectB
   for (std::uint32_t i = 0; i < s.scene.instances.size(); ++i) {
     const Instance& instance = s.scene.instances[i];
     if (selection == BoxSelection::with_class && instance.class_id == 0) continue;
+    if (!is_visible(instance, s.frame.sensor_id)) continue;
     if (!surface_box(s, instance.mesh).isEmpty()) boxes.push_back(place_box(s, i));
   }
   if (boxes.empty()) return;

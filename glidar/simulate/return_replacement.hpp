@@ -7,7 +7,9 @@
 #include <glidar/math/thread_pool.hpp>
 #include <glidar/sensor/sensor.hpp>
 
+#include <cstdint>
 #include <functional>
+#include <span>
 
 namespace glidar {
 
@@ -16,6 +18,7 @@ struct CastContext {
   const Sensor& sensor;
   const Beams& beams;  ///< as the sensor reports them
   const Beams& fired;  ///< with their pointing errors; `beams` itself without any
+  std::span<const std::uint8_t> instance_enabled;  ///< as in CastRequest
   ThreadPool& thread_pool;
 };
 

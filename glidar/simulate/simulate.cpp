@@ -105,7 +105,9 @@ void simulate(std::span<Simulation> frames) {
   for (const Simulation& s : frames) {
     const Sensor& sensor = s.prepared.sensor;
     ThreadPool& threads = s.renderer.thread_pool();
-    if (s.replace_returns) s.replace_returns({sensor, s.beams, *s.fired, threads}, s.frame);
+    if (s.replace_returns) {
+      s.replace_returns({sensor, s.beams, *s.fired, s.instance_enabled, threads}, s.frame);
+    }
     if (s.prepared.depth_camera) {
       measure_depth(s);
     } else if (sensor.projector_origin_m) {

@@ -23,7 +23,8 @@ CastRequest cast_request(const Simulation& s, const Beams& beams,
           .world_from_sensor = s.frame.world_from_sensor,
           .world_from_instance = s.frame.world_from_instance,
           .hit_columns = hit_columns,
-          .cull_back_faces = s.prepared.sensor.cull_back_faces};
+          .cull_back_faces = s.prepared.sensor.cull_back_faces,
+          .instance_enabled = s.instance_enabled};
 }
 
 void cast(const Simulation& s, const CastRequest& request, Hits& hits) {

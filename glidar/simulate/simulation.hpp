@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace glidar {
@@ -104,6 +105,7 @@ struct Workspace {
   InfraredWorkspace infrared;
   TofWorkspace tof;
   BoxWorkspace boxes;
+  std::vector<std::uint8_t> visible;  ///< per instance, see Simulation::instance_enabled
 };
 
 /// One frame to be simulated: what is measured, with what, and where the result is written.
@@ -118,6 +120,8 @@ struct Simulation {
   Frame& frame;
   ProgressCallback progress;
   const ReturnReplacement& replace_returns;
+  /// Per instance: whether the frame's sensor sees it; empty: it sees all.
+  std::span<const std::uint8_t> instance_enabled = {};
   bool is_moving = moves_during_frame(motion, beams);
   const Beams* fired = &beams;               ///< the beams with their pointing errors
   std::size_t noise_steps = kMaxNoiseSteps;  ///< how many of them are applied

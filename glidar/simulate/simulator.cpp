@@ -6,6 +6,7 @@
 #include <glidar/simulate/object_boxes.hpp>
 #include <glidar/simulate/simulate.hpp>
 
+#include <algorithm>
 #include <deque>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@ struct Simulator::State {
   std::shared_ptr<const BeamCache> beam_cache;
   Renderer& renderer;
   PreparedSensor prepared;
+  bool restricts_visibility = false;            ///< some instance is not seen by all sensors
   std::unique_ptr<Renderer> own_renderer = {};  ///< empty: shared
   ReturnReplacement replace_returns = {};
   std::deque<Workspace> workspaces = {};  ///< of frames that are simulated together
@@ -34,16 +36,21 @@ void require_motions(std::size_t motions, std::size_t frames) {
        .remedy = ""});
 }
 
+bool has_hidden_instances(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& instance) {
+    return !instance.visible_to.empty() || !instance.hidden_from.empty();
+  });
+}
+
 }  // namespace
 
 Simulator::Simulator(const Scene& scene, const std::shared_ptr<const BeamCache>& beam_cache,
                      Renderer& renderer)
-    : state_(
-          std::make_unique<State>(State{.scene = scene,
-                                        .beam_cache = beam_cache,
-                                        .renderer = renderer,
-                                        .prepared = prepare_sensor(beam_cache->sensor(), scene)})) {
-}
+    : state_(std::make_unique<State>(State{.scene = scene,
+                                           .beam_cache = beam_cache,
+                                           .renderer = renderer,
+                                           .prepared = prepare_sensor(beam_cache->sensor(), scene),
+                                           .restricts_visibility = has_hidden_instances(scene)})) {}
 
 Simulator::Simulator(const Scene& scene, Sensor sensor, Renderer& renderer)
     : Simulator(scene, std::make_shared<const BeamCache>(std::move(sensor)), renderer) {}
@@ -106,6 +113,12 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
                               const ProgressCallback& progress, std::size_t slot) {
   State& state = *state_;
   while (state.workspaces.size() <= slot) state.workspaces.emplace_back();
+  std::vector<std::uint8_t>& visible = state.workspaces[slot].visible;
+  visible.clear();
+  for (std::size_t i = 0; state.restricts_visibility && i < state.scene.instances.size(); ++i) {
+    visible.push_back(
+        static_cast<std::uint8_t>(is_visible(state.scene.instances[i], frame.sensor_id)));
+  }
   return {.scene = state.scene,
           .prepared = state.prepared,
           .renderer = state.renderer,
@@ -115,7 +128,8 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
           .workspace = state.workspaces[slot],
           .frame = frame,
           .progress = progress,
-          .replace_returns = state.replace_returns};
+          .replace_returns = state.replace_returns,
+          .instance_enabled = visible};
 }
 
 void Simulator::set_return_replacement(ReturnReplacement replacement) {

@@ -69,7 +69,8 @@ ReturnReplacement woods2016_measurement(Woods2016Camera& camera,
     camera.draw({.beams = cast.beams,
                  .world_from_sensor = frame.world_from_sensor,
                  .world_from_instance = frame.world_from_instance,
-                 .cull_back_faces = cast.sensor.cull_back_faces},
+                 .cull_back_faces = cast.sensor.cull_back_faces,
+                 .instance_enabled = cast.instance_enabled},
                 cast.sensor.light, planes, frame.framebuffer);
     const auto decode = [&](std::size_t begin, std::size_t end) {
       decode_framebuffer(frame.framebuffer, cast.beams, {begin, end}, frame.range_m,

@@ -24,7 +24,7 @@ from ._object import SceneObject
 from ._object_box import ObjectBox
 from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
-from ._scene import Scene, load_scene, surface_names
+from ._scene import ModelPart, Scene, list_parts, load_scene, surface_names
 from ._scene_data import RigSensor
 from ._presets import DatasheetEntry, SensorPreset, datasheet, sensor_file, sensor_names, sensor_presets
 from ._sensor import Sensor, camera, load_sensor, sensor
@@ -59,6 +59,7 @@ __all__ = [
     "Imu",
     "ImuSamples",
     "Mesh",
+    "ModelPart",
     "ObjectBox",
     "RigImu",
     "RigSensor",
@@ -104,6 +105,7 @@ __all__ = [
     "from_open3d",
     "from_trimesh",
     "imu_names",
+    "list_parts",
     "load_imu",
     "load_scene",
     "load_sensor",

@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import Error
-from ._inputs import FloatArray, floats, numbers, text_of, whole
+from ._errors import Error, shown
+from ._inputs import FloatArray, floats, numbers, one_of, text_of, whole
 from ._mesh import Mesh
 from ._scene_data import SceneData
 from ._sensor import plain
@@ -96,9 +96,9 @@ class SceneObject:
 
     @property
     def scale(self) -> float | tuple[float, float, float]:
-        """p_world = pose (scale p_object): one factor, or (x, y, z) along the object's axes.
+        """p_world = pose (scale p_object): one factor, or (x, y, z) along the object's axes. Negative factors mirror.
 
-        Different factors need a scaled copy of the mesh in memory."""
+        Different or negative factors need a scaled copy of the mesh in memory."""
         x, y, z = self._info()["scale"]
         return float(x) if x == y == z else (float(x), float(y), float(z))
 
@@ -107,6 +107,39 @@ class SceneObject:
         given = numbers(scale, "scale", (3,))
         factors = floats(given, "scale", (3,)) if given.ndim else np.full(3, float(floats(given, "scale", ())))
         self._set(scale=tuple(factors.tolist()))
+
+    @property
+    def visible_to(self) -> tuple[str | int, ...]:
+        """The only sensors that see it: names of sensors of ``scene.rig``, or else sensor_ids; empty: all see it.
+
+        A measurement has its sensor_id, by default 0."""
+        return self._sensors("visible_to")
+
+    @visible_to.setter
+    def visible_to(self, sensors: Iterable[str | int]) -> None:
+        self._set(visible_to=self._sensor_ids(sensors, "visible_to"))
+
+    @property
+    def hidden_from(self) -> tuple[str | int, ...]:
+        """Sensors that do not see it, as in ``visible_to``; for example those on the robot that it is a part of."""
+        return self._sensors("hidden_from")
+
+    @hidden_from.setter
+    def hidden_from(self, sensors: Iterable[str | int]) -> None:
+        self._set(hidden_from=self._sensor_ids(sensors, "hidden_from"))
+
+    def _sensors(self, key: str) -> tuple[str | int, ...]:
+        names = {number: name for number, (name, *_) in enumerate(self._scene._core.rig()) if name}
+        return tuple(names.get(number, number) for number in self._info()[key])
+
+    def _sensor_ids(self, sensors: Iterable[str | int], where: str) -> list[int]:
+        if isinstance(sensors, (str, bytes)) or not isinstance(sensors, Iterable):
+            raise Error(where, shown(sensors), "a list of names or sensor_ids")
+        ids = {name: number for number, (name, *_) in enumerate(self._scene._core.rig()) if name}
+        return [
+            ids[one_of(sensor, where, tuple(ids))] if isinstance(sensor, str) else whole(sensor, where, 2**32 - 1)
+            for sensor in sensors
+        ]
 
     @property
     def materials(self) -> list[str]:

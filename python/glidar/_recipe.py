@@ -86,6 +86,12 @@ class Recipe:
         self._note_files()
         return index
 
+    def add_models(self, text: str, options: dict[str, Any], folder: str = "") -> None:
+        """Adds models by the keys of a scene file; paths are relative to the folder, or to the working folder."""
+        self._editable().add_models(text, options, log, folder)
+        self._add("models", text=text, folder=folder or _working_folder(), options=options)
+        self._note_files()
+
     def add_mesh(self, name: str, arrays: dict[str, Any]) -> int:
         """Adds a mesh from arrays; returns its index. The step refers to the arrays in the scene."""
         index = self._editable().add_mesh(name, arrays)
@@ -172,9 +178,11 @@ class Recipe:
         return recipe
 
     def _replay(self, name: str, arguments: dict[str, Any]) -> None:
-        one_of(name, "pickled Scene, step", ("model", "mesh", "copy", "drop", "set", "materials"))
+        one_of(name, "pickled Scene, step", ("model", "models", "mesh", "copy", "drop", "set", "materials"))
         if name == "model":
             self.add_model(_resolved_path(arguments), part(arguments, "options", dict))
+        elif name == "models":
+            self.add_models(part(arguments, "text", str), part(arguments, "options", dict), _folder(arguments))
         elif name == "mesh":
             self.core.restore_mesh(_plain_arrays(part(arguments, "state", dict)))
             self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)

@@ -8,6 +8,8 @@ import itertools
 import json
 import os
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,7 +17,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error, shown
-from ._inputs import floats, numbers, one_of, path_of, text_of, whole
+from ._inputs import FloatArray, floats, log, numbers, one_of, path_of, text_of, whole
 from ._mesh import Mesh, mesh_of
 from ._object import SceneObject
 from ._recipe import Recipe
@@ -26,7 +28,26 @@ from ._simulator import Simulator
 _UNITS = dict(_core.length_units())
 _AXES = ("x", "y", "z")
 _MAX_SIMULATORS = 8
+_PLACING = ("pose", "scale", "name", "id", "class_name", "materials", "visible_to", "hidden_from")
 _UNIT_TOLERANCE = 1e-3  # for normals that a file rounds to three digits
+
+
+@dataclass(frozen=True, eq=False)
+class ModelPart:
+    """A part of a model file with all parts below it."""
+
+    name: str
+    """Its path, such as "arm/hand"; `parts` of ``Scene.add_parts`` and of scene files name it."""
+    parent: str
+    """Name of the part above it; empty: the file."""
+    materials: list[str]
+    triangles: int
+    minimum: FloatArray
+    """(3,), m: minimum corner of its box, in the model's frame."""
+    maximum: FloatArray
+    """(3,), m: maximum corner."""
+    pose: FloatArray
+    """(4, 4), m: parent_from_part, without scales of the file."""
 
 
 class Scene(SceneData):
@@ -115,14 +136,55 @@ class Scene(SceneData):
 
         Args:
             unit, up, centre: as for ``Scene``.
-            placing: pose (4, 4), scale (one factor, or three along the object's axes), name, id,
-                class_name, materials of the object.
+            placing: pose (4, 4), scale (one factor, or three along the object's axes; negative ones mirror),
+                name, id, class_name, materials, visible_to, hidden_from of the object.
 
         Raises:
             Error: the file cannot be read, or an argument is invalid; the scene is unchanged then.
         """
         index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre))
         return self._initialised(index, placing)
+
+    def add_parts(
+        self,
+        source: str | os.PathLike[str],
+        *,
+        parts: Mapping[str, Mapping[str, Any]] | None = None,
+        split: str = "none",
+        unit: str | float | None = None,
+        up: str | None = None,
+        centre: bool = False,
+        **placing: Any,
+    ) -> tuple[SceneObject, ...]:
+        """Adds a model of which parts become objects of their own; returns these objects. ``list_parts`` lists parts.
+
+        Args:
+            source: a model file or "builtin:NAME".
+            parts: changes as ``parts`` in scene files (docs/files/parts.md), by a name, a pattern or
+                "material:NAME", e.g. ``{"arm/*": {"class": "arm"}, "material:glass": {"hidden_from": ["lidar"]}}``;
+                their `pose` may be an array (4, 4), parent_from_part.
+            split: "parts" or "materials": each becomes an object with a consecutive id, and its name as class.
+            unit, up, centre: as for ``Scene``.
+            placing: pose (4, 4), scale, name, id, class_name, materials, visible_to, hidden_from of the model.
+
+        Raises:
+            Error: the file cannot be read, a part is unknown, or an argument is invalid; the scene is unchanged then.
+        """
+        one_of(split, "split", ("none", "parts", "materials"))
+        entry = _model_entry(path_of(source, "model"), placing)
+        model: str = entry["model"]
+        stem = model.split(":")[1] if model.startswith("builtin:") else Path(model).stem
+        entry.setdefault("name", self._free_name(stem, self.objects))
+        entry.setdefault("id", self._free_id(len(self), self.objects))
+        entry["split"] = split
+        if parts is not None and not isinstance(parts, Mapping):
+            raise Error("parts", shown(parts), "a dict of changes by names of parts")
+        if parts:
+            entry["parts"] = {name: _part_entry(changes, name) for name, changes in parts.items()}
+        first = len(self)
+        text = json.dumps({"models": [plain(entry, "models[0]")]}, ensure_ascii=False)
+        self._recipe.add_models(text, _options(unit, up, centre))
+        return self.objects[first:]
 
     def add_mesh(
         self,
@@ -143,7 +205,7 @@ class Scene(SceneData):
             normals: (V, 3), unit vectors, or zeros for vertices without a normal; None: flat shading.
             uvs: (V, 2), texture coordinates, v upwards.
             colours: (V, 3), RGB from 0 to 1.
-            placing: pose (4, 4), scale, name, id, class_name, materials of the object.
+            placing: pose (4, 4), scale, name, id, class_name, materials, visible_to, hidden_from of the object.
 
         Raises:
             Error: a wrong shape, a number that is not finite, or a vertex index out of range.
@@ -171,7 +233,8 @@ class Scene(SceneData):
 
         Args:
             of: an object of this scene.
-            placing: pose (4, 4), scale, name, id, class_name, materials; default: those of the object.
+            placing: pose (4, 4), scale, name, id, class_name, materials, visible_to, hidden_from; default: those of
+                the object.
 
         Raises:
             Error: `of` is not an object of this scene, or an argument is invalid; the scene is unchanged then.
@@ -187,26 +250,31 @@ class Scene(SceneData):
         """The object that was just added, with a unique name and id and the given attributes."""
         added = SceneObject(self, index)
         try:
-            self._recipe.set_object(index, {"name": self._free_name(added.name), "id": self._free_id(index)})
+            self._recipe.set_object(index, {
+                "name": self._free_name(added.name, self.objects[:-1]),
+                "id": self._free_id(index, self.objects[:-1]),
+            })
             self._set_attributes(added, placing)
         except BaseException:
             self._recipe.drop_last()
             raise
         return added
 
-    def _free_name(self, base: str) -> str:
-        taken = {other.name for other in self.objects[:-1]}
+    @staticmethod
+    def _free_name(base: str, others: tuple[SceneObject, ...]) -> str:
+        taken = {other.name for other in others}
         numbered = (f"{base}_{n}" for n in itertools.count(2))
         return next(name for name in itertools.chain([base], numbered) if name not in taken)
 
-    def _free_id(self, index: int) -> int:
-        taken = {other.id for other in self.objects[:-1]}
+    @staticmethod
+    def _free_id(index: int, others: tuple[SceneObject, ...]) -> int:
+        taken = {other.id for other in others}
         return next(number for number in itertools.count(index + 1) if number not in taken)
 
     @staticmethod
     def _set_attributes(added: SceneObject, placing: dict[str, Any]) -> None:
         for name, value in placing.items():
-            one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
+            one_of(name, "argument", _PLACING)
             if value is None:
                 continue
             if name == "materials":
@@ -267,6 +335,42 @@ def load_scene(
 ) -> Scene:
     """The scene of a scene file, a model file, or "builtin:NAME"; the same as ``Scene(path)``."""
     return Scene(path, unit=unit, up=up, centre=centre)
+
+
+def list_parts(
+    source: str | os.PathLike[str], *, unit: str | float | None = None, up: str | None = None, centre: bool = False
+) -> list[ModelPart]:
+    """The named nodes, groups and objects of a model file, parents first; the same as ``glidar info --parts``.
+
+    Args:
+        source, unit, up, centre: as for ``Scene``.
+
+    Raises:
+        Error: the file cannot be read.
+    """
+    listed = _core.list_parts(path_of(source, "model"), _options(unit, up, centre), log)
+    return [ModelPart(**part) for part in listed]
+
+
+def _model_entry(path: str, placing: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of one entry of `models` in scene files."""
+    entry: dict[str, Any] = {"model": path}
+    for name, value in placing.items():
+        one_of(name, "argument", _PLACING)
+        if value is not None:
+            entry["class" if name == "class_name" else name] = _pose_keys(value, name) if name == "pose" else value
+    return entry
+
+
+def _part_entry(changes: Mapping[str, Any], name: str) -> dict[str, Any]:
+    if not isinstance(changes, Mapping):
+        raise Error(f"parts.{text_of(name, 'parts')}", shown(changes), "a dict of changes")
+    return {key: _pose_keys(value, f"parts.{name}.pose") if key == "pose" else value for key, value in changes.items()}
+
+
+def _pose_keys(pose: Any, where: str) -> Any:
+    """A pose as in scene files, in which a matrix keeps every bit."""
+    return pose if isinstance(pose, Mapping) else {"matrix": floats(pose, where, (4, 4))[:3].ravel()}
 
 
 def _loaded(source: str | os.PathLike[str], options: dict[str, Any]) -> Recipe:

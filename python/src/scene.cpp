@@ -9,6 +9,7 @@
 #include <glidar/io/config/length_unit.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/model/model_parts.hpp>
 #include <glidar/math/single_precision.hpp>
 
 #include <nanobind/eigen/dense.h>
@@ -82,6 +83,39 @@ std::size_t add_model(SceneHandle& handle, const std::string& source, const nb::
   const std::size_t instance = glidar::add_model(handle.change(), std::move(model));
   add_still(handle);
   return instance;
+}
+
+/// Adds models with the keys of scene files; several instances if they are cut into parts.
+void add_models(SceneHandle& handle, const std::string& text, const nb::dict& given,
+                const nb::object& log, const std::filesystem::path& folder) {
+  const ModelOptions options = model_options(given);
+  std::vector<std::string> sensors;
+  for (const MountedSensor& one : handle.sensors) sensors.push_back(one.name);
+  Scene& scene = handle.change();
+  unlocked([&](Watch& watch) {
+    glidar::add_models(scene, text, options, sensors, report_to(log, watch), folder);
+    return true;
+  });
+  add_still(handle);
+}
+
+nb::list parts_of(const std::string& source, const nb::dict& given, const nb::object& log) {
+  const ModelOptions options = model_options(given);
+  const Model model =
+      unlocked([&](Watch& watch) { return load_model(source, options, report_to(log, watch)); });
+  nb::list parts;
+  for (const PartSummary& part : list_parts(model)) {
+    nb::dict values;
+    values["name"] = part.name;
+    values["parent"] = part.parent;
+    values["materials"] = part.materials;
+    values["triangles"] = part.triangles;
+    values["minimum"] = Eigen::Vector3d(part.box_m.min());
+    values["maximum"] = Eigen::Vector3d(part.box_m.max());
+    values["pose"] = nb::cast(matrix_of(part.parent_from_part));
+    parts.append(values);
+  }
+  return parts;
 }
 
 using Floats3 = Table<float, 3>;
@@ -188,6 +222,9 @@ void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes)
   if (const auto name = entry<std::string>(changes, "class_name")) {
     changed.class_id = class_number(scene, *name);
   }
+  using Ids = std::vector<std::uint32_t>;
+  changed.visible_to = entry<Ids>(changes, "visible_to").value_or(changed.visible_to);
+  changed.hidden_from = entry<Ids>(changes, "hidden_from").value_or(changed.hidden_from);
   std::swap(scene.instances[index], changed);
   try {
     validate(scene);
@@ -227,6 +264,8 @@ nb::dict object_info(const SceneHandle& handle, std::size_t index) {
   info["pose"] = nb::cast(matrix_of(instance.world_from_object));
   const Eigen::Vector3d scale = scale_of(scene, instance);
   info["scale"] = nb::make_tuple(scale.x(), scale.y(), scale.z());
+  info["visible_to"] = instance.visible_to;
+  info["hidden_from"] = instance.hidden_from;
   info["source"] = scene.sources.at(instance.mesh).path;
   info["triangles"] = scene.meshes.at(instance.mesh).triangles.size();
   info["vertices"] = scene.meshes.at(instance.mesh).positions_m.size();
@@ -344,6 +383,10 @@ void bind_scene(nb::module_& module) {
       .def("add_model", add_model, nb::arg("source"), nb::arg("options"), nb::arg("log").none(),
            nb::sig("def add_model(self, source: str, options: dict[str, typing.Any], "
                    "log: object | None) -> int"))
+      .def("add_models", add_models, nb::arg("text"), nb::arg("options"), nb::arg("log").none(),
+           nb::arg("folder") = std::filesystem::path(),
+           nb::sig("def add_models(self, text: str, options: dict[str, typing.Any], "
+                   "log: object | None, folder: str = '') -> None"))
       .def("add_mesh", add_mesh, nb::arg("name"), nb::arg("arrays"),
            nb::sig("def add_mesh(self, name: str, arrays: dict[str, typing.Any]) -> int"))
       .def("restore_mesh", restore_mesh, nb::arg("state"),
@@ -368,6 +411,9 @@ void bind_scene(nb::module_& module) {
       .def_prop_ro("gravity_m_s2", [](const SceneHandle& self) { return self.gravity_m_s2; })
       .def("rig_motion", rig_motion_of);
   module.def("length_units", length_units);
+  module.def("list_parts", parts_of, nb::arg("source"), nb::arg("options"), nb::arg("log").none(),
+             nb::sig("def list_parts(source: str, options: dict[str, typing.Any], "
+                     "log: object | None) -> list[dict[str, typing.Any]]"));
   module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none(),
              nb::arg("folder") = std::filesystem::path(),
              nb::sig("def parse_scene(text: str, log: object | None, folder: str = '') -> Scene"));

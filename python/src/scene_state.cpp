@@ -112,7 +112,8 @@ class Contents {
         hash_of(meshes_, scene_.meshes, is_stretched ? source.unstretched : instance.mesh);
     digest.add(instance.name, mesh_hash, source.stretch,
                Eigen::Matrix4d(instance.world_from_object.matrix()), instance.scale, instance.id,
-               instance.class_id, scene_.class_names[instance.class_id], instance.materials.size());
+               instance.class_id, scene_.class_names[instance.class_id], instance.visible_to,
+               instance.hidden_from, instance.materials.size());
     for (const std::uint32_t index : instance.materials) add(scene_.materials[index], digest);
   }
 

@@ -74,14 +74,62 @@ TEST(SetScale, RemovesScaledMeshesWithoutInstances) {
   EXPECT_NO_THROW(validate(scene));
 }
 
-TEST(SetScale, RejectsZeroNegativeAndExtremeFactors) {
+TEST(SetScale, RejectsZeroAndExtremeFactors) {
   Scene scene = scene_of("box");
-  for (const double bad : {0.0, -1.0, std::nan(""), double{INFINITY}, 1e300, 1e-300}) {
+  for (const double bad :
+       {0.0, -0.0, -1e300, -1e-300, std::nan(""), double{INFINITY}, 1e300, 1e-300}) {
     EXPECT_THROW(set_scale(scene, 0, {1.0, bad, 1.0}), Error) << bad;
     EXPECT_THROW(set_scale(scene, 0, Eigen::Vector3d::Constant(bad)), Error) << bad;
   }
   EXPECT_EQ(scene.instances[0].scale, 1.0);
   EXPECT_EQ(scene.meshes.size(), 1U);
+}
+
+/// One triangle with its normal along +z, whose texture runs along x and y.
+Scene textured_triangle() {
+  Model model;
+  model.mesh.positions_m = {{1, 0, 2}, {3, 0, 2}, {1, 4, 2}};
+  model.mesh.normals = {{0, 0, 1}, {0, 0.6F, 0.8F}, {0, 0, 1}};
+  model.mesh.tangents = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, -1}};
+  model.mesh.triangles = {{0, 1, 2}};
+  model.materials = {Material{}};
+  Scene scene;
+  add_model(scene, std::move(model));
+  return scene;
+}
+
+TEST(SetScale, NegativeFactorsMirrorTheMesh) {
+  Scene scene = textured_triangle();
+  set_scale(scene, 0, {-1.0, 1.0, 1.0});
+  const Mesh& mesh = scene.meshes.at(scene.instances[0].mesh);
+  EXPECT_EQ(scale_of(scene, scene.instances[0]), Eigen::Vector3d(-1.0, 1.0, 1.0));
+  EXPECT_EQ(mesh.positions_m, (std::vector<Eigen::Vector3f>{{-1, 0, 2}, {-3, 0, 2}, {-1, 4, 2}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 2, 1}}));
+  EXPECT_EQ(mesh.normals[1], Eigen::Vector3f(0, 0.6F, 0.8F));
+  EXPECT_EQ(mesh.tangents[0], Eigen::Vector4f(-1, 0, 0, -1));
+  EXPECT_EQ(mesh.tangents[2], Eigen::Vector4f(-1, 0, 0, 1));
+}
+
+TEST(SetScale, TwoNegativeFactorsTurnTheMesh) {
+  Scene scene = textured_triangle();
+  set_scale(scene, 0, {-1.0, -2.0, 1.0});
+  const Mesh& mesh = scene.meshes.at(scene.instances[0].mesh);
+  EXPECT_EQ(mesh.positions_m[2], Eigen::Vector3f(-1, -8, 2));
+  EXPECT_FALSE(std::signbit(mesh.positions_m[0].y()));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+  EXPECT_EQ(mesh.tangents[0], Eigen::Vector4f(-1, 0, 0, 1));
+}
+
+TEST(SetScale, ANegativeFactorMirrorsAtTheOrigin) {
+  Scene scene = textured_triangle();
+  set_scale(scene, 0, Eigen::Vector3d::Constant(-2.0));
+  EXPECT_EQ(scene.instances[0].scale, 1.0);
+  EXPECT_EQ(scale_of(scene, scene.instances[0]), Eigen::Vector3d::Constant(-2.0));
+  const Mesh& mesh = scene.meshes.at(scene.instances[0].mesh);
+  EXPECT_EQ(mesh.positions_m[1], Eigen::Vector3f(-6, 0, -4));
+  EXPECT_EQ(mesh.normals[0], Eigen::Vector3f(0, 0, -1));
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 2, 1}}));
+  EXPECT_EQ(mesh.tangents[0], Eigen::Vector4f(-1, 0, 0, -1));
 }
 
 TEST(SetScale, NormalsAreThoseOfTheScaledSurface) {

@@ -176,6 +176,8 @@ USES = {
     "seeds": lambda v: glidar.simulate_batch(SCENE, CAMERA, EYE, v), "frames": lambda v: glidar.simulate_batch(SCENE, CAMERA, EYE, frames=v),
     "iter seeds": lambda v: list(glidar.simulate_iter(SCENE, CAMERA, EYE, v)), "poses": lambda v: glidar.simulate_batch(SCENE, CAMERA, v),
     "batch": lambda v: list(glidar.simulate_iter(SCENE, CAMERA, EYE, batch=v)), "add_instance": SCENE.add_instance, "add_model": SCENE.add_model,
+    "add_parts": SCENE.add_parts, "parts": lambda v: SCENE.add_parts("builtin:box", parts=v), "list_parts": glidar.list_parts,
+    "split": lambda v: SCENE.add_parts("builtin:box", split=v), "visible_to": lambda v: setattr(SCENE.objects[0], "visible_to", v),
     "returns": lambda v: glidar.sensor("VLP-16", returns=v), "rate": lambda v: glidar.sensor("VLP-16", rate_hz=v),
     "name": lambda v: setattr(SCENE.objects[0], "name", v), "id": lambda v: setattr(SCENE.objects[0], "id", v),
     "trajectory": glidar.Trajectory.load, "kitti rate": lambda v: glidar.Trajectory.load(__file__, rate_hz=v),

@@ -11,11 +11,13 @@ using testing::camera_beams;
 using testing::RendererSuite;
 using testing::turned;
 
-using StretchedSuite = RendererSuite;
+class StretchedSuite : public RendererSuite {
+ protected:
+  void expect_ellipsoid(const Eigen::Vector3d& axes_m);
+};
 
-TEST_P(StretchedSuite, HitsAndNormalsAreThoseOfTheEllipsoid) {
+void StretchedSuite::expect_ellipsoid(const Eigen::Vector3d& axes_m) {
   Scene scene = testing::builtin_scene("sphere");
-  const Eigen::Vector3d axes_m(2.0, 0.5, 1.25);
   set_scale(scene, 0, axes_m);
   scene.instances[0].world_from_object = turned(0.7, {1.0, 2.0, 3.0}, {0.4, -0.2, 6.0});
   const Beams beams = camera_beams(48, 40, 50.0);
@@ -41,6 +43,14 @@ TEST_P(StretchedSuite, HitsAndNormalsAreThoseOfTheEllipsoid) {
     EXPECT_LT((smooth - gradient.normalized()).norm(), 0.05) << i;  // facets are 0.1 rad wide
   }
   EXPECT_GT(on_object, beams.size() / 20);
+}
+
+TEST_P(StretchedSuite, HitsAndNormalsAreThoseOfTheEllipsoid) {
+  expect_ellipsoid({2.0, 0.5, 1.25});
+}
+
+TEST_P(StretchedSuite, HitsAndNormalsOfAMirroredObjectAreThoseOfTheEllipsoid) {
+  expect_ellipsoid({2.0, -0.5, 1.25});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StretchedSuite, ::testing::ValuesIn(renderer_kinds()),

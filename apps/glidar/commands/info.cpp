@@ -7,6 +7,7 @@
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/printing.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/io/model/model_parts.hpp>
 #include <glidar/io/model/model_report.hpp>
 
 #include <fmt/format.h>
@@ -27,6 +28,7 @@ namespace {
 constexpr const char* kInfoExamples = R"(Examples:
   glidar info builtin:asteroid
   glidar info builtin:torus --json
+  glidar info models/satellite/satellite.obj --parts
 With your own files:
   glidar info part.stl --unit mm --up y
 
@@ -36,6 +38,7 @@ struct InfoFlags {
   std::string input;
   ModelOptions model;
   bool json = false;
+  bool parts = false;
 };
 
 void line(std::string_view name, const std::string& value) {
@@ -229,29 +232,77 @@ Json json_of(const ModelReport& report, const std::string& up_hint) {
   return json;
 }
 
-/// Loads and examines the model; the console shows the progress.
-ModelReport examine(const InfoFlags& flags) {
-  Console console;
+void print_parts(const std::vector<PartSummary>& parts) {
+  if (parts.empty()) return line("parts", "none with a name; materials are parts too");
+  for (const PartSummary& part : parts) {
+    std::string materials;
+    for (const std::string& name : part.materials) {
+      materials += (materials.empty() ? "" : ", ") + name;
+    }
+    const PoseVector pose = to_xyz_wxyz(part.parent_from_part);
+    line(part.name, fmt::format("{} triangles, {}, from {} m", part.triangles, materials,
+                                box_text(part.box_m)));
+    line("", fmt::format("in {}: position [{}], orientation {{w: {:.6g}, x: {:.6g}, y: {:.6g}, "
+                         "z: {:.6g}}}",
+                         part.parent.empty() ? "the file" : part.parent,
+                         vector_text(pose.head<3>(), ", "), pose[3], pose[4], pose[5], pose[6]));
+  }
+}
+
+Json json_of(const std::vector<PartSummary>& parts) {
+  return json_list(parts, [](const PartSummary& part) -> Json {
+    const PoseVector pose = to_xyz_wxyz(part.parent_from_part);
+    return {{"name", part.name},
+            {"parent", part.parent},
+            {"materials", part.materials},
+            {"triangles", part.triangles},
+            {"min_m", json_of(Eigen::Vector3d(part.box_m.min()))},
+            {"max_m", json_of(Eigen::Vector3d(part.box_m.max()))},
+            {"pose",
+             {{"position", json_of(Eigen::Vector3d(pose.head<3>()))},
+              {"orientation", {{"w", pose[3]}, {"x", pose[4]}, {"y", pose[5]}, {"z", pose[6]}}}}}};
+  });
+}
+
+/// Loads the model; the console shows the progress.
+Model load(const InfoFlags& flags, Console& console) {
   const ProgressScope progress(console, "reading " + flags.input);
   Report report_to_console = console.report();
   report_to_console.log = [&](Severity severity, std::string_view message) {
     const bool is_in_table = message.starts_with(flags.input + ": ");
     if (severity == Severity::warning && !is_in_table) console.warn(message);
   };
-  const Model model = load_model(flags.input, flags.model, report_to_console);
-  console.set_progress("examining " + flags.input, -1.0);
+  return load_model(flags.input, flags.model, report_to_console);
+}
+
+/// names in files may be invalid UTF-8; invalid bytes are replaced
+void print_model_json(const Json& json) {
+  print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+}
+
+ModelReport examine(const Model& model, const InfoFlags& flags, Console& console) {
+  const ProgressScope progress(console, "examining " + flags.input);
   return inspect(model);
 }
 
 int run_info(const InfoFlags& flags) {
-  const ModelReport report = examine(flags);
+  Console console;
+  const Model model = load(flags, console);
+  if (flags.parts) {
+    const std::vector<PartSummary> parts = list_parts(model);
+    if (flags.json) {
+      print_model_json(json_of(parts));
+    } else {
+      print_parts(parts);
+    }
+    return kDone;
+  }
+  const ModelReport report = examine(model, flags, console);
   const std::string up_hint =
       flags.model.up ? ""
                      : up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m));
   if (flags.json) {
-    // names in files may be invalid UTF-8; invalid bytes are replaced
-    const Json json = json_of(report, up_hint);
-    print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+    print_model_json(json_of(report, up_hint));
   } else {
     print_table(report, up_hint);
   }
@@ -268,6 +319,9 @@ Command add_info(CLI::App& program) {
       ->required()
       ->type_name("");
   add_model_options(command, flags->model);
+  command.add_flag("--parts", flags->parts,
+                   "List the parts that a scene file can change (key parts), with materials, "
+                   "triangles, box, and pose in their parent");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run_info(*flags); };
 }

@@ -8,13 +8,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 namespace glidar::import::gltf {
 namespace {
 
-constexpr std::size_t kNoNode = std::numeric_limits<std::size_t>::max();
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 Eigen::Matrix4d matrix_of(const Value& value) {
@@ -203,6 +201,7 @@ Nodes read_nodes(Document& document) {
   result.shown = below(roots_of_scene(document, family), family);
   note_outside(document, result.shown);
   drop_hidden(document, family, result.shown);
+  result.parent = family.parent;
   return result;
 }
 

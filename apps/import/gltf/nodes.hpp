@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace glidar::import::gltf {
@@ -14,7 +15,10 @@ namespace glidar::import::gltf {
 struct Nodes {
   std::vector<Eigen::Matrix4d> scene_from_node;  ///< of every node, in the scene or not
   std::vector<std::size_t> shown;                ///< nodes of the scene, depth first, parents first
+  std::vector<std::size_t> parent;               ///< of every node; kNoNode: none
 };
+
+inline constexpr std::size_t kNoNode = std::numeric_limits<std::size_t>::max();
 
 /// The default scene, else the first one, else all nodes without a parent. Notes other scenes and
 /// nodes that are left out. Throws Refusal for nodes that have two parents or are their own

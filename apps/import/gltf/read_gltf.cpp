@@ -56,10 +56,13 @@ std::vector<Eigen::Matrix4d> joints_of(const Context& context, const Value& skin
 /// Places the meshes of nodes in the model.
 class Placement {
  public:
-  Placement(Context& context, const Nodes& nodes) : context_(context), nodes_(nodes) {}
+  Placement(Context& context, const Nodes& nodes)
+      : context_(context), nodes_(nodes), part_of_node_(nodes.parent.size(), 0) {}
 
+  /// Places a node; its parent first.
   void place(std::size_t number) {
     const Value node = context_.document.root()["nodes"].at(number);
+    add_part(number, node);
     const Value skin = node["skin"];
     if (!node["mesh"]) {
       if (skin) skin.refuse("a node without a mesh has a skin");
@@ -75,18 +78,37 @@ class Placement {
     std::string name = mesh["name"].text_or("");
     if (name.empty()) name = node["name"].text_or("");
     if (name.empty()) name = mesh.path();
-    for (const Eigen::Matrix4d& copy : copies) {
+    std::vector<SourceNode>& parts_of_model = context_.model.nodes;
+    for (std::size_t i = 0; i < copies.size(); ++i) {
+      const Eigen::Matrix4d scene_from_copy = nodes_.scene_from_node[number] * copies[i];
+      std::uint32_t of = part_of_node_[number];
+      if (copies.size() > 1) {
+        of = add_node(parts_of_model, std::to_string(i + 1), of, scene_from_copy);
+      }
       // The skeleton places a mesh with a skin.
-      const Eigen::Matrix4d matrix = skin ? Eigen::Matrix4d(Eigen::Matrix4d::Identity())
-                                          : Eigen::Matrix4d(nodes_.scene_from_node[number] * copy);
+      const Eigen::Matrix4d matrix =
+          skin ? Eigen::Matrix4d(Eigen::Matrix4d::Identity()) : scene_from_copy;
       for (const std::size_t part : parts) {
-        context_.model.placed.push_back({part, matrix, name});
+        context_.model.placed.push_back({part, matrix, name, of});
         check_growth(part);
       }
     }
   }
 
  private:
+  /// A node without a name has that of its mesh; without either it is no part.
+  void add_part(std::size_t number, const Value& node) {
+    std::string name = node["name"].text_or("");
+    if (name.empty() && node["mesh"]) {
+      name = context_.document.target("meshes", node["mesh"])["name"].text_or("");
+      if (name.empty()) name = fmt::format("node_{}", number);
+    }
+    const std::size_t parent = nodes_.parent[number];
+    part_of_node_[number] =
+        add_node(context_.model.nodes, name, parent == kNoNode ? 0 : part_of_node_[parent],
+                 nodes_.scene_from_node[number]);
+  }
+
   /// Stops before many copies fill the memory.
   void check_growth(std::size_t part) {
     triangles_ += context_.model.meshes[part].triangles.size();
@@ -120,6 +142,7 @@ class Placement {
 
   Context& context_;
   const Nodes& nodes_;
+  std::vector<std::uint32_t> part_of_node_;  ///< index into SourceModel::nodes
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> read_;
   std::uint64_t triangles_ = 0;
 };

@@ -291,12 +291,14 @@ void share(Schema& part, const Schema& copied, const Schema& reference) {
   }
 }
 
-/// A scene may contain sensors at several places.
+/// A scene may contain sensors and changes of materials at several places.
 Schema scene_schema() {
   const Schema sensor = schema_of<SensorKeys>();
+  const Schema material = schema_of<MaterialOverride>();
   Schema scene = schema_of<ScenePlan>();
   share(scene, sensor, {{"$ref", "#/definitions/sensor"}});
-  scene["definitions"] = {{"sensor", sensor}};
+  share(scene, material, {{"$ref", "#/definitions/material"}});
+  scene["definitions"] = {{"sensor", sensor}, {"material", material}};
   return scene;
 }
 

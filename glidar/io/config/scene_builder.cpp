@@ -4,11 +4,16 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/core/hits.hpp>
+#include <glidar/io/config/model_pieces.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
+#include <glidar/io/model/model_parts.hpp>
 #include <glidar/io/model/png_texture.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 
@@ -139,6 +144,265 @@ ClassPlaces places_of(const std::vector<std::string>& names) {
   return places;
 }
 
+[[noreturn]] void reject_sensor(const std::string& name, const std::vector<std::string>& known,
+                                const std::string& where) {
+  std::string listed;
+  for (const std::string& one : known) {
+    if (!one.empty()) listed += (listed.empty() ? "'" : ", '") + one + "'";
+  }
+  if (listed.empty()) {
+    throw Error({where, "the scene has no sensor '" + excerpt(name) + "'",
+                 "names of sensors of the rig", "list the sensors in 'sensors', with names"});
+  }
+  const std::string nearest = closest_match(name, known);
+  throw Error({where, "the rig has no sensor '" + excerpt(name) + "'", listed,
+               nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
+}
+
+/// Ids of sensors by their names.
+std::vector<std::uint32_t> ids_of(const SensorNames& sensors, const std::vector<RigSensor>& rig) {
+  std::vector<std::string> known;
+  for (const RigSensor& sensor : rig) known.push_back(sensor.name);
+  std::vector<std::uint32_t> ids;
+  for (const std::string& name : sensors.names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end() || name.empty()) reject_sensor(name, known, sensors.where);
+    ids.push_back(static_cast<std::uint32_t>(found - known.begin()));
+  }
+  return ids;
+}
+
+void set_visibility(const Visibility& visibility, const std::vector<RigSensor>& rig,
+                    Instance& instance) {
+  if (!visibility.visible_to.names.empty()) {
+    instance.visible_to = ids_of(visibility.visible_to, rig);
+  }
+  if (!visibility.hidden_from.names.empty()) {
+    instance.hidden_from = ids_of(visibility.hidden_from, rig);
+  }
+}
+
+/// The planned instance's own frame, in which a piece is moved by poses of parts. A scale with
+/// factors of equal size, also negative ones, keeps that rigid.
+Pose object_from_piece(const PlannedInstance& planned, const ModelPiece& piece) {
+  const Pose& moved = piece.model_from_piece;
+  if (moved.matrix() == Eigen::Matrix4d::Identity()) return moved;
+  const Eigen::Vector3d& scale = planned.scale;
+  if ((scale.cwiseAbs().array() != std::abs(scale.x())).any()) {
+    throw Error({planned.where, "different scale factors for a model with poses of parts",
+                 "factors of equal size", "scale the model in its file"});
+  }
+  const Eigen::Vector3d sign = scale.cwiseSign();
+  Pose result = Pose::Identity();
+  result.linear() = sign.asDiagonal() * moved.linear() * sign.asDiagonal();
+  result.translation() = scale.cwiseProduct(moved.translation());
+  return result;
+}
+
+/// Removes meshes that were cut, if no instance has them. The others keep their order.
+void drop_cut_meshes(const std::vector<std::uint32_t>& cut, Scene& scene) {
+  std::vector<bool> is_dropped(scene.meshes.size(), false);
+  for (const std::uint32_t mesh : cut) is_dropped[mesh] = true;
+  for (const Instance& instance : scene.instances) {
+    is_dropped[instance.mesh] = false;
+    const MeshSource& source = scene.sources[instance.mesh];
+    if (source.stretch != Eigen::Vector3d::Ones()) is_dropped[source.unstretched] = false;
+  }
+  std::vector<std::uint32_t> renumbered;
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
+    renumbered.push_back(kept);
+    if (is_dropped[i]) continue;
+    if (kept != i) {
+      scene.meshes[kept] = std::move(scene.meshes[i]);
+      scene.sources[kept] = std::move(scene.sources[i]);
+    }
+    ++kept;
+  }
+  scene.meshes.resize(kept);
+  scene.sources.resize(kept);
+  for (Instance& instance : scene.instances) instance.mesh = renumbered[instance.mesh];
+  for (MeshSource& source : scene.sources) source.unstretched = renumbered[source.unstretched];
+}
+
+/// Places the models of a plan.
+class SceneBuilder {
+ public:
+  SceneBuilder(const ScenePlan& plan, const ModelLoader& load, SceneFile& file)
+      : plan_(plan),
+        load_(load),
+        scene_(file.scene),
+        trajectories_(file.world_from_instance),
+        classes_(places_of(file.scene.class_names)) {
+    for (const Instance& instance : scene_.instances) take(instance.name, instance.id);
+    for (const PlannedInstance& planned : plan.instances) take(planned.name, planned.id);
+    for (const PlannedInstance& planned : plan.instances) check_names(planned);
+    for (const Instance& instance : scene_.instances) {
+      trajectories_.emplace_back(ConstantPose{instance.world_from_object});
+    }
+  }
+
+  void build() {
+    for (const PlannedInstance& planned : plan_.instances) {
+      if (planned.parts.empty() && planned.split == Split::none) {
+        place_whole(planned);
+      } else {
+        place_pieces(planned);
+      }
+    }
+    if (!cut_meshes_.empty()) drop_cut_meshes(cut_meshes_, scene_);
+    const auto moves = [](const PlannedInstance& planned) { return planned.motion.has_value(); };
+    if (std::none_of(plan_.instances.begin(), plan_.instances.end(), moves)) trajectories_.clear();
+    validate(scene_);
+  }
+
+ private:
+  void take(const std::string& name, std::uint32_t id) {
+    names_.insert(name);
+    ids_.insert(id);
+  }
+
+  /// Finds unknown sensors, and ids of parts that others have, before a model is loaded.
+  void check_names(const PlannedInstance& planned) {
+    Instance any;
+    set_visibility(planned.visibility, plan_.sensors, any);
+    for (const PartOverride& part : planned.parts) {
+      set_visibility(part.visibility, plan_.sensors, any);
+      if (!part.id || ids_.insert(*part.id).second) continue;
+      throw Error({part.where + ".id", "id " + std::to_string(*part.id) + ", which another has",
+                   "each id once", "give one of them another id"});
+    }
+  }
+
+  LoadedModel& loaded(const PlannedInstance& planned) {
+    const LoadKey key = load_key(planned, real_paths_);
+    const auto [place, is_new] = loaded_.try_emplace(key);
+    LoadedModel& model = place->second;
+    if (!is_new) return model;
+    Model read = load_for(planned, load_);
+    model.parts = std::move(read.parts);
+    model.nodes = std::move(read.nodes);
+    model.names = part_names(model.nodes);
+    const std::size_t first = add_model(scene_, std::move(read));
+    model.whole = std::move(scene_.instances[first]);
+    scene_.instances.pop_back();
+    return model;
+  }
+
+  /// An instance with what the plan gives the whole model.
+  Instance instance_of(const PlannedInstance& planned, const LoadedModel& model) {
+    Instance instance = model.whole;
+    instance.name = planned.name;
+    instance.world_from_object = planned.world_from_object;
+    instance.id = planned.id;
+    instance.class_id = class_index(planned.class_name, classes_, scene_.class_names);
+    set_visibility(planned.visibility, plan_.sensors, instance);
+    override_materials(planned.overrides, textures_, instance, scene_);
+    return instance;
+  }
+
+  void add(const PlannedInstance& planned, Instance instance, const Pose& object_from_piece) {
+    const bool is_moved = object_from_piece.matrix() != Eigen::Matrix4d::Identity();
+    if (is_moved) instance.world_from_object = planned.world_from_object * object_from_piece;
+    Trajectory motion = planned.motion.value_or(ConstantPose{planned.world_from_object});
+    if (is_moved) motion = compose_extrinsic(motion, object_from_piece);
+    scene_.instances.push_back(std::move(instance));
+    trajectories_.push_back(std::move(motion));
+    try {
+      set_scale(scene_, scene_.instances.size() - 1, planned.scale);
+    } catch (const Error& error) {
+      reject_at(planned.where, error);
+    }
+  }
+
+  void place_whole(const PlannedInstance& planned) {
+    add(planned, instance_of(planned, loaded(planned)), Pose::Identity());
+  }
+
+  void place_pieces(const PlannedInstance& planned) {
+    LoadedModel& model = loaded(planned);
+    const Instance common = instance_of(planned, model);
+    const std::vector<ModelPiece> pieces = cut_model(planned, scene_, model);
+    const std::vector<std::uint32_t> ids = ids_of_pieces(planned, pieces);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const ModelPiece& piece = pieces[i];
+      Instance instance = common;
+      instance.id = ids[i];
+      instance.mesh = mesh_of_piece(piece, model, scene_);
+      if (!piece.name.empty()) instance.name = free_name(planned.name + "/" + piece.name);
+      if (!piece.label.empty()) {
+        instance.class_id = class_index(piece.label, classes_, scene_.class_names);
+      }
+      for (const PartOverride* part : piece.overrides) apply_override(*part, instance);
+      add(planned, std::move(instance), object_from_piece(planned, piece));
+    }
+    if (pieces.size() > 1) cut_meshes_.push_back(model.whole.mesh);
+  }
+
+  void apply_override(const PartOverride& part, Instance& instance) {
+    if (!part.class_name.empty()) {
+      instance.class_id = class_index(part.class_name, classes_, scene_.class_names);
+    }
+    set_visibility(part.visibility, plan_.sensors, instance);
+    override_materials(part.materials, textures_, instance, scene_);
+  }
+
+  std::string free_name(const std::string& base) {
+    std::string name = base;
+    for (std::uint64_t n = 2; !names_.insert(name).second; ++n) {
+      name = base + "_" + std::to_string(n);
+    }
+    return name;
+  }
+
+  /// The first of consecutive free ids: that of the model if the others after it are free, else
+  /// above all.
+  std::uint32_t first_free_id(const PlannedInstance& planned, std::size_t count, bool after_model) {
+    const auto next = ids_.upper_bound(planned.id);
+    const bool is_free = after_model && (next == ids_.end() || *next - planned.id >= count);
+    const std::uint64_t first = is_free ? planned.id : std::uint64_t{*ids_.rbegin()} + 1;
+    if (first + count > kInvalidId) {
+      throw Error({planned.where, "no ids are left for its parts", "ids up to 4294967294",
+                   "give models smaller ids"});
+    }
+    return static_cast<std::uint32_t>(first);
+  }
+
+  /// Ids of objects are unique. The last entry that selects a piece gives it its id.
+  std::vector<std::uint32_t> ids_of_pieces(const PlannedInstance& planned,
+                                           const std::vector<ModelPiece>& pieces) {
+    std::vector<std::uint32_t> ids;
+    const bool is_split = planned.split != Split::none;
+    std::uint32_t next = first_free_id(planned, pieces.size(), is_split);
+    std::set<std::uint32_t> used;
+    for (const ModelPiece& piece : pieces) {
+      std::uint32_t id = planned.id;
+      const PartOverride* last = piece.overrides.empty() ? nullptr : piece.overrides.back();
+      if (last != nullptr && last->id && !used.contains(*last->id)) {
+        id = *last->id;
+      } else if (!piece.name.empty()) {
+        id = next++;
+      }
+      used.insert(id);
+      ids_.insert(id);
+      ids.push_back(id);
+    }
+    return ids;
+  }
+
+  const ScenePlan& plan_;
+  const ModelLoader& load_;
+  Scene& scene_;
+  std::vector<Trajectory>& trajectories_;
+  ClassPlaces classes_;
+  TexturePlaces textures_;
+  std::map<LoadKey, LoadedModel> loaded_;
+  RealPaths real_paths_;
+  std::set<std::string> names_;
+  std::set<std::uint32_t> ids_;
+  std::vector<std::uint32_t> cut_meshes_;
+};
+
 std::vector<MaterialOverride> read_overrides(const YamlField& root) {
   std::vector<MaterialOverride> changes;
   for (const auto& [material, field] : entries(root)) {
@@ -168,34 +432,17 @@ void set_materials(Scene& scene, std::size_t instance, const std::string& text,
   scene.instances[instance] = std::move(changed);
 }
 
-Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
-  Scene scene;
-  TexturePlaces places;
-  std::map<LoadKey, Instance> loaded;  // as the model came, before this file's changes
-  RealPaths real_paths;
-  ClassPlaces classes = places_of(scene.class_names);
-  for (const PlannedInstance& planned : plan.instances) {
-    const LoadKey key = load_key(planned, real_paths);
-    if (!loaded.contains(key)) {
-      const std::size_t first = add_model(scene, load_for(planned, load));
-      loaded[key] = scene.instances[first];
-      scene.instances.pop_back();
-    }
-    Instance instance = loaded.at(key);
-    instance.name = planned.name;
-    instance.world_from_object = planned.world_from_object;
-    instance.id = planned.id;
-    instance.class_id = class_index(planned.class_name, classes, scene.class_names);
-    override_materials(planned.overrides, places, instance, scene);
-    scene.instances.push_back(std::move(instance));
-    try {
-      set_scale(scene, scene.instances.size() - 1, planned.scale);
-    } catch (const Error& error) {
-      reject_at(planned.where, error);
-    }
-  }
-  validate(scene);
-  return scene;
+SceneFile build_scene(const ScenePlan& plan, const ModelLoader& load, Scene into) {
+  SceneFile file{.scene = std::move(into),
+                 .sensors = plan.sensors,
+                 .world_from_rig = plan.world_from_rig,
+                 .looks_at = plan.looks_at,
+                 .files = plan.files,
+                 .rig_motion = plan.rig_motion,
+                 .imus = plan.imus,
+                 .gravity_m_s2 = plan.gravity_m_s2};
+  SceneBuilder(plan, load, file).build();
+  return file;
 }
 
 }  // namespace glidar

@@ -13,8 +13,8 @@ namespace glidar {
 
 using ModelLoader = std::function<Model(const std::string& source, const ModelOptions& options)>;
 
-/// Loads every model once and places its instances. Errors of `load` state their place in the scene
-/// file.
-Scene build_scene(const ScenePlan& plan, const ModelLoader& load);
+/// Loads every model once and places its instances, in a scene that may have others. Errors of
+/// `load` state their place in the scene file.
+SceneFile build_scene(const ScenePlan& plan, const ModelLoader& load, Scene into = {});
 
 }  // namespace glidar

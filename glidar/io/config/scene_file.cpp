@@ -4,24 +4,14 @@
 
 #include <glidar/io/config/scene_builder.hpp>
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <set>
 #include <string_view>
+#include <utility>
 
 namespace glidar {
 namespace {
-
-std::vector<Trajectory> trajectories(const ScenePlan& plan) {
-  const auto moves = [](const PlannedInstance& planned) { return planned.motion.has_value(); };
-  if (std::none_of(plan.instances.begin(), plan.instances.end(), moves)) return {};
-  std::vector<Trajectory> all;
-  for (const PlannedInstance& planned : plan.instances) {
-    all.push_back(planned.motion.value_or(ConstantPose{planned.world_from_object}));
-  }
-  return all;
-}
 
 /// The same without repetitions: what is wrong with the model cache concerns every model.
 Report each_once(const Report& report) {
@@ -34,20 +24,12 @@ Report each_once(const Report& report) {
 }
 
 /// The scene as planned, with its models.
-SceneFile load_plan(const ScenePlan& plan, const Report& report) {
+SceneFile load_plan(const ScenePlan& plan, const Report& report, Scene into = {}) {
   const Report once = each_once(report);
   const auto load = [&](const std::string& source, const ModelOptions& options) {
     return load_model(source, options, once);
   };
-  return {.scene = build_scene(plan, load),
-          .sensors = plan.sensors,
-          .world_from_rig = plan.world_from_rig,
-          .looks_at = plan.looks_at,
-          .files = plan.files,
-          .world_from_instance = trajectories(plan),
-          .rig_motion = plan.rig_motion,
-          .imus = plan.imus,
-          .gravity_m_s2 = plan.gravity_m_s2};
+  return build_scene(plan, load, std::move(into));
 }
 
 }  // namespace
@@ -60,6 +42,15 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
 SceneFile parse_scene(const std::string& text, const Report& report,
                       const std::filesystem::path& folder) {
   return load_plan(read_scene_plan(read_yaml_text((folder / "scene").string(), text), {}), report);
+}
+
+void add_models(Scene& scene, const std::string& text, const ModelOptions& defaults,
+                const std::vector<std::string>& sensors, const Report& report,
+                const std::filesystem::path& folder) {
+  ScenePlan plan = read_scene_plan(read_yaml_text((folder / "scene").string(), text), defaults);
+  plan.sensors.clear();
+  for (const std::string& name : sensors) plan.sensors.emplace_back().name = name;
+  scene = load_plan(plan, report, scene).scene;
 }
 
 }  // namespace glidar

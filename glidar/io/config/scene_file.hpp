@@ -54,6 +54,13 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
 SceneFile parse_scene(const std::string& text, const Report& report,
                       const std::filesystem::path& folder = {});
 
+/// Adds models to a scene by a text, YAML or JSON, with the key `models` of scene files. Paths and
+/// errors are as for parse_scene(); `sensors` are the names that `visible_to` and `hidden_from`
+/// refer to, by their id.
+void add_models(Scene& scene, const std::string& text, const ModelOptions& defaults,
+                const std::vector<std::string>& sensors, const Report& report,
+                const std::filesystem::path& folder = {});
+
 /// Changes the materials of one instance by a text, YAML or JSON, with the keys of `materials` in
 /// scene files. Paths are relative to `folder`, or to the working folder when
 /// it is empty. Errors name the field.

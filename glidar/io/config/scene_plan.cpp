@@ -77,29 +77,20 @@ void visit_sizes(FieldVisitor& visitor, std::string& source) {
 }
 
 void visit_scale(FieldVisitor& visitor, Eigen::Vector3d& scale) {
+  constexpr const char* kScale = "a number from 1e-15 to 1e15, or its negative, which mirrors";
   std::vector<double> factors = {scale.x(), scale.y(), scale.z()};
   visitor.numbers(
       {"scale", "along the model's own axes: one factor, or `[x, y, z]`", kNoUnit, false, "1"},
-      {.number = {kMinScale, kMaxScale, false, "a number from 1e-15 to 1e15"},
+      {.number = {-kMaxScale, kMaxScale, false, kScale},
        .min_size = 3,
        .max_size = 3,
        .takes_one = true,
        .allowed = "a list of 3 numbers"},
       factors);
-  if (visitor.is_reading()) scale = Eigen::Vector3d(factors[0], factors[1], factors[2]);
-}
-
-void visit_materials(FieldVisitor& visitor, std::vector<MaterialOverride>& changes) {
-  const auto name = [&](std::size_t i) -> const std::string& { return changes[i].material; };
-  const auto add = [&](const std::string& material) { changes.emplace_back().material = material; };
-  const auto body = [&](std::size_t i, FieldVisitor& nested) { describe(changes[i], nested); };
-  visitor.by_name(
-      {"materials", "[changes](materials.md) by the name of a material; `\"*\"`: of all", kNoUnit,
-       false, "none"},
-      {changes.size(), FunctionRef<const std::string&(std::size_t)>(name),
-       FunctionRef<void(const std::string&)>(add)},
-      FieldVisitor::DescribeAt(body));
-  if (visitor.is_reading()) sort_overrides(changes);
+  if (!visitor.is_reading()) return;
+  scale = Eigen::Vector3d(factors[0], factors[1], factors[2]);
+  if ((scale.cwiseAbs().array() >= kMinScale).all()) return;
+  visitor.reject("scale", "a factor of 0, or nearly", kScale);
 }
 
 /// Where the model is at time 0, and its class and surface. `motion` follows the other keys.
@@ -114,6 +105,9 @@ void visit_attributes(FieldVisitor& visitor, PlannedInstance& model, MotionKeys&
       {0, kInvalidId - 1}, model.id);
   visitor.text({"class", "semantic class", kNoUnit, false, "`unlabelled`"}, model.class_name);
   visit_materials(visitor, model.overrides);
+  visit_split(visitor, model.split);
+  visit_parts(visitor, model.parts);
+  visit_visibility(visitor, model.visibility);
 }
 
 /// Names that the file gives are kept; the others get their file's name, with a number if it is
@@ -159,10 +153,14 @@ std::vector<std::string> files_of(const std::vector<PlannedInstance>& instances)
   for (const PlannedInstance& one : instances) {
     files.insert(files.end(), one.motion_files.begin(), one.motion_files.end());
   }
-  for (const PlannedInstance& one : instances) {
-    for (const MaterialOverride& change : one.overrides) {
+  const auto add_textures = [&files](const std::vector<MaterialOverride>& changes) {
+    for (const MaterialOverride& change : changes) {
       if (!change.noise_texture.empty()) files.push_back(change.noise_texture);
     }
+  };
+  for (const PlannedInstance& one : instances) {
+    add_textures(one.overrides);
+    for (const PartOverride& part : one.parts) add_textures(part.materials);
   }
   return files;
 }

@@ -4,7 +4,7 @@
 
 // Private to glidar/io: a scene file as plain data.
 
-#include <glidar/io/config/material_keys.hpp>
+#include <glidar/io/config/part_keys.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/yaml_reader.hpp>
 #include <glidar/io/model/model.hpp>
@@ -29,6 +29,9 @@ struct PlannedInstance {
   std::uint32_t id = 0;
   std::string class_name;                   ///< empty: unlabelled
   std::vector<MaterialOverride> overrides;  ///< those for "*" first
+  Split split = Split::none;
+  std::vector<PartOverride> parts;  ///< in the order of the file
+  Visibility visibility;
 };
 
 /// The contents of a scene file, checked, before any model is loaded.

@@ -15,7 +15,7 @@ namespace glidar {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x3142'5241'4449'4C47;  // "GLIDARB1" on a little-endian machine
-constexpr std::uint32_t kVersion = 3;  // incremented when the block's format changes
+constexpr std::uint32_t kVersion = 4;  // incremented when the block's format changes
 constexpr std::size_t kBuffer = std::size_t{1} << 16U;
 
 void write_all(int fd, const void* data, std::size_t size) {

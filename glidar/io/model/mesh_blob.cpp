@@ -143,7 +143,11 @@ auto fields(Is<ModelContent> auto& content) {
 }
 
 auto fields(Is<ModelPart> auto& part) {
-  return std::tie(part.name, part.first_triangle, part.triangle_count);
+  return std::tie(part.name, part.first_triangle, part.triangle_count, part.node);
+}
+
+auto fields(Is<ModelNode> auto& node) {
+  return std::tie(node.name, node.parent, node.model_from_node.matrix());
 }
 
 auto fields(Is<MissingTexture> auto& missing) {
@@ -157,9 +161,9 @@ auto fields(Is<TextureLookup> auto& lookup) {
 auto fields(Is<ImportedModel> auto& imported) {
   auto& model = imported.model;
   return std::tie(model.format, model.mesh, model.materials, model.textures, model.parts,
-                  model.missing_textures, model.notes, model.stated, model.loaded, model.declared,
-                  imported.files, imported.absent, imported.texture_folders, imported.lookups,
-                  imported.libraries, imported.hashes, imported.sandbox_notes);
+                  model.nodes, model.missing_textures, model.notes, model.stated, model.loaded,
+                  model.declared, imported.files, imported.absent, imported.texture_folders,
+                  imported.lookups, imported.libraries, imported.hashes, imported.sandbox_notes);
 }
 
 auto fields(Is<ImportFailure> auto& failure) {
@@ -254,6 +258,16 @@ void check(const ModelFrame& declared) {
   }
 }
 
+void check(const std::vector<ModelNode>& nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const bool is_sound =
+        (nodes[i].parent < i || i == 0) && is_rigid(nodes[i].model_from_node) &&
+        nodes[i].model_from_node.matrix().row(3) == Eigen::RowVector4d::UnitW().eval();
+    if (!is_sound) reject_imported_data("node '" + nodes[i].name + "' has no place in the tree");
+  }
+  if (nodes.empty() || nodes[0].parent != 0) reject_imported_data("a model without a root");
+}
+
 void check(const Model& model) {
   check(model.declared);
   check(model.mesh);
@@ -265,7 +279,9 @@ void check(const Model& model) {
     const std::uint64_t end = std::uint64_t{part.first_triangle} + part.triangle_count;
     if (end > model.mesh.triangles.size())
       reject_imported_data("part '" + part.name + "' beyond the triangles");
+    if (part.node >= model.nodes.size()) reject_imported_data("a part without a node");
   }
+  check(model.nodes);
 }
 
 void check(const ImportedModel& imported) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -68,9 +69,32 @@ void stretch_tangent(Eigen::Vector4f& tangent, const Eigen::Vector3d& factors) {
   if (length > 0.0) tangent.head<3>() = (along / length).cast<float>();
 }
 
+/// Of a mirrored mesh: the corners in the opposite order, and the bitangents on the other side.
+void reverse_fronts(Mesh& mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  for (Eigen::Vector4f& tangent : mesh.tangents) tangent.w() = -tangent.w();
+}
+
+/// Turns, scales and then moves the frames of nodes.
+void move_nodes(std::vector<ModelNode>& nodes, const ModelFrame& frame,
+                const Eigen::Vector3d& shift_m) {
+  for (ModelNode& node : nodes) {
+    Eigen::Matrix4d matrix = node.model_from_node.matrix();
+    for (int column = 0; column < 4; ++column) {
+      Eigen::Vector3d v = matrix.col(column).head<3>();
+      if (frame.up) turn(v, *frame.up);
+      matrix.col(column).head<3>() = v;
+    }
+    node.model_from_node.matrix() = matrix;
+    node.model_from_node.translation() =
+        node.model_from_node.translation() * frame.metres_per_unit.value_or(1.0) + shift_m;
+  }
+}
+
 }  // namespace
 
-void apply_model_frame(Mesh& mesh, const ModelFrame& frame, bool centre) {
+void apply_model_frame(Model& model, const ModelFrame& frame, bool centre) {
+  Mesh& mesh = model.mesh;
   const double scale = frame.metres_per_unit.value_or(1.0);
   require_unit(scale);
   if (frame.up && *frame.up != Axis::z) turn_mesh(mesh, *frame.up);
@@ -85,16 +109,20 @@ void apply_model_frame(Mesh& mesh, const ModelFrame& frame, bool centre) {
          .remedy = "use a smaller scale"});
   }
   const Eigen::AlignedBox3d box = bounds(mesh);
-  if (!centre || box.isEmpty()) return;
-  const Eigen::Vector3d middle = box.center();
-  for_origins(mesh, [&](Eigen::Vector3d& origin_m) { origin_m -= middle; });
+  const bool moves = centre && !box.isEmpty();
+  const Eigen::Vector3d middle = moves ? box.center() : Eigen::Vector3d::Zero().eval();
+  if (moves) for_origins(mesh, [&](Eigen::Vector3d& origin_m) { origin_m -= middle; });
+  move_nodes(model.nodes, frame, -middle);
 }
 
 Mesh scaled_copy(const Mesh& mesh, const Eigen::Vector3d& factors) {
   Mesh result = mesh;
   for_origins(result,
               [&](Eigen::Vector3d& origin_m) { origin_m = origin_m.cwiseProduct(factors); });
-  for (auto& v : result.positions_m) v = v.cast<double>().cwiseProduct(factors).cast<float>();
+  for (auto& v : result.positions_m) {
+    v = v.cast<double>().cwiseProduct(factors).cast<float>().array() + 0.0F;  // never -0
+  }
+  if (factors.prod() < 0.0) reverse_fronts(result);
   for (auto& n : result.normals) n = stretched_normal(n, factors);
   for (auto& t : result.tangents) stretch_tangent(t, factors);
   if (is_finite(result)) return result;

@@ -101,7 +101,7 @@ void place(Model& model, const ModelOptions& options) {
   model.applied = {
       options.metres_per_unit ? options.metres_per_unit : model.declared.metres_per_unit,
       options.up ? options.up : model.declared.up};
-  apply_model_frame(model.mesh, model.applied, options.centre);
+  apply_model_frame(model, model.applied, options.centre);
 }
 
 std::string up_text(const std::optional<Axis>& up) {
@@ -243,19 +243,19 @@ std::size_t add_model(Scene& scene, Model model) {
 }
 
 void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale) {
-  const bool allowed = (scale.array() >= kMinScale).all() && (scale.array() <= kMaxScale).all();
+  const Eigen::Array3d size = scale.array().abs();
+  const bool allowed = (size >= kMinScale).all() && (size <= kMaxScale).all();
   if (!allowed) {
     throw Error({.where = "scale",
                  .found = number_text(scale.x()) + ", " + number_text(scale.y()) + ", " +
                           number_text(scale.z()),
-                 .allowed = "numbers from 1e-15 to 1e15",
-                 .remedy = "mirror the model in its file"});
+                 .allowed = "numbers from 1e-15 to 1e15, or their negatives, which mirror"});
   }
   Instance& changed = scene.instances.at(instance);
   const std::uint32_t former = changed.mesh;
   const MeshSource& source = scene.sources.at(former);
   const std::uint32_t mesh = is_stretched(source) ? source.unstretched : former;
-  const bool is_uniform = scale.x() == scale.y() && scale.y() == scale.z();
+  const bool is_uniform = scale.x() > 0.0 && scale.x() == scale.y() && scale.y() == scale.z();
   changed.mesh = is_uniform ? mesh : stretched_mesh(scene, mesh, scale);
   changed.scale = is_uniform ? scale.x() : 1.0;
   drop_unused(scene, former);

@@ -36,11 +36,20 @@ struct ModelFrame {
   std::optional<Axis> up;
 };
 
+/// A node, group or object of the file with a name, or the file itself. Users call it a part.
+struct ModelNode {
+  std::string name;          ///< its own; parts_of() has the unique path
+  std::uint32_t parent = 0;  ///< index of an earlier node
+  /// Its position and orientation, without scale: x and y axis of the node, z right-handed.
+  Pose model_from_node = Pose::Identity();
+};
+
 /// Consecutive triangles that were one mesh of the file.
 struct ModelPart {
   std::string name;
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
+  std::uint32_t node = 0;  ///< index into Model::nodes
 };
 
 /// A texture of the model that could not be used.
@@ -72,6 +81,8 @@ struct Model {
   std::vector<Material> materials;  ///< slot -> material
   std::vector<Texture> textures;
   std::vector<ModelPart> parts;
+  /// Parents first. The first is the file itself, without a name, in the file's own axes.
+  std::vector<ModelNode> nodes = {ModelNode{}};
   std::vector<MissingTexture> missing_textures;
   std::vector<std::string> notes;  ///< omitted or repaired parts, in words
   ModelContent stated = {};        ///< by the file
@@ -104,12 +115,13 @@ Model load_model(const std::string& source, const ModelOptions& options, const R
 std::size_t add_model(Scene& scene, Model model);
 
 /// Scales an instance along its model's own axes: p_world = pose * (scale_x x, scale_y y, scale_z
-/// z). Three equal factors become Instance::scale. For others the scene gets a scaled copy of
-/// the mesh, with the normals of the scaled surface, which instances with equal factors share, and
-/// Instance::scale is 1. A scaled mesh without instances is removed, which changes
-/// the indices of meshes after it.
-/// Throws Error, and changes nothing, unless all are from kMinScale to kMaxScale, and the
-/// scaled mesh fits single precision.
+/// z). Three equal positive factors become Instance::scale. For others the scene gets a scaled copy
+/// of the mesh, with the normals of the scaled surface, which instances with equal factors share,
+/// and Instance::scale is 1. Negative factors mirror: the winding of such a copy is reversed where
+/// the front of its triangles would be inside. A scaled mesh without instances is removed, which
+/// changes the indices of meshes after it.
+/// Throws Error, and changes nothing, unless all are from kMinScale to kMaxScale without their
+/// sign, and the scaled mesh fits single precision.
 void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale);
 
 /// The factors of set_scale().

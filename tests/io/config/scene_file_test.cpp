@@ -44,7 +44,7 @@ ScenePlan plan(const TestFolder& folder, const std::string& content) {
 
 Scene build(const std::string& content, Loader& loader) {
   const TestFolder folder;
-  return build_scene(plan(folder, content), std::ref(loader));
+  return build_scene(plan(folder, content), std::ref(loader)).scene;
 }
 
 Scene build(const std::string& content) {
@@ -234,7 +234,7 @@ TEST(SceneFile, LinksToOneFileAreOneMesh) {
   std::filesystem::create_symlink(folder.path() / "a.ply", folder.path() / "b.ply");
   Loader loader;
   const ScenePlan two = plan(folder, "models: [{model: a.ply}, {model: b.ply}]\n");
-  EXPECT_EQ(build_scene(two, std::ref(loader)).meshes.size(), 1U);
+  EXPECT_EQ(build_scene(two, std::ref(loader)).scene.meshes.size(), 1U);
 }
 
 TEST(SceneFile, ClassNamesAreCollectedInOrder) {
@@ -285,7 +285,8 @@ models:
   - {model: a, materials: {Bus: {noise_scale: 2.5, noise_texture: t/map.png}}}
   - {model: a, materials: {Panels: {noise_texture: t/../t/map.png}}}
 )"),
-                                  std::ref(loader));
+                                  std::ref(loader))
+                          .scene;
   const Material& bus = scene.materials[scene.instances[0].materials[0]];
   const Material& panels = scene.materials[scene.instances[1].materials[1]];
   EXPECT_EQ(bus.noise_scale, 2.5F);

@@ -8,6 +8,7 @@
 
 #include <sys/mman.h>
 
+#include <cmath>
 #include <limits>
 
 namespace glidar {
@@ -41,7 +42,8 @@ ImportedModel example() {
   model.materials[1].diffuse_texture.wrap_v = Wrap::mirror;
   model.materials[1].diffuse_texture.uv_offset = {0.5F, -1.0F};
   model.textures = {{"wood.png", 2, 1, 3, {1, 2, 3, 4, 5, 6}}};
-  model.parts = {{"first", 0, 1}, {"second", 1, 1}};
+  model.parts = {{"first", 0, 1, 1}, {"second", 1, 1, 2}};
+  model.nodes = {{}, {"arm", 0, Pose(Eigen::Translation3d(1.0, 0.0, 1e-3))}, {"hand", 1}};
   model.missing_textures = {{"gone.png", "not found"}};
   model.notes = {"a note"};
   model.declared = {0.0254, Axis::y};
@@ -73,6 +75,12 @@ TEST(MeshBlob, EveryFieldSurvivesARoundTrip) {
   EXPECT_EQ(after.model.materials[1].diffuse_texture.wrap_v, Wrap::mirror);
   EXPECT_EQ(after.model.textures[0].texels, before.model.textures[0].texels);
   EXPECT_EQ(after.model.parts[1].name, "second");
+  EXPECT_EQ(after.model.parts[1].node, 2U);
+  ASSERT_EQ(after.model.nodes.size(), 3U);
+  EXPECT_EQ(after.model.nodes[2].name, "hand");
+  EXPECT_EQ(after.model.nodes[2].parent, 1U);
+  EXPECT_EQ(after.model.nodes[1].model_from_node.matrix(),
+            Pose(Eigen::Translation3d(1.0, 0.0, 1e-3)).matrix());
   EXPECT_EQ(after.model.missing_textures[0].reason, "not found");
   EXPECT_EQ(after.lookups, before.lookups);
 }
@@ -122,6 +130,11 @@ TEST(MeshBlob, InvalidModelsAreRejectedDespiteAValidChecksum) {
         m.textures[0] = {"", 1U << 31U, 1U << 31U, 4, {}};
       },
       [](Model& m) { m.parts[1].triangle_count = 4'000'000'000U; },
+      [](Model& m) { m.parts[1].node = 3; },
+      [](Model& m) { m.nodes[1].parent = 1; },
+      [](Model& m) { m.nodes[1].model_from_node.matrix()(0, 0) = 2.0; },
+      [](Model& m) { m.nodes[1].model_from_node.matrix()(3, 0) = 1.0; },
+      [](Model& m) { m.nodes[1].model_from_node.translation().x() = std::nan(""); },
       [](Model& m) { m.declared.metres_per_unit = 0.0; },
       [](Model& m) { m.declared.up = static_cast<Axis>(3); },
       [](Model& m) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/model.hpp>
+#include <glidar/io/model/model_parts.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -131,6 +132,43 @@ TEST(LoadModel, NodeTransformsAreAppliedAndMirrorsKeepTheirFronts) {
   EXPECT_GT(front(model.mesh, 1).z(), 0.0);
   EXPECT_EQ(bounds(model.mesh).min().x(), -2.0);
   for (const Eigen::Vector3f& n : model.mesh.normals) EXPECT_EQ(n, Eigen::Vector3f::UnitZ());
+}
+
+TEST(LoadModel, NodesWithTrianglesAreATreeOfParts) {
+  const TestFolder temp;
+  const Model model = load(temp.write(
+      "a.gltf", gltf(R"([{"name":"robot","children":[1,3],"translation":[1,0,0]},)"
+                     R"({"name":"arm","children":[2],"scale":[2,2,2],"translation":[0,3,0]},)"
+                     R"({"mesh":0,"name":"hand","translation":[0,0,1]},{"name":"camera"}])")));
+  const std::vector<PartSummary> parts = list_parts(model);
+  ASSERT_EQ(parts.size(), 3U);
+  EXPECT_EQ(parts[2].name, "robot/arm/hand");
+  EXPECT_EQ(parts[2].parent, "robot/arm");
+  EXPECT_EQ(parts[2].triangles, 1U);
+  // metres, in the file's axes, although the model is turned to z up
+  EXPECT_TRUE(parts[0].parent_from_part.isApprox(Pose(Eigen::Translation3d(1, 0, 0))));
+  EXPECT_TRUE(parts[1].parent_from_part.isApprox(Pose(Eigen::Translation3d(0, 3, 0))));
+  EXPECT_TRUE(parts[2].parent_from_part.isApprox(Pose(Eigen::Translation3d(0, 0, 2))));
+  EXPECT_TRUE(parts[2].box_m.isApprox(bounds(model.mesh)));
+}
+
+TEST(LoadModel, FramesOfNodesMoveWithUnitUpAxisAndCentre) {
+  const TestFolder temp;
+  const auto file = temp.write(
+      "a.gltf", gltf(R"([{"mesh":0,"name":"a","translation":[1,2,3],"scale":[-1,1,1]}])"));
+  ModelOptions options = without_cache();
+  options.metres_per_unit = 0.5;
+  options.centre = true;
+  const Model model = load(file, options);
+  ASSERT_EQ(model.nodes.size(), 2U);
+  const Model plain = load(file);
+  const Eigen::Vector3d moved =
+      0.5 * plain.nodes[1].model_from_node.translation() - 0.5 * bounds(plain.mesh).center();
+  EXPECT_TRUE(model.nodes[1].model_from_node.translation().isApprox(moved, 1e-7));
+  EXPECT_TRUE(is_rigid(model.nodes[1].model_from_node));
+  EXPECT_EQ(model.parts[0].node, 1U);
+  const Pose in_file = list_parts(model)[0].parent_from_part;
+  EXPECT_TRUE(in_file.translation().isApprox(Eigen::Vector3d(0.5, 1.0, 1.5), 1e-7));
 }
 
 TEST(LoadModel, PartsWithNaNAreOmittedAndReported) {

@@ -3,6 +3,7 @@
 
 // OBJ, PLY, STL and OFF: each statement is used, or named in a note, or refused with its place.
 #include <glidar/io/model/model.hpp>
+#include <glidar/io/model/model_parts.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -307,6 +308,34 @@ TEST(ModelParts, GroupsObjectsAndSolidsAreParts) {
   EXPECT_THAT(names(load(temp.write("a.stl", "solid one\n" + facet("") + "endsolid one\nsolid\n" +
                                                  facet("") + "endsolid\n"))),
               ElementsAre("one", ""));
+}
+
+TEST(ModelParts, OfFilesAreAddressedByTheirPaths) {
+  const TestFolder temp;
+  const auto names = [](const Model& model) { return part_names(model.nodes); };
+  EXPECT_THAT(
+      names(load(temp.write("a.obj", kSquare + "usemtl red\no car\nf 1 2 3\ng door\nf 1 3 4\n"
+                                               "usemtl blue\nf 1 2 3\no car/roof\nf 1 2 3\n"))),
+      ElementsAre("", "car", "car/door", "car/roof"));
+  EXPECT_THAT(names(load(temp.write("b.obj", kSquare + "g left\nf 1 2 3\nf 1 3 4\n"))),
+              ElementsAre("", "left"));
+  const std::string solid = "solid one\n" + facet("") + "endsolid one\n";
+  EXPECT_THAT(
+      names(load(temp.write("a.stl", solid + solid + "solid\n" + facet("") + "endsolid\n"))),
+      ElementsAre("", "one", "one_2"));
+  EXPECT_THAT(names(load(temp.write("b.stl", "solid\n" + facet("") + "endsolid\n"))),
+              ElementsAre(""));
+}
+
+TEST(ModelParts, AllMaterialsOfAGroupAreOnePart) {
+  const TestFolder temp;
+  const Model model = load(temp.write(
+      "a.obj", kSquare + "g a\nusemtl x\nf 1 2 3\ng b\nf 1 3 4\ng a\nusemtl y\nf 1 2 4\n"));
+  const std::vector<PartSummary> parts = list_parts(model);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].triangles, 2U);
+  EXPECT_THAT(parts[0].materials, ElementsAre("x", "y"));
+  EXPECT_EQ(parts[1].triangles, 1U);
 }
 
 TEST(ModelReflectance, SurfacesWithoutAMaterialAreWhiteInEveryFormat) {
