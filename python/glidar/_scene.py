@@ -7,7 +7,7 @@ from __future__ import annotations
 import itertools
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -25,6 +25,7 @@ from ._simulator import Simulator
 
 _UNITS = dict(_core.length_units())
 _AXES = ("x", "y", "z")
+_Folders: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 _MAX_SIMULATORS = 8
 _UNIT_TOLERANCE = 1e-3  # for normals that a file rounds to three digits
 
@@ -46,6 +47,7 @@ class Scene(SceneData):
         up: the axis of a model file that becomes z: "x", "y", "z"; None: the axis that the file declares,
             else unchanged axes.
         centre: whether to move the centre of a model's bounding box to its origin.
+        texture_folder: a folder, or a list of them, below which textures outside the model's folder are searched.
 
     Raises:
         Error: the file cannot be read, with line, column and field where known.
@@ -58,8 +60,10 @@ class Scene(SceneData):
         unit: str | float | None = None,
         up: str | None = None,
         centre: bool = False,
+        texture_folder: _Folders = None,
     ) -> None:
-        self._set_recipe(Recipe.empty() if source is None else _loaded(source, _options(unit, up, centre)))
+        options = _options(unit, up, centre, texture_folder)
+        self._set_recipe(Recipe.empty() if source is None else _loaded(source, options))
 
     def _set_recipe(self, recipe: Recipe) -> None:
         """Makes every change of the scene release the simulators, which measure its earlier state."""
@@ -109,19 +113,20 @@ class Scene(SceneData):
         unit: str | float | None = None,
         up: str | None = None,
         centre: bool = False,
+        texture_folder: _Folders = None,
         **placing: Any,
     ) -> SceneObject:
         """Adds a model file or "builtin:NAME"; returns its object.
 
         Args:
-            unit, up, centre: as for ``Scene``.
+            unit, up, centre, texture_folder: as for ``Scene``.
             placing: pose (4, 4), scale (one factor, or three along the object's axes), name, id,
                 class_name, materials of the object.
 
         Raises:
             Error: the file cannot be read, or an argument is invalid; the scene is unchanged then.
         """
-        index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre))
+        index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre, texture_folder))
         return self._initialised(index, placing)
 
     def add_mesh(
@@ -263,10 +268,15 @@ class Scene(SceneData):
 
 
 def load_scene(
-    path: str | os.PathLike[str], *, unit: str | float | None = None, up: str | None = None, centre: bool = False
+    path: str | os.PathLike[str],
+    *,
+    unit: str | float | None = None,
+    up: str | None = None,
+    centre: bool = False,
+    texture_folder: _Folders = None,
 ) -> Scene:
     """The scene of a scene file, a model file, or "builtin:NAME"; the same as ``Scene(path)``."""
-    return Scene(path, unit=unit, up=up, centre=centre)
+    return Scene(path, unit=unit, up=up, centre=centre, texture_folder=texture_folder)
 
 
 def _loaded(source: str | os.PathLike[str], options: dict[str, Any]) -> Recipe:
@@ -279,12 +289,14 @@ def _loaded(source: str | os.PathLike[str], options: dict[str, Any]) -> Recipe:
     return recipe
 
 
-def _options(unit: str | float | None, up: str | None, centre: bool) -> dict[str, Any]:
+def _options(unit: str | float | None, up: str | None, centre: bool, texture_folder: _Folders) -> dict[str, Any]:
     """Options for reading a model file, as the extension accepts them."""
     if not isinstance(centre, bool):
         raise Error("centre", shown(centre), "True or False")
     metres = None if unit is None else _metres(unit)
-    return {"metres_per_unit": metres, "up": _axis(up), "centre": centre}
+    folders = [] if texture_folder is None else texture_folder if isinstance(texture_folder, (list, tuple)) else [texture_folder]
+    absolute = [os.path.abspath(path_of(folder, "texture_folder")) for folder in folders]
+    return {"metres_per_unit": metres, "up": _axis(up), "centre": centre, "texture_folders": absolute}
 
 
 def _metres(unit: str | float) -> float:
