@@ -225,8 +225,9 @@ void add_meshes(FileLists lists, SourceModel& source) {
     const auto faces = faces_of_parts(lists);
     for (std::size_t i = 0; i < faces.size(); ++i) {
       if (faces[i].empty()) continue;
+      const FilePart part = lists.parts[i];
       const bool is_last = i + 1 == faces.size();
-      place(mesh_of(lists, faces[i], newest, is_last, intersecting), lists.parts[i]);
+      place(mesh_of(lists, faces[i], newest, is_last, intersecting), part);
     }
   }
   note_intersecting(source, intersecting);

@@ -129,7 +129,7 @@ TEST_F(ModelCache, ACorruptFileIsReplaced) {
 
 TEST_F(ModelCache, TextureFoldersAreReadInTheSandboxAndBelongToTheEntry) {
   const TestFolder art;
-  const fs::path hidden = art.write("other/shine.ppm", ppm(1, 1, "abc"));
+  const fs::path hidden = art.write("other/shine.ppm", testing::ppm(1, 1, "abc"));
   EXPECT_EQ(load().missing_textures.size(), 1U);
   options_.texture_folders = {art.path()};
   EXPECT_EQ(load().missing_textures.size(), 1U);  // not below a deeper folder
@@ -139,14 +139,14 @@ TEST_F(ModelCache, TextureFoldersAreReadInTheSandboxAndBelongToTheEntry) {
   EXPECT_EQ(found.missing_textures.size(), 0U);
   EXPECT_EQ(found.files.back(), hidden.string());
   EXPECT_TRUE(load().from_cache);
-  art.write("other/shine.ppm", ppm(1, 1, "abd"));
+  art.write("other/shine.ppm", testing::ppm(1, 1, "abd"));
   EXPECT_FALSE(load().from_cache);
-  art.write("shine.ppm", ppm(2, 1, "abc"));  // is searched first
+  art.write("shine.ppm", testing::ppm(2, 1, "abc"));  // is searched first
   const Model other = load();
   EXPECT_FALSE(other.from_cache);
   EXPECT_EQ(other.files.back(), (art.path() / "shine.ppm").string());
   options_.texture_folders = {art.path() / "gone"};
-  EXPECT_THAT(load_error(file_, options_), HasSubstr("gone' is not a folder"));
+  EXPECT_THAT(testing::load_error(file_, options_), HasSubstr("gone' is not a folder"));
 }
 
 TEST_F(ModelCache, AnotherImporterInvalidatesTheEntry) {
