@@ -33,7 +33,7 @@ class ModelOptions(CliTest):
         self.write("model/a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
         self.write("model/a.mtl", "newmtl m\nmap_Kd ../images/a.ppm\nmap_Ks model://skins/others/b.ppm\n")
         for name in ("images/a", "others/b"):
-            self.write(f"art/{name}.ppm", "P3 1 1 255 9 9 9\n")
+            self.write(f"art/{name}.ppm", "P6 1 1 255\nabc")
 
         def missing(*options):
             return [t["name"] for t in json.loads(self.succeed("info", "model/a.obj", "--json", *options).stdout)["missing_textures"]]

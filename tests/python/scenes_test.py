@@ -208,7 +208,7 @@ def test_a_rig_is_measured_like_on_the_command_line(tmp_path, program):
 def test_models_accept_texture_folders(tmp_path, caplog):
     for name in ("model", "art/images"):
         (tmp_path / name).mkdir(parents=True)
-    (tmp_path / "art/images/a.ppm").write_text("P3 1 1 255 9 9 9\n")
+    (tmp_path / "art/images/a.ppm").write_text("P6 1 1 255\nabc")
     (tmp_path / "model/a.mtl").write_text("newmtl m\nmap_Kd ../images/a.ppm\n")
     model = tmp_path / "model/a.obj"
     model.write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -86,13 +88,15 @@ bool has_scheme(std::string_view name) {
 /// The last components of the name, most of them first: of "../a/b.png" a/b.png and b.png.
 std::vector<fs::path> endings(const std::string& name) {
   std::vector<fs::path> all;
+  constexpr std::ptrdiff_t kMost = 16;  // components
   const std::string tidy = tidied(name);
   for (const std::string& spelling : {tidy, percent_decoded(tidy)}) {
     const fs::path path = fs::path(spelling).lexically_normal().relative_path();
     for (auto from = path.begin(); from != path.end(); ++from) {
+      if (*from == ".." || std::distance(from, path.end()) > kMost) continue;
       fs::path ending;
       for (auto part = from; part != path.end(); ++part) ending /= *part;
-      if (*from != "..") all.push_back(std::move(ending));
+      all.push_back(std::move(ending));
     }
   }
   return all;
