@@ -114,25 +114,28 @@ std::vector<std::vector<std::uint32_t>> faces_of_parts(const FileLists& lists) {
   return faces;
 }
 
-/// Replaces the vertices of these faces by those of the mesh. `is_last`: frees the lists.
+/// Replaces the vertices of these faces by those of the mesh, which gets their values.
+void copy_vertices(FileLists& lists, const std::vector<std::uint32_t>& faces,
+                   std::vector<std::uint32_t>& newest, bool is_last, SourceMesh& mesh) {
+  Vertices vertices(lists, newest);
+  for (const std::uint32_t f : faces) {
+    for (std::uint32_t c = lists.faces.begin_of(f); c < lists.faces.end_of(f); ++c) {
+      lists.faces.vertices[c] = vertices.of(c, f);
+    }
+  }
+  if (is_last) {
+    free_memory(lists.faces.uvs);
+    free_memory(lists.faces.normals);
+  }
+  vertices.copy_to(mesh);
+  vertices.clear();
+}
+
+/// `is_last`: frees the lists.
 SourceMesh mesh_of(FileLists& lists, const std::vector<std::uint32_t>& faces,
                    std::vector<std::uint32_t>& newest, bool is_last, std::size_t& intersecting) {
   SourceMesh mesh;
-  std::vector<std::uint32_t>& corners = lists.faces.vertices;
-  {
-    Vertices vertices(lists, newest);
-    for (const std::uint32_t f : faces) {
-      for (std::uint32_t c = lists.faces.begin_of(f); c < lists.faces.end_of(f); ++c) {
-        corners[c] = vertices.of(c, f);
-      }
-    }
-    if (is_last) {
-      free_memory(lists.faces.uvs);
-      free_memory(lists.faces.normals);
-    }
-    vertices.copy_to(mesh);
-    vertices.clear();
-  }
+  copy_vertices(lists, faces, newest, is_last, mesh);
   if (is_last) {
     FaceLists left = std::move(lists.faces);
     lists = {};
@@ -141,7 +144,7 @@ SourceMesh mesh_of(FileLists& lists, const std::vector<std::uint32_t>& faces,
   mesh.triangles.reserve(faces.size());
   for (const std::uint32_t f : faces) {
     const std::uint32_t begin = lists.faces.begin_of(f);
-    const auto face = std::span(corners).subspan(begin, lists.faces.end_of(f) - begin);
+    const auto face = std::span(lists.faces.vertices).subspan(begin, lists.faces.end_of(f) - begin);
     intersecting += add_face(mesh, face) ? 0 : 1;
   }
   return mesh;
