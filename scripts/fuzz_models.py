@@ -22,7 +22,7 @@ from pathlib import Path
 
 SUFFIXES = {".3ds", ".3mf", ".ac", ".ase", ".amf", ".b3d", ".blend", ".bvh", ".cob", ".csm", ".dae", ".dxf", ".fbx",
             ".glb", ".gltf", ".hmp", ".ifc", ".irrmesh", ".lwo", ".lws", ".md2", ".md3", ".md5mesh", ".mdl", ".ms3d",
-            ".nff", ".obj", ".off", ".ogex", ".pk3", ".ply", ".q3o", ".smd", ".stl", ".ter", ".x", ".x3d", ".xgl", ".zgl"}
+            ".nff", ".obj", ".off", ".ogex", ".pk3", ".ply", ".q3o", ".smd", ".stl", ".ter", ".x", ".xgl", ".zgl"}
 LARGEST_SEED_BYTES = 200_000
 TIME_LIMIT_S = 120.0  # the helper's own is 20 s for files of this size
 NUMBERS = [b"0", b"-1", b"1e39", b"nan", b"-0", b"4294967296", b"99999999999999999999", b"1e-320"]

@@ -245,7 +245,7 @@ std::vector<Copied> copy_meshes(const aiScene& scene, SourceModel& source) {
   }
   note_intersecting(source, left.intersecting);
   if (left.outside > 0) {
-    source.notes.push_back(
+    source.notes.add(
         fmt::format("faces that name missing vertices are left out: {}", left.outside));
   }
   return all;
@@ -281,7 +281,7 @@ class Tree {
       }
     }
     if (skinned_ > 0) {
-      source_.notes.push_back(
+      source_.notes.add(
           fmt::format("{} meshes have a skeleton: shown in their rest pose", skinned_));
     }
   }
@@ -306,23 +306,19 @@ class Tree {
       const aiMesh& mesh = *scene_.mMeshes[index];
       const bool is_posed = copied_[index].is_posed;
       skinned_ += mesh.mNumBones > 0 && !is_posed ? 1 : 0;
-      triangles_ += source_.meshes[index].triangles.size();
       const aiString& name = mesh.mName.length > 0 ? mesh.mName : node.mName;
       const Eigen::Matrix4d placed =
           is_posed ? Eigen::Matrix4d(Eigen::Matrix4d::Identity()) : model_from_node;
       const std::uint32_t of = &node == scene_.mRootNode
                                    ? add_node(source_.nodes, name.C_Str(), part, model_from_node)
                                    : part;
-      source_.placed.push_back({index, placed, std::string(name.C_Str()), of});
-      // A small file can place a mesh very often.
-      if (triangles_ > kMaxTriangles || source_.placed.size() > kMaxRecords) check_size(source_);
+      source_.place({index, placed, std::string(name.C_Str()), of});
     }
   }
 
   const aiScene& scene_;
   std::vector<Copied> copied_;  ///< of each mesh
   SourceModel& source_;
-  std::uint64_t triangles_ = 0;
   std::uint64_t skinned_ = 0;
 };
 
@@ -364,8 +360,8 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
                              ModelFiles& files, FileLog& log,
                              const std::function<void(double)>& progress) {
   const auto own = files.content(model.string());
-  std::vector<std::string> mended;
-  mend_model(model, files, mended);
+  SourceModel source;
+  mend_model(model, files, source.notes);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
@@ -375,11 +371,9 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
   if (importer.ReadFile(model.string(), kSteps) == nullptr) refuse(importer.GetErrorString(), log);
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene& scene = *importer.GetOrphanedScene();
-  SourceModel source;
   source.format = importer_name(importer);
   source.is_single_precision = true;
   source.declared = extract_declared_frame(scene, source.format, *own, source.notes);
-  source.notes.insert(source.notes.end(), mended.begin(), mended.end());
   Tree(scene, copy_meshes(scene, source), source).place();
   copy_materials(scene, source);
   return source;

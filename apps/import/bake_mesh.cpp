@@ -123,8 +123,8 @@ void keep_nodes(const SourceModel& source, Model& model) {
 
 void bake(SourceModel& source, double crease_angle_rad,
           const std::vector<std::uint16_t>& slot_of_material, Model& model) {
-  const std::vector<Eigen::Vector3d> origins = part_origins(source);
   const Eigen::AlignedBox3d box = box_of(source);
+  const std::vector<Eigen::Vector3d> origins = part_origins(source, box);
   std::vector<std::size_t> last_use(source.meshes.size(), 0);
   for (std::size_t i = 0; i < source.placed.size(); ++i) last_use[source.placed[i].mesh] = i;
   Repairs repairs;

@@ -32,12 +32,12 @@ bool is_usable(double metres) {
   return metres >= kMinUnit_m && metres <= kMaxUnit_m;
 }
 
-void note_useless_unit(const std::string& metres, std::vector<std::string>& notes) {
-  notes.push_back("the file declares an invalid unit of " + metres + " m: 1 m is assumed");
+void note_useless_unit(const std::string& metres, Notes& notes) {
+  notes.add("the file declares an invalid unit of " + metres + " m: 1 m is assumed");
 }
 
-void note_no_element(const char* name, const char* assumed, std::vector<std::string>& notes) {
-  notes.push_back(
+void note_no_element(const char* name, const char* assumed, Notes& notes) {
+  notes.add(
       fmt::format("the element <{}> of the file was not found, which declares its unit: "
                   "{} assumed",
                   name, assumed));
@@ -102,8 +102,7 @@ std::optional<Axis> axis_named(std::string_view name) {
 
 /// Assimp multiplies the unit and a rotation to y up into the root node, in single precision. This
 /// removes both, because the user may select others.
-ModelFrame extract_collada_frame(aiScene& scene, std::string_view text,
-                                 std::vector<std::string>& notes) {
+ModelFrame extract_collada_frame(aiScene& scene, std::string_view text, Notes& notes) {
   scene.mRootNode->mTransformation = aiMatrix4x4();
   const std::optional<ColladaAsset> asset = collada_asset(text);
   if (!asset) {
@@ -119,23 +118,23 @@ ModelFrame extract_collada_frame(aiScene& scene, std::string_view text,
   }
   frame.up = axis_named(asset->up_axis);
   if (!frame.up) {
-    notes.push_back("the file declares the unknown up axis '" + asset->up_axis +
-                    "': its axes are kept");
+    notes.add("the file declares the unknown up axis '" + asset->up_axis + "': its axes are kept");
   }
   return frame;
 }
 
 /// The document of a COLLADA file; in a .zae archive, the one named by the manifest.
 std::string collada_text(std::string_view file) {
-  const std::vector<std::string> names = zip_names(file);
+  const ZipArchive archive(file);
+  const std::vector<std::string> names = archive.names();
   if (names.empty()) return std::string(file.substr(0, kMaxText_bytes));
-  const pugi::xml_document manifest = parse_xml(zip_text(file, "manifest.xml", kMaxText_bytes));
+  const pugi::xml_document manifest = parse_xml(archive.text("manifest.xml", kMaxText_bytes));
   const pugi::xml_node root =
       manifest.find_node([](const pugi::xml_node& one) { return local_name(one) == "dae_root"; });
-  if (root) return zip_text(file, zip_name(trimmed(root.child_value())), kMaxText_bytes);
+  if (root) return archive.text(zip_name(trimmed(root.child_value())), kMaxText_bytes);
   const auto first = std::find_if(names.begin(), names.end(),
                                   [](const std::string& name) { return name.ends_with(".dae"); });
-  return first == names.end() ? "" : zip_text(file, *first, kMaxText_bytes);
+  return first == names.end() ? "" : archive.text(*first, kMaxText_bytes);
 }
 
 template <class T>
@@ -146,7 +145,7 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
 }
 
 /// Assimp applies neither.
-ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
+ModelFrame read_fbx(const aiScene& scene, Notes& notes) {
   ModelFrame frame;
   std::optional<double> centimetres = metadata<double>(scene, "UnitScaleFactor");
   if (const auto single = metadata<float>(scene, "UnitScaleFactor")) centimetres = double{*single};
@@ -158,7 +157,7 @@ ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
   const auto axis = metadata<std::int32_t>(scene, "UpAxis");
   if (!axis || *axis < 0 || *axis > 2) return frame;
   if (metadata<std::int32_t>(scene, "UpAxisSign").value_or(1) < 0) {
-    notes.emplace_back("the file declares that a negative axis is up: its axes are kept");
+    notes.add("the file declares that a negative axis is up: its axes are kept");
     return frame;
   }
   frame.up = static_cast<Axis>(*axis);
@@ -166,7 +165,7 @@ ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
 }
 
 /// A unit of 3MF and AMF. Their default is the millimetre, their up axis is z.
-ModelFrame printed(std::string_view text, const char* element, std::vector<std::string>& notes) {
+ModelFrame printed(std::string_view text, const char* element, Notes& notes) {
   struct Named {
     std::string_view name;
     double metres;
@@ -189,25 +188,26 @@ ModelFrame printed(std::string_view text, const char* element, std::vector<std::
   for (const Named& known : kUnits) {
     if (known.name == unit) return {known.metres, Axis::z};
   }
-  notes.push_back("the file declares the unknown unit '" + std::string(unit) + "': 1 m is assumed");
+  notes.add("the file declares the unknown unit '" + std::string(unit) + "': 1 m is assumed");
   return {std::nullopt, Axis::z};
 }
 
 /// The model of a 3MF package: the part that its relationships name (Open Packaging Conventions).
 std::string model_of_3mf(std::string_view file) {
   static constexpr std::string_view kModel = "/3dmanufacturing/2013/01/3dmodel";
-  const pugi::xml_document relations = parse_xml(zip_text(file, "_rels/.rels", kMaxText_bytes));
+  const ZipArchive archive(file);
+  const pugi::xml_document relations = parse_xml(archive.text("_rels/.rels", kMaxText_bytes));
   const pugi::xml_node model = relations.find_node([](const pugi::xml_node& one) {
     return std::string_view(one.attribute("Type").value()).ends_with(kModel);
   });
   const std::string name = model ? zip_name(model.attribute("Target").value()) : "3D/3dmodel.model";
-  return zip_text(file, name, kMaxText_bytes);
+  return archive.text(name, kMaxText_bytes);
 }
 
 }  // namespace
 
 ModelFrame extract_declared_frame(aiScene& scene, const std::string& format, FileContent& file,
-                                  std::vector<std::string>& notes) {
+                                  Notes& notes) {
   if (format.find("Collada") != std::string::npos) {
     return extract_collada_frame(scene, collada_text(file.whole()), notes);
   }

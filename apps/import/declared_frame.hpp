@@ -3,6 +3,7 @@
 #pragma once
 
 #include <import/model_files.hpp>
+#include <import/source_model.hpp>
 
 #include <glidar/io/model/model.hpp>
 
@@ -20,6 +21,6 @@ namespace glidar::import {
 /// the package that _rels/.rels names), AMF (ISO/ASTM 52915, unit), FBX GlobalSettings
 /// (UnitScaleFactor in cm, UpAxis).
 ModelFrame extract_declared_frame(aiScene& scene, const std::string& format, FileContent& file,
-                                  std::vector<std::string>& notes);
+                                  Notes& notes);
 
 }  // namespace glidar::import

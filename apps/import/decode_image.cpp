@@ -13,6 +13,7 @@
 #include <array>
 #include <climits>
 #include <memory>
+#include <utility>
 
 namespace glidar::import {
 namespace {
@@ -129,14 +130,14 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
   return decoded;
 }
 
-Decoded decode_embedded(const EmbeddedImage& image, std::uint64_t budget) {
+Decoded decode_embedded(EmbeddedImage image, std::uint64_t budget) {
   if (image.bytes.empty()) return no_image("empty");
   if (image.width == 0) return decode_image(image.bytes, budget);
   std::string refused = too_large(image.width, image.height, 4, budget);
   if (!refused.empty()) return no_image(std::move(refused));
   if (image.bytes.size() != std::size_t{4} * image.width * image.height) return no_image("broken");
   Decoded decoded;
-  decoded.texture = {"", image.width, image.height, 4, image.bytes};
+  decoded.texture = {"", image.width, image.height, 4, std::move(image.bytes)};
   drop_opaque_alpha(decoded.texture);
   return decoded;
 }

@@ -25,7 +25,7 @@ struct Decoded {
 Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget);
 
 /// An image inside the model file: compressed bytes, or raw texels.
-Decoded decode_embedded(const EmbeddedImage& image, std::uint64_t budget);
+Decoded decode_embedded(EmbeddedImage image, std::uint64_t budget);
 
 /// "data:image/png;base64,...".
 Decoded decode_data_uri(const std::string& uri, std::uint64_t budget);

@@ -14,10 +14,13 @@ namespace {
 class Vertices {
  public:
   Vertices(const FileLists& lists, std::vector<std::uint32_t>& newest)
-      : lists_(lists), newest_(newest) {}
+      : lists_(lists),
+        newest_(newest),
+        corners_have_normals_(!lists.faces.normals.empty()),
+        corners_have_uvs_(!lists.faces.uvs.empty()) {}
 
   /// The number in the mesh.
-  std::uint32_t of(std::uint32_t corner, std::size_t face) {
+  std::uint32_t of(std::uint32_t corner, std::uint32_t face) {
     const FaceLists& faces = lists_.faces;
     const Key key = {faces.vertices[corner], faces.uvs.empty() ? kNoIndex : faces.uvs[corner],
                      faces.normals.empty() ? kNoIndex : faces.normals[corner], face};
@@ -55,7 +58,7 @@ class Vertices {
     std::uint32_t vertex;
     std::uint32_t uv;
     std::uint32_t normal;
-    std::size_t face;
+    std::uint32_t face;
   };
 
   [[nodiscard]] bool is_same(const Key& a, const Key& b) const {
@@ -65,7 +68,7 @@ class Vertices {
   }
 
   void copy_normals(SourceMesh& mesh) const {
-    if (lists_.faces.normals.empty()) {
+    if (!corners_have_normals_) {
       for (const Key& key : keys_) {
         if (!lists_.normals.empty()) mesh.normals.push_back(lists_.normals[key.vertex]);
       }
@@ -80,7 +83,7 @@ class Vertices {
   }
 
   void copy_uvs(SourceMesh& mesh) const {
-    if (lists_.faces.uvs.empty()) {
+    if (!corners_have_uvs_) {
       for (const Key& key : keys_) {
         if (!lists_.uvs.empty()) mesh.uvs[0].push_back(lists_.uvs[key.vertex]);
       }
@@ -96,7 +99,9 @@ class Vertices {
 
   const FileLists& lists_;
   std::vector<std::uint32_t>& newest_;  ///< of each vertex of the file: in this mesh
-  std::vector<std::uint32_t> before_;   ///< of each vertex of the mesh: another of the same vertex
+  bool corners_have_normals_;
+  bool corners_have_uvs_;
+  std::vector<std::uint32_t> before_;  ///< of each vertex of the mesh: another of the same vertex
   std::vector<Key> keys_;
 };
 
@@ -109,24 +114,38 @@ std::vector<std::vector<std::uint32_t>> faces_of_parts(const FileLists& lists) {
   return faces;
 }
 
-SourceMesh mesh_of(const FileLists& lists, const std::vector<std::uint32_t>& faces,
-                   std::vector<std::uint32_t>& newest, std::size_t& intersecting) {
-  SourceMesh mesh;
+/// Replaces the vertices of these faces by those of the mesh, which gets their values.
+void copy_vertices(FileLists& lists, const std::vector<std::uint32_t>& faces,
+                   std::vector<std::uint32_t>& newest, bool is_last, SourceMesh& mesh) {
   Vertices vertices(lists, newest);
-  std::vector<std::uint32_t> corners;
-  std::vector<std::uint32_t> ends;
   for (const std::uint32_t f : faces) {
     for (std::uint32_t c = lists.faces.begin_of(f); c < lists.faces.end_of(f); ++c) {
-      corners.push_back(vertices.of(c, f));
+      lists.faces.vertices[c] = vertices.of(c, f);
     }
-    ends.push_back(static_cast<std::uint32_t>(corners.size()));
+  }
+  if (is_last) {
+    free_memory(lists.faces.uvs);
+    free_memory(lists.faces.normals);
   }
   vertices.copy_to(mesh);
   vertices.clear();
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : ends) {
-    intersecting += add_face(mesh, std::span(corners).subspan(begin, end - begin)) ? 0 : 1;
-    begin = end;
+}
+
+/// `is_last`: frees the lists.
+SourceMesh mesh_of(FileLists& lists, const std::vector<std::uint32_t>& faces,
+                   std::vector<std::uint32_t>& newest, bool is_last, std::size_t& intersecting) {
+  SourceMesh mesh;
+  copy_vertices(lists, faces, newest, is_last, mesh);
+  if (is_last) {
+    FaceLists left = std::move(lists.faces);
+    lists = {};
+    lists.faces = std::move(left);
+  }
+  mesh.triangles.reserve(faces.size());
+  for (const std::uint32_t f : faces) {
+    const std::uint32_t begin = lists.faces.begin_of(f);
+    const auto face = std::span(lists.faces.vertices).subspan(begin, lists.faces.end_of(f) - begin);
+    intersecting += add_face(mesh, face) ? 0 : 1;
   }
   return mesh;
 }
@@ -197,9 +216,9 @@ void add_meshes(FileLists lists, SourceModel& source) {
   const auto place = [&source](SourceMesh mesh, const FilePart& part) {
     if (mesh.triangles.empty()) return;
     mesh.material = part.material;
-    source.placed.push_back(
-        {source.meshes.size(), Eigen::Matrix4d::Identity(), part.name, part.node});
     source.meshes.push_back(std::move(mesh));
+    source.place(
+        {source.meshes.size() - 1, Eigen::Matrix4d::Identity(), part.name, part.node});
   };
   if (is_one_list(lists)) {
     const FilePart part = lists.parts[0];
@@ -210,7 +229,10 @@ void add_meshes(FileLists lists, SourceModel& source) {
     std::vector<std::uint32_t> newest(lists.positions.size(), kNoIndex);
     const auto faces = faces_of_parts(lists);
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (!faces[i].empty()) place(mesh_of(lists, faces[i], newest, intersecting), lists.parts[i]);
+      if (faces[i].empty()) continue;
+      const FilePart part = lists.parts[i];
+      const bool is_last = i + 1 == faces.size();
+      place(mesh_of(lists, faces[i], newest, is_last, intersecting), part);
     }
   }
   note_intersecting(source, intersecting);

@@ -41,8 +41,8 @@ std::vector<std::uint16_t> make_materials(const SourceModel& source, TextureStor
 }
 
 /// Texture paths in material files are relative to the material file.
-std::vector<std::string> texture_folders(const std::vector<std::string>& read,
-                                         const ModelFolder& folder) {
+std::vector<std::string> material_folders(const std::vector<std::string>& read,
+                                          const ModelFolder& folder) {
   std::vector<std::string> folders;
   for (const std::string& file : read) {
     const std::filesystem::path parent = std::filesystem::path(file).parent_path();
@@ -68,7 +68,7 @@ std::string_view open_buffer(const std::string& uri, const ModelFolder& folder, 
   }
   throw Refusal{"its buffer '" + uri.substr(0, kShown) +
                     "' is not read: " + reason(confine(percent_decoded(uri), folder).access),
-                "copy it into the model's folder"};
+                "or save the model with its buffers inside"};
 }
 
 /// By the reader of its format.
@@ -76,15 +76,18 @@ SourceModel read_file(const std::filesystem::path& model, const ModelFolder& fol
                       ModelFiles& files, FileLog& log,
                       const std::function<void(double)>& progress) {
   constexpr std::size_t kHead = 4096;
-  const auto own = files.content(model.string());
+  auto own = files.content(model.string());
   const std::string extension = lower_case(model.extension().string());
   const std::string_view head = own->head(kHead);
   if (auto unread = unread_format(extension, head)) {
     throw Refusal{std::move(unread->found), std::move(unread->remedy)};
   }
   if (gltf::is_gltf(extension, head)) {
-    return gltf::read_gltf(
+    SourceModel source = gltf::read_gltf(
         own->whole(), [&](const std::string& uri) { return open_buffer(uri, folder, files, log); });
+    own = nullptr;
+    for (const std::string& read : files.paths()) files.release(read);
+    return source;
   }
   const ReaderInput input{model, folder, files, log};
   const Reader reader = own_reader(input);
@@ -93,23 +96,23 @@ SourceModel read_file(const std::filesystem::path& model, const ModelFolder& fol
 
 }  // namespace
 
-ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
-                           const std::function<void(double)>& progress) {
-  ModelFolder folder = model_folder(canonical_model);
+ImportedModel import_model(const std::filesystem::path& canonical_model, ModelFolder folder,
+                           double crease_angle_rad, const std::function<void(double)>& progress) {
   ModelFiles files(folder);
   FileLog log;
   if (files.content(canonical_model.string()) == nullptr) {  // the first of the files
     throw Refusal{"cannot be opened", "check its read permission"};
   }
   SourceModel source = read_file(canonical_model, folder, files, log, progress);
-  check_size(source);
+  require_triangles(source);
   ImportedModel imported;
   Model& model = imported.model;
   model.format = source.format;
   model.declared = source.declared;
-  model.notes = source.notes;
-  imported.texture_folders = texture_folders(files.paths(), folder);
-  folder.material_folders.assign(imported.texture_folders.begin(), imported.texture_folders.end());
+  model.notes = source.notes.texts();
+  imported.material_folders = material_folders(files.paths(), folder);
+  folder.material_folders.assign(imported.material_folders.begin(),
+                                 imported.material_folders.end());
   TextureStore textures(source, folder, files, imported);
   const std::vector<std::uint16_t> slots = make_materials(source, textures, model);
   model.notes.insert(model.notes.end(), log.notes.begin(), log.notes.end());

@@ -13,7 +13,7 @@ namespace glidar::import {
 
 /// Reads a model file. Throws Refusal if it is unusable; the caller reports other errors (memory,
 /// invalid data).
-ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
-                           const std::function<void(double)>& progress);
+ImportedModel import_model(const std::filesystem::path& canonical_model, ModelFolder folder,
+                           double crease_angle_rad, const std::function<void(double)>& progress);
 
 }  // namespace glidar::import

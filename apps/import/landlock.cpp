@@ -55,7 +55,7 @@ FileRestriction failed(const char* what) {
 
 }  // namespace
 
-FileRestriction restrict_files(const std::filesystem::path& root, long newest) {
+FileRestriction restrict_files(const std::vector<std::filesystem::path>& readable, long newest) {
   const long version = std::min(
       newest, ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION));
   if (version < 1) return failed("querying its version");
@@ -63,15 +63,16 @@ FileRestriction restrict_files(const std::filesystem::path& root, long newest) {
   const UniqueFd ruleset(
       static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, size_for(version), 0)));
   if (!ruleset) return failed("making rules");
-  const UniqueFd opened(::open(root.c_str(), O_PATH | O_CLOEXEC));
-  struct stat info {};
-  if (!opened || ::fstat(opened.get(), &info) != 0) return failed("opening what it may read");
-  landlock_path_beneath_attr rule{};
-  rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
-  if (S_ISDIR(info.st_mode)) rule.allowed_access |= LANDLOCK_ACCESS_FS_READ_DIR;
-  rule.parent_fd = opened.get();
-  if (::syscall(SYS_landlock_add_rule, ruleset.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0) {
-    return failed("allowing what it may read");
+  for (const std::filesystem::path& path : readable) {
+    const UniqueFd opened(::open(path.c_str(), O_PATH | O_CLOEXEC));
+    struct stat info {};
+    if (!opened || ::fstat(opened.get(), &info) != 0) return failed("opening what it may read");
+    landlock_path_beneath_attr rule{};
+    rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
+    if (S_ISDIR(info.st_mode)) rule.allowed_access |= LANDLOCK_ACCESS_FS_READ_DIR;
+    rule.parent_fd = opened.get();
+    if (::syscall(SYS_landlock_add_rule, ruleset.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0)
+      return failed("allowing what it may read");
   }
   if (::syscall(SYS_landlock_restrict_self, ruleset.get(), 0) != 0)
     return failed("applying the rules");

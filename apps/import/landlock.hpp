@@ -5,6 +5,7 @@
 #include <climits>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace glidar::import {
 
@@ -16,9 +17,10 @@ struct FileRestriction {
   bool covers_truncation = false;  ///< from version 3; older ones let readers truncate files
 };
 
-/// Restricts this process to reading the file `root`, or files below that folder. If the kernel
+/// Restricts this process to reading these files, and files below these folders. If the kernel
 /// supports it, also forbids TCP, abstract UNIX sockets and signals to other processes. Uses no
 /// version of the interface above `newest`. Needs PR_SET_NO_NEW_PRIVS.
-FileRestriction restrict_files(const std::filesystem::path& root, long newest = kNewestLandlock);
+FileRestriction restrict_files(const std::vector<std::filesystem::path>& readable,
+                               long newest = kNewestLandlock);
 
 }  // namespace glidar::import

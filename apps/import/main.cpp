@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
+// glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT [TEXTURE_FOLDER ...]
 // Reads one model and writes one block (glidar/io/model/mesh_blob.hpp) to descriptor 3: the model,
 // or the error. Progress in percent goes to descriptor 4, one byte each.
 //
@@ -26,8 +26,10 @@
 
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glidar::import {
@@ -42,11 +44,12 @@ void report_progress(double fraction) {
   [[maybe_unused]] const ssize_t written = ::write(kControlFd, &percent, 1);
 }
 
-int answer(const char* const* arguments) {
-  const std::vector<std::string> notes = enter_sandbox(model_folder(arguments[1]).root, kControlFd);
+int answer(const char* const* arguments, std::vector<std::filesystem::path> texture_folders) {
+  ModelFolder folder = model_folder(arguments[1], std::move(texture_folders));
+  const std::vector<std::string> notes = enter_sandbox(folder.allowed(), kControlFd);
   try {
-    ImportedModel imported =
-        import_model(arguments[1], std::strtod(arguments[2], nullptr), report_progress);
+    ImportedModel imported = import_model(arguments[1], std::move(folder),
+                                          std::strtod(arguments[2], nullptr), report_progress);
     imported.sandbox_notes = notes;
     write_model(kAnswerFd, imported);
   } catch (const Refusal& refusal) {
@@ -57,24 +60,23 @@ int answer(const char* const* arguments) {
 
 int answer_records(const char* const* arguments) {
   const std::string path = arguments[3];
-  enter_sandbox(path, kControlFd);
+  enter_sandbox({path}, kControlFd);
   return decode_file(arguments[2], path, {kAnswerFd, kControlFd}) ? kExitAnswered : kExitFailed;
 }
 
 int run(int argc, const char* const* argv) {
-  constexpr int kModelArguments = 6;
-  const bool is_model = argc == kModelArguments;
-  if (!is_model && (argc != kModelArguments + 1 || std::string(argv[1]) != kDecodeOption))
-    return kExitFailed;
+  const bool is_model = argc > 1 && std::string(argv[1]) != kDecodeOption;
+  const int arguments = is_model ? 6 : 7;
+  if (argc < arguments || (!is_model && argc > arguments)) return kExitFailed;
   // A fixed threshold returns every large block to the system: glibc's own adapts and keeps some.
   constexpr int kLarge_bytes = 1 << 20;
   ::mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
-  const char* const* last = argv + argc - 3;
+  const char* const* last = argv + arguments - 3;
   const ProcessLimits limits{std::strtoull(last[0], nullptr, 10), std::strtod(last[1], nullptr),
                              std::strtoll(last[2], nullptr, 10)};
   if (!apply(limits)) return kExitFailed;
   try {
-    return is_model ? answer(argv) : answer_records(argv);
+    return is_model ? answer(argv, {argv + arguments, argv + argc}) : answer_records(argv);
   } catch (const std::bad_alloc&) {
     return kExitNoMemory;
   } catch (const FileSizeLimit&) {

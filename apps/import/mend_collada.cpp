@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/mend_collada.hpp>
 
-#include <import/source_model.hpp>
-
 #include <glidar/core/text.hpp>
 
 #include <fmt/format.h>
@@ -15,7 +13,6 @@
 #include <charconv>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace glidar::import {
 namespace {
@@ -49,7 +46,7 @@ std::vector<std::uint32_t> integers_of(const Node& list) {
 
 class Mender {
  public:
-  explicit Mender(pugi::xml_document& document, std::vector<std::string>& notes)
+  explicit Mender(pugi::xml_document& document, Notes& notes)
       : root_(document.document_element()), notes_(notes) {
     // Explicit walks, because hostile documents are deep.
     for (Node node = root_; node; node = following(node)) strip_prefix(node);
@@ -94,10 +91,6 @@ class Mender {
     if (colon != std::string_view::npos) node.set_name(std::string(name.substr(colon + 1)).c_str());
   }
 
-  void note(const std::string& text) {
-    if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
-  }
-
   void refuse_unreadable() {
     if (!elements_["ph"].empty()) throw Refusal{"it has polygons with holes (<ph>)", kExport};
     if (!elements_["skew"].empty()) throw Refusal{"it has skewed nodes (<skew>)", kExport};
@@ -127,7 +120,8 @@ class Mender {
         left_out += (left_out.empty() ? "" : ", ") + std::string(child.name());
     }
     for (const Node& child : unused) root_.remove_child(child);
-    if (!left_out.empty()) note("parts of the document are left out: " + left_out.substr(0, 200));
+    if (!left_out.empty())
+      notes_.add("parts of the document are left out: " + left_out.substr(0, 200));
   }
 
   /// Whether an image names a file or has data.
@@ -177,8 +171,8 @@ class Mender {
       // Beside a texture, the colour is white (COLLADA 1.4.1, "common_color_or_texture_type").
       const bool has_image = images.contains(image_of(texture));
       if (!has_image) {
-        note(fmt::format("a texture without a file is left out: '{}'",
-                         std::string(texture.attribute("texture").value()).substr(0, 80)));
+        notes_.add(fmt::format("a texture without a file is left out: '{}'",
+                               std::string(texture.attribute("texture").value()).substr(0, 80)));
         property.remove_child(texture);
       }
       const bool is_colour = is_one_of(property.name(), {"diffuse", "specular"});
@@ -209,7 +203,7 @@ class Mender {
           is_one_of(semantic, {"VERTEX", "POSITION", "NORMAL", "TEXCOORD", "COLOR"}) ||
           (is_frame && has_tangents && has_binormals);
       if (is_read) continue;
-      if (!is_frame) note("inputs are left out: " + std::string(semantic.substr(0, 80)));
+      if (!is_frame) notes_.add("inputs are left out: " + std::string(semantic.substr(0, 80)));
       unused.push_back(input);
     }
     for (Node input : unused) {
@@ -263,36 +257,25 @@ class Mender {
   void note_geometries() {
     for (const char* name : {"spline", "brep", "convex_mesh"}) {
       const std::size_t count = elements_[name].size();
-      if (count > 0) note(fmt::format("{} geometries are <{}>: left out", count, name));
+      if (count > 0) notes_.add(fmt::format("{} geometries are <{}>: left out", count, name));
     }
     const std::size_t morphs = elements_["morph"].size();
-    if (morphs > 0) note(fmt::format("{} meshes are morphed: shown in their base shape", morphs));
+    if (morphs > 0)
+      notes_.add(fmt::format("{} meshes are morphed: shown in their base shape", morphs));
     const std::size_t scenes = elements_["visual_scene"].size();
-    if (scenes > 1) note(fmt::format("one of {} visual scenes is loaded", scenes));
+    if (scenes > 1) notes_.add(fmt::format("one of {} visual scenes is loaded", scenes));
   }
 
   Node root_;
-  std::vector<std::string>& notes_;
+  Notes& notes_;
   std::map<std::string, std::vector<Node>> elements_;  ///< by their local names
   std::vector<Node> made_;
 };
 
 }  // namespace
 
-std::string mend_collada(std::string_view document, std::vector<std::string>& notes) {
-  pugi::xml_document parsed;
-  // Assimp does not skip white space before the first number of some lists.
-  const pugi::xml_parse_result result = parsed.load_buffer(
-      document.data(), document.size(), pugi::parse_default | pugi::parse_trim_pcdata);
-  if (!result) {
-    throw Refusal{
-        fmt::format("its XML cannot be read: {} at byte {}", result.description(), result.offset),
-        "the file is damaged or cut off: export it again"};
-  }
-  Mender(parsed, notes).mend();
-  std::ostringstream text;
-  parsed.save(text, "", pugi::format_raw, pugi::encoding_utf8);
-  return std::move(text).str();
+void mend_collada(pugi::xml_document& document, Notes& notes) {
+  Mender(document, notes).mend();
 }
 
 }  // namespace glidar::import

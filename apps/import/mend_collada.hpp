@@ -2,18 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <vector>
+#include <import/source_model.hpp>
+
+namespace pugi {
+class xml_document;
+}
 
 namespace glidar::import {
 
-/// A COLLADA document (1.4.1 and 1.5) in a form that Assimp reads correctly: in UTF-8, without
-/// prefixes of namespaces and white space around numbers; without cameras, lights and textures
-/// without a file, for which Assimp refuses the whole document; tangents only beside binormals;
-/// strips and fans as triangles. Notes what is left out. Throws Refusal for malformed XML and for
-/// what Assimp would read wrongly: polygons with holes, skewed nodes, references to other
-/// documents.
-std::string mend_collada(std::string_view document, std::vector<std::string>& notes);
+/// Changes a COLLADA document (1.4.1 and 1.5), parsed without white space around numbers, to a form
+/// that Assimp reads correctly: without prefixes of namespaces; without cameras, lights and
+/// textures without a file, for which Assimp refuses the whole document; tangents only beside
+/// binormals; strips and fans as triangles. Notes what is left out. Throws Refusal for what Assimp
+/// would read wrongly: polygons with holes, skewed nodes, references to other documents.
+void mend_collada(pugi::xml_document& document, Notes& notes);
 
 }  // namespace glidar::import

@@ -29,13 +29,14 @@ bool is_utf16(std::string_view bytes) {
          bytes.starts_with("<\0"sv) || bytes.starts_with("\0<"sv);
 }
 
-pugi::xml_document parsed_xml(std::string_view text, const std::string& name) {
+pugi::xml_document parsed_xml(std::string_view text, const std::string& what,
+                              unsigned options = pugi::parse_default) {
   pugi::xml_document document;
-  const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+  const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size(), options);
   if (!result) {
-    throw Refusal{fmt::format("the XML of {} cannot be read: {} at byte {}", name,
-                              result.description(), result.offset),
-                  "the file is damaged or cut off: export it again"};
+    throw Refusal{
+        fmt::format("{} cannot be read: {} at byte {}", what, result.description(), result.offset),
+        "the file is damaged or cut off: export it again"};
   }
   return document;
 }
@@ -46,6 +47,14 @@ std::string as_utf8(const pugi::xml_document& document) {
   return std::move(text).str();
 }
 
+std::string mended_collada(std::string_view text, Notes& notes) {
+  // Assimp does not skip white space before the first number of some lists.
+  pugi::xml_document document =
+      parsed_xml(text, "its XML", pugi::parse_default | pugi::parse_trim_pcdata);
+  mend_collada(document, notes);
+  return as_utf8(document);
+}
+
 bool is_collada(std::string_view extension, std::string_view head) {
   using namespace std::string_view_literals;
   return extension == ".dae" || head.find("<COLLADA") != std::string_view::npos ||
@@ -54,12 +63,12 @@ bool is_collada(std::string_view extension, std::string_view head) {
 
 /// The document of a .zae archive, as Assimp selects it: the one that the manifest names, else the
 /// first one; none in other archives.
-std::optional<std::string> document_of_zae(std::string_view file,
+std::optional<std::string> document_of_zae(const ZipArchive& archive,
                                            const std::vector<std::string>& names) {
   const bool has_manifest = std::find(names.begin(), names.end(), "manifest.xml") != names.end();
   if (has_manifest) {
     const pugi::xml_document manifest =
-        parsed_xml(zip_content(file, "manifest.xml"), "manifest.xml");
+        parsed_xml(archive.content("manifest.xml"), "the XML of manifest.xml");
     std::string name = zip_name(trimmed(manifest.child("dae_root").child_value()));
     if (std::find(names.begin(), names.end(), name) != names.end()) return name;
   }
@@ -69,11 +78,11 @@ std::optional<std::string> document_of_zae(std::string_view file,
   return first == names.end() ? std::nullopt : std::optional(*first);
 }
 
-std::map<std::string, std::string> unpacked(std::string_view file,
+std::map<std::string, std::string> unpacked(const ZipArchive& archive,
                                             const std::vector<std::string>& names) {
   std::map<std::string, std::string> files;
   for (const std::string& name : names) {
-    if (!name.ends_with('/')) files[name] = zip_content(file, name);
+    if (!name.ends_with('/')) files[name] = archive.content(name);
   }
   return files;
 }
@@ -92,7 +101,7 @@ bool is_read(std::string_view name_space) {
          name_space.find("/trianglesets/") != std::string_view::npos;
 }
 
-void check_extensions(const pugi::xml_node& model, std::vector<std::string>& notes) {
+void check_extensions(const pugi::xml_node& model, Notes& notes) {
   const std::string required =
       std::string(" ") + model.attribute("requiredextensions").value() + " ";
   for (const pugi::xml_attribute& attribute : model.attributes()) {
@@ -107,7 +116,7 @@ void check_extensions(const pugi::xml_node& model, std::vector<std::string>& not
   const auto lattice = model.find_node([](const pugi::xml_node& node) {
     return std::string_view(node.name()).ends_with(":beamlattice");
   });
-  if (lattice) notes.emplace_back("a lattice of beams (3MF) is left out");
+  if (lattice) notes.add("a lattice of beams (3MF) is left out");
 }
 
 /// Parts in other files (the production extension) would be left out.
@@ -135,15 +144,15 @@ void add_pictures(const pugi::xml_node& model, std::set<std::string>& pictures) 
   }
 }
 
-std::string mended_3mf(std::string_view file, const std::vector<std::string>& names,
-                       std::vector<std::string>& notes) {
+std::string mended_3mf(const ZipArchive& archive, const std::vector<std::string>& names,
+                       Notes& notes) {
   std::map<std::string, std::string> kept;
   std::set<std::string> pictures;
   for (const std::string& name : names) {
     if (is_picture(name) || name.ends_with('/')) continue;
-    std::string content = zip_content(file, name);
+    std::string content = archive.content(name);
     if (name.ends_with(".model")) {
-      const pugi::xml_document document = parsed_xml(content, name);
+      const pugi::xml_document document = parsed_xml(content, "the XML of " + name);
       check_extensions(document.document_element(), notes);
       check_paths(document.document_element());
       add_pictures(document.document_element(), pictures);
@@ -152,28 +161,28 @@ std::string mended_3mf(std::string_view file, const std::vector<std::string>& na
     kept.emplace(name, std::move(content));
   }
   for (const std::string& name : names) {
-    if (is_picture(name) && pictures.contains(zip_name(name))) kept[name] = zip_content(file, name);
+    if (is_picture(name) && pictures.contains(zip_name(name))) kept[name] = archive.content(name);
   }
   return make_zip(kept);
 }
 
 /// Nothing for an archive of another kind.
-std::optional<std::string> mended_archive(std::string_view file, std::vector<std::string>& notes) {
-  const std::vector<std::string> names = zip_names(file);
+std::optional<std::string> mended_archive(std::string_view file, Notes& notes) {
+  const ZipArchive archive(file);
+  const std::vector<std::string> names = archive.names();
   const bool is_3mf = std::any_of(names.begin(), names.end(),
                                   [](const std::string& name) { return name.ends_with(".model"); });
-  if (is_3mf) return mended_3mf(file, names, notes);
-  const auto collada = document_of_zae(file, names);
+  if (is_3mf) return mended_3mf(archive, names, notes);
+  const auto collada = document_of_zae(archive, names);
   if (!collada) return std::nullopt;
-  std::map<std::string, std::string> files = unpacked(file, names);
-  files[*collada] = mend_collada(files[*collada], notes);
+  std::map<std::string, std::string> files = unpacked(archive, names);
+  files[*collada] = mended_collada(files[*collada], notes);
   return make_zip(files);
 }
 
 }  // namespace
 
-void mend_model(const std::filesystem::path& model, ModelFiles& files,
-                std::vector<std::string>& notes) {
+void mend_model(const std::filesystem::path& model, ModelFiles& files, Notes& notes) {
   const auto file = files.content(model.string());
   if (file == nullptr) return;
   const std::string extension = lower_case(model.extension().string());
@@ -182,9 +191,9 @@ void mend_model(const std::filesystem::path& model, ModelFiles& files,
     auto archive = mended_archive(file->whole(), notes);
     if (archive) files.replace(model.string(), std::move(*archive));
   } else if (is_collada(extension, head)) {
-    files.replace(model.string(), mend_collada(file->whole(), notes));
+    files.replace(model.string(), mended_collada(file->whole(), notes));
   } else if (is_utf16(head)) {
-    files.replace(model.string(), as_utf8(parsed_xml(file->whole(), "the file")));
+    files.replace(model.string(), as_utf8(parsed_xml(file->whole(), "its XML")));
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <import/model_files.hpp>
+#include <import/source_model.hpp>
 
 #include <filesystem>
 #include <string>
@@ -17,7 +18,6 @@ namespace glidar::import {
 ///  - XML in UTF-16.
 /// Notes what is left out. Throws Refusal for what Assimp would silently omit: 3MF with
 /// extensions that it requires, or with parts in files of their own.
-void mend_model(const std::filesystem::path& model, ModelFiles& files,
-                std::vector<std::string>& notes);
+void mend_model(const std::filesystem::path& model, ModelFiles& files, Notes& notes);
 
 }  // namespace glidar::import

@@ -6,10 +6,14 @@
 
 #include <glidar/io/files/content_hash.hpp>
 
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
+#include <functional>
 #include <utility>
 
 namespace glidar::import {
@@ -49,7 +53,8 @@ std::string_view FileContent::head(std::size_t end) {
   return std::string_view(bytes_).substr(0, end);
 }
 
-std::string FileContent::hash() {
+const std::string& FileContent::hash() {
+  if (!hash_.empty()) return hash_;
   ContentHash hash;
   hash.add(bytes_.data(), bytes_.size());
   // Not beyond the size that importers saw, although the file may have grown.
@@ -61,15 +66,34 @@ std::string FileContent::hash() {
     left = is_at_end_ ? 0 : left - got;
   }
   is_at_end_ = true;
-  return hex(hash.value());
+  hash_ = hex(hash.value());
+  return hash_;
 }
 
-ModelFiles::ModelFiles(ModelFolder folder)
-    : folder_(std::move(folder)), root_(open_root(folder_.root)) {}
+void FileContent::forget(const char* end) {
+  const char* const begin = bytes_.data();
+  if (std::less<>()(end, begin) || std::less<>()(begin + bytes_.size(), end)) return;
+  hash();
+  // Whole pages, as the system frees them; the buffer begins anywhere.
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t unaligned = page - reinterpret_cast<std::uintptr_t>(begin) % page;
+  const auto read = static_cast<std::size_t>(end - begin);
+  next_forgotten_ = end + kFirstPiece;
+  if (read < unaligned + kFirstPiece) return;
+  ::madvise(bytes_.data() + unaligned, (read - unaligned) / page * page, MADV_DONTNEED);
+}
+
+ModelFiles::ModelFiles(const ModelFolder& folder) {
+  for (const std::filesystem::path& root : folder.allowed())
+    roots_.emplace_back(root, open_root(root));
+}
 
 std::shared_ptr<FileContent> ModelFiles::content(const std::string& path) {
   if (const auto known = entries_.find(path); known != entries_.end()) return known->second.content;
-  UniqueFd file = open_beneath(root_.get(), folder_.root, path);
+  const auto root = std::find_if(roots_.begin(), roots_.end(),
+                                 [&](const auto& one) { return is_inside(path, one.first); });
+  if (root == roots_.end()) return nullptr;
+  UniqueFd file = open_beneath(root->second.get(), root->first, path);
   struct stat info {};
   if (!file || ::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode)) return nullptr;
   const auto content =

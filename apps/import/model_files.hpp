@@ -6,10 +6,13 @@
 #include <glidar/io/model/model_folder.hpp>
 
 #include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glidar::import {
@@ -33,24 +36,32 @@ class FileContent {
   std::string_view whole() { return head(size_); }
   /// Hexadecimal hash of the whole file. Bytes that were not read before are hashed but not kept,
   /// and cannot be read afterwards.
-  std::string hash();
+  const std::string& hash();
+  /// Frees the memory of the bytes before `end`, of the whole file, in large pieces; they are 0
+  /// afterwards. Nothing if `end` is in another text.
+  void forget_before(const char* end) {
+    if (!std::less<>()(end, next_forgotten_)) forget(end);
+  }
 
  private:
   std::size_t read_some(char* to, std::size_t size);
+  void forget(const char* end);
 
   UniqueFd file_;
   std::size_t size_;
   std::string bytes_;
+  std::string hash_;                      ///< empty until it is known
+  const char* next_forgotten_ = nullptr;  ///< end of the next piece
   bool is_at_end_ = false;
 };
 
 /// The files of a model, each opened once.
 class ModelFiles {
  public:
-  explicit ModelFiles(ModelFolder folder);
+  explicit ModelFiles(const ModelFolder& folder);
 
-  /// The content of a regular file below the model's root; `path` is canonical. Null if it cannot
-  /// be opened.
+  /// The content of a regular file below the model's root or a texture folder; `path` is canonical.
+  /// Null if it cannot be opened.
   std::shared_ptr<FileContent> content(const std::string& path);
   /// Frees the content of a file that is no longer needed; keeps its hash.
   void release(const std::string& path);
@@ -72,8 +83,7 @@ class ModelFiles {
     std::string hash;  ///< empty until it is known
   };
 
-  ModelFolder folder_;
-  UniqueFd root_;
+  std::vector<std::pair<std::filesystem::path, UniqueFd>> roots_;
   std::vector<std::string> paths_;
   std::map<std::string, Entry> entries_;
   std::map<std::string, std::string> replacements_;

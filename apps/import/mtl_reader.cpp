@@ -119,10 +119,7 @@ MapStatement parse_map(std::string_view text) {
 }  // namespace
 
 void MtlReader::note_line(const std::string& what) {
-  constexpr std::uint64_t kShown = 10;
-  if (++bad_lines_ <= kShown) {
-    add_note(source_, fmt::format("{}, line {}: {}", file_, line_, what));
-  }
+  source_.notes.add_at(fmt::format("{}, line {}", file_, line_), what);
 }
 
 void MtlReader::begin_material(std::string_view name) {
@@ -275,17 +272,15 @@ void MtlReader::finish() {
     if (!entry.has_ambient || m.ambient.isZero(0.0F)) m.ambient = m.diffuse;
     if (entry.illumination < 2) m.specular.setZero();
     if (entry.has_diffuse && m.diffuse.isZero(0.0F) && source.diffuse) {
-      add_note(source_, "material '" + shown(name) + "': its Kd 0 0 0 makes its texture black");
+      source_.notes.add("material '" + shown(name) + "': its Kd 0 0 0 makes its texture black");
     }
   }
   if (!missing_.empty()) {
-    constexpr std::size_t kLongest = 500;
-    add_note(source_,
-             "materials that no material file has are white: " + missing_.substr(0, kLongest));
+    source_.notes.add("materials that no material file has are white: " + missing_);
   }
   std::string words;
   for (const std::string& word : unused_) words += (words.empty() ? "" : ", ") + word;
-  if (!words.empty()) add_note(source_, "words of material files that are not used: " + words);
+  if (!words.empty()) source_.notes.add("words of material files that are not used: " + words);
 }
 
 }  // namespace glidar::import

@@ -59,7 +59,6 @@ class MtlReader {
   std::set<std::string> unused_;          ///< keywords and options
   std::set<std::size_t> has_normal_map_;  ///< materials
   std::string missing_;                   ///< names of materials
-  std::uint64_t bad_lines_ = 0;
 };
 
 }  // namespace glidar::import

@@ -16,7 +16,6 @@
 #include <array>
 #include <charconv>
 #include <map>
-#include <set>
 #include <span>
 #include <tuple>
 
@@ -47,15 +46,18 @@ constexpr std::array<std::string_view, 17> kFreeForm = {
 
 class ObjReader {
  public:
-  explicit ObjReader(std::string_view text) : text_(text, true, true) {}
+  ObjReader(std::string_view text, FileContent& file, SourceModel& source)
+      : text_(text, true, true), file_(file), source_(source) {}
 
   void read() {
     while (text_.find_word()) {
       read_statement(text_.word());
       text_.next_line();
+      file_.forget_before(text_.at());
     }
     check_indices();
     scale_colours(lists_.colours);
+    note_unused_statements();
   }
 
   /// The lists; the materials of parts are indices into materials().
@@ -63,9 +65,8 @@ class ObjReader {
   [[nodiscard]] const std::vector<std::string>& libraries() const { return libraries_; }
   [[nodiscard]] const std::vector<std::string>& materials() const { return materials_; }
 
-  void add_notes(SourceModel& source) const {
-    source.lines_and_points = lines_and_points_;
-    for (const std::string& note : notes_) add_note(source, note);
+ private:
+  void note_unused_statements() {
     std::string others;
     std::string curves;
     for (const auto& [keyword, line] : unused_) {
@@ -75,16 +76,15 @@ class ObjReader {
       list += fmt::format("{}'{}' (line {})", list.empty() ? "" : ", ", shown(keyword), line);
     }
     if (!curves.empty()) {
-      add_note(source, "free-form curves and surfaces are left out: " + curves +
-                           "; export the model as polygons");
+      source_.notes.add("free-form curves and surfaces are left out: " + curves +
+                        "; export the model as polygons");
     }
-    if (!others.empty()) add_note(source, "statements that are not used: " + others);
+    if (!others.empty()) source_.notes.add("statements that are not used: " + others);
     if (more_unused_ > 0) {
-      add_note(source, fmt::format("other statements that are not used: {}", more_unused_));
+      source_.notes.add(fmt::format("other statements that are not used: {}", more_unused_));
     }
   }
 
- private:
   void read_statement(std::string_view keyword) {
     line_ = text_.line();
     if (keyword == "v") return read_vertex();
@@ -101,7 +101,7 @@ class ObjReader {
     if (keyword == "mtllib") return add_library(text_.rest());
     if (keyword == "s") return read_smoothing();
     if (keyword == "l" || keyword == "p") {
-      ++lines_and_points_;
+      ++source_.lines_and_points;
       return;
     }
     note_unused(keyword);
@@ -130,21 +130,21 @@ class ObjReader {
     }
     lists_.positions.emplace_back(numbers_[0], numbers_[1], numbers_[2]);
     if (count == 4 && numbers_[3] != 1.0) {
-      note_once("weights of vertices are not used: they belong to curves and surfaces");
+      source_.notes.add("weights of vertices are not used: they belong to curves and surfaces");
     }
     if (count >= 6) {
       if (lists_.colours.empty() && lists_.positions.size() > 1) {
-        note_once("vertices without a colour are white");
+        source_.notes.add("vertices without a colour are white");
       }
       lists_.colours.resize(lists_.positions.size() - 1, Eigen::Vector3f::Ones());
       lists_.colours.push_back(
           Eigen::Vector3d(numbers_[3], numbers_[4], numbers_[5]).cast<float>());
       if (count == 7 && numbers_[6] != 1.0) {
-        note_once("the opacity of vertices (their seventh number) is not used");
+        source_.notes.add("the opacity of vertices (their seventh number) is not used");
       }
     } else if (!lists_.colours.empty()) {
       lists_.colours.emplace_back(Eigen::Vector3f::Ones());
-      note_once("vertices without a colour are white");
+      source_.notes.add("vertices without a colour are white");
     }
   }
 
@@ -154,7 +154,7 @@ class ObjReader {
     const Eigen::Vector2d uv(numbers_[0], count > 1 ? numbers_[1] : 0.0);
     lists_.corner_uvs.push_back(uv.cast<float>());
     if (count == 3 && numbers_[2] != 0.0) {
-      note_once("the third texture coordinate is not used");
+      source_.notes.add("the third texture coordinate is not used");
     }
   }
 
@@ -177,11 +177,14 @@ class ObjReader {
   }
 
   void add_library(std::string_view name) {
-    if (name.empty()) return note_once(fmt::format("line {}: 'mtllib' names no file", line_));
+    constexpr std::size_t kMost = 1000;
+    if (name.empty()) return note_line(line_, "'mtllib' names no file");
     const std::string text(name);
-    if (std::find(libraries_.begin(), libraries_.end(), text) == libraries_.end()) {
-      libraries_.push_back(text);
+    if (std::find(libraries_.begin(), libraries_.end(), text) != libraries_.end()) return;
+    if (libraries_.size() == kMost) {
+      refuse_line(line_, fmt::format("'mtllib': more than {} material files", kMost));
     }
+    libraries_.push_back(text);
   }
 
   void read_smoothing() {
@@ -204,8 +207,8 @@ class ObjReader {
     }
   }
 
-  void note_once(const std::string& note) {
-    if (noted_.insert(note).second) notes_.push_back(note);
+  void note_line(std::uint64_t line, const std::string& what) {
+    source_.notes.add_at(fmt::format("line {}", line), what);
   }
 
   /// An index of a corner, from 1, negative ones from the end. Removes it from the word.
@@ -231,11 +234,7 @@ class ObjReader {
   }
 
   void note_missing(const char* what, std::uint64_t line) {
-    std::uint64_t& first = what[1] == 't' ? missing_uv_line_ : missing_normal_line_;
-    if (first != 0) return;
-    first = line;
-    note_once(
-        fmt::format("line {}: a face names a '{}' that is missing: read without", line, what));
+    note_line(line, fmt::format("a face names a '{}' that is missing: read without", what));
   }
 
   void read_corner(std::string_view word) {
@@ -276,10 +275,9 @@ class ObjReader {
     for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
       read_corner(word);
     }
-    if (corners_.empty()) refuse_line(line_, "'f' has no corners");
     if (corners_.size() < 3) {
-      ++lines_and_points_;
-      return note_once(fmt::format("line {}: a face has fewer than 3 corners: left out", line_));
+      ++source_.lines_and_points;
+      return note_line(line_, "a face has fewer than 3 corners: left out");
     }
     FaceLists& faces = lists_.faces;
     append(uvs_, faces.uvs);
@@ -355,7 +353,7 @@ class ObjReader {
       lacks[f] = missing > 0;
       if (missing == 0) has_some[faces.parts.empty() ? 0 : faces.parts[f]] = true;
       if (missing == 0 || missing == static_cast<std::ptrdiff_t>(normals.size())) continue;
-      note_once("normals of faces that name them for some corners only are not used");
+      source_.notes.add("normals of faces that name them for some corners only are not used");
       std::fill(normals.begin(), normals.end(), kNoIndex);
     }
     std::map<std::uint32_t, std::uint32_t> others;
@@ -385,7 +383,7 @@ class ObjReader {
         faces.normals.empty() ||
         std::find(faces.normals.begin(), faces.normals.end(), kNoIndex) != faces.normals.end();
     if (smoothing_line_ != 0 && lacks_normals) {
-      note_once(
+      source_.notes.add(
           fmt::format("smoothing groups (line {}) are not used: normals follow the crease "
                       "angle",
                       smoothing_line_));
@@ -393,6 +391,8 @@ class ObjReader {
   }
 
   TextCursor text_;
+  FileContent& file_;
+  SourceModel& source_;
   std::uint64_t line_ = 0;
   FileLists lists_;
   std::array<double, 8> numbers_{};
@@ -411,14 +411,9 @@ class ObjReader {
   std::map<std::string, std::size_t> material_numbers_;
   std::vector<std::string> materials_;
   std::vector<std::string> libraries_;
-  std::uint64_t lines_and_points_ = 0;
   std::uint64_t smoothing_line_ = 0;
-  std::uint64_t missing_uv_line_ = 0;
-  std::uint64_t missing_normal_line_ = 0;
   std::map<std::string, std::uint64_t> unused_;  ///< keyword: line of the first one
   std::uint64_t more_unused_ = 0;
-  std::set<std::string> noted_;
-  std::vector<std::string> notes_;
 };
 
 /// The files of a 'mtllib' statement: one whose name may have spaces, or several.
@@ -450,9 +445,9 @@ SourceModel read_obj(const ReaderInput& input) {
   SourceModel source;
   source.format = "Wavefront Object";
   std::string storage;
-  ObjReader reader(utf8_text(input.bytes(), storage));
+  ObjReader reader(utf8_text(input.bytes(), storage), input.content(), source);
   reader.read();
-  storage = {};
+  free_memory(storage);
   input.release();
   MtlReader materials(source);
   for (const std::string& library : reader.libraries()) read_library(library, input, materials);
@@ -461,7 +456,6 @@ SourceModel read_obj(const ReaderInput& input) {
   for (const std::string& name : reader.materials()) numbers.push_back(materials.number_of(name));
   for (FilePart& part : lists.parts) part.material = numbers.at(part.material);
   materials.finish();
-  reader.add_notes(source);
   add_meshes(std::move(lists), source);
   return source;
 }

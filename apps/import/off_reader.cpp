@@ -56,14 +56,13 @@ struct OffCounts {
 
 class OffText {
  public:
-  OffText(std::string_view file, OffKind kind, TextCursor text, SourceModel& source,
-          FileLists& lists)
-      : kind_(kind), text_(text), end_(file.data() + file.size()), source_(source), lists_(lists) {}
+  OffText(OffKind kind, TextCursor text, FileContent& file, SourceModel& source, FileLists& lists)
+      : kind_(kind), text_(text), file_(file), source_(source), lists_(lists) {}
 
   void read() {
     const OffCounts counts = read_counts();
     // Lower bounds: a vertex takes at least 4 bytes, a face 2.
-    const auto left = static_cast<std::uint64_t>(end_ - text_.at());
+    const std::uint64_t left = text_.left();
     if (counts.vertices > left / 4 + 1 || counts.faces > left / 2 + 1) {
       refuse_line(text_.line(),
                   fmt::format("the file states {} vertices and {} faces, and ends too "
@@ -97,6 +96,7 @@ class OffText {
 
   /// The numbers of the next line that has some.
   void read_line(const char* what, std::uint64_t number) {
+    file_.forget_before(text_.at());
     if (!text_.find_word()) {
       refuse_line(text_.line(), fmt::format("the file ends before {} {}", what, number));
     }
@@ -112,10 +112,15 @@ class OffText {
     read_line("vertex", number);
     const std::size_t fixed = 3 + (kind_.normals ? 3U : 0U) + (kind_.uvs ? 2U : 0U);
     const std::size_t colour = numbers_.size() - std::min(fixed, numbers_.size());
-    const bool fits =
-        numbers_.size() >= fixed && (kind_.colours ? colour == 3 || colour == 4 : colour == 0);
+    const bool is_colour = colour == 3 || colour == 4;
+    const bool fits = numbers_.size() >= fixed && (is_colour || (!kind_.colours && colour == 0));
     if (!fits) {
       refuse_line(text_.line(), fmt::format("vertex {} has {} numbers", number, numbers_.size()));
+    }
+    if (is_colour && !kind_.colours) {
+      source_.notes.add(
+          "numbers of vertices that the first line does not state are not used: colours, or "
+          "normals");
     }
     std::size_t at = 0;
     const auto next = [&] { return numbers_[at++]; };
@@ -166,7 +171,7 @@ class OffText {
   void add_colour(std::uint64_t number, std::size_t first) {
     const std::size_t count = numbers_.size() - first;
     if (count == 1 || count == 2) {
-      add_note(source_, "colours of faces by their number in a list are not used");
+      source_.notes.add("colours of faces by their number in a list are not used");
     } else if (count > 4) {
       refuse_line(text_.line(), fmt::format("face {} has {} numbers too many", number, count - 4));
     }
@@ -181,7 +186,7 @@ class OffText {
 
   OffKind kind_;
   TextCursor text_;
-  const char* end_;
+  FileContent& file_;
   SourceModel& source_;
   FileLists& lists_;
   std::vector<double> numbers_;  ///< of the current line
@@ -205,8 +210,8 @@ class OffBinary {
     for (std::uint32_t i = 0; i < vertices; ++i) read_vertex();
     for (std::uint32_t i = 0; i < faces; ++i) read_face();
     if (at_ < file_.size()) {
-      add_note(source_,
-               fmt::format("{} bytes after the last face are not used", file_.size() - at_));
+      source_.notes.add(
+          fmt::format("{} bytes after the last face are not used", file_.size() - at_));
     }
   }
 
@@ -283,7 +288,7 @@ class OffBinary {
 void finish_colours(SourceModel& source, FileLists& lists) {
   auto& faces = lists.faces.colours;
   if (!faces.empty() && !lists.colours.empty()) {
-    add_note(source, "colours of faces are not used: the vertices have colours too");
+    source.notes.add("colours of faces are not used: the vertices have colours too");
     faces.clear();
   }
   if (!faces.empty()) faces.resize(lists.faces.size(), Eigen::Vector3f::Constant(-1.0F));
@@ -320,7 +325,7 @@ SourceModel read_off(const ReaderInput& input) {
     OffBinary(file, static_cast<std::size_t>(ahead.at() - file.data()), kind, source, lists).read();
     source.is_single_precision = true;
   } else {
-    OffText(file, kind, text, source, lists).read();
+    OffText(kind, text, input.content(), source, lists).read();
   }
   input.release();
   finish_colours(source, lists);

@@ -39,7 +39,7 @@ Reader reader_of_content(std::string_view head) {
 }  // namespace
 
 std::string_view ReaderInput::bytes() const {
-  return files.content(model.string())->whole();
+  return content().whole();
 }
 
 std::shared_ptr<FileContent> ReaderInput::companion(const std::string& name) const {

@@ -23,7 +23,9 @@ struct ReaderInput {
 
   /// The bytes of the model itself.
   [[nodiscard]] std::string_view bytes() const;
-  /// Frees them.
+  /// The file itself, whose read bytes can be forgotten.
+  [[nodiscard]] FileContent& content() const { return *files.content(model.string()); }
+  /// Frees it.
   void release() const { files.release(model.string()); }
   /// A file that the model names, relative to its folder. Null, with a note in the log, if it is
   /// missing or must not be read.

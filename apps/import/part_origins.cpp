@@ -186,8 +186,9 @@ Eigen::AlignedBox3d box_of(const SourceModel& source) {
   return box;
 }
 
-std::vector<Eigen::Vector3d> part_origins(const SourceModel& source) {
-  const Eigen::Vector3d common = origin_for(box_of(source));
+std::vector<Eigen::Vector3d> part_origins(const SourceModel& source,
+                                          const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d common = origin_for(box);
   std::vector<Eigen::Vector3d> origins(source.placed.size(), common);
   const std::vector<Group> parts = measure(source, common);
   const bool is_rounded =

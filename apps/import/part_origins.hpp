@@ -17,7 +17,9 @@ namespace glidar::import {
 /// a part by more than kMaxShare of the part's size, and by more than kMaxRounding units or
 /// kMaxShare of the model's size, parts far from the common origin get their own origins, at most
 /// kMaxOrigins in all. Parts that share a vertex position share their origin, so that no gaps open.
-std::vector<Eigen::Vector3d> part_origins(const SourceModel& source);
+/// `box`: of the model.
+std::vector<Eigen::Vector3d> part_origins(const SourceModel& source,
+                                          const Eigen::AlignedBox3d& box);
 
 inline constexpr double kMaxRounding = 1e-6;
 inline constexpr double kMaxShare = 1e-7;

@@ -90,7 +90,7 @@ class HeaderReader {
     for (const char* start : {"el", "pr", "fo", "end", "list"}) {
       if (small.starts_with(start)) refuse_line(header_.lines, found);
     }
-    header_.notes.push_back(fmt::format("line {}: {}: not used", header_.lines, found));
+    header_.notes.add_at(fmt::format("line {}", header_.lines), found + ": not used");
   }
 
   void read_format(TextCursor& words) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <import/source_model.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -39,7 +41,7 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
   std::vector<std::string> textures;  ///< of "comment TextureFile NAME"
-  std::vector<std::string> notes;
+  Notes notes;
   std::size_t size = 0;  ///< bytes
   std::uint64_t lines = 0;
 };

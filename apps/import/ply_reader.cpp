@@ -71,6 +71,7 @@ class BinaryValues {
   }
   void require(std::uint64_t count, PlyType type) const { require(count, size_of(type)); }
 
+  [[nodiscard]] const char* at() const { return at_; }
   [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
   [[noreturn]] void fail(const std::string& found) const {
     refuse_byte(static_cast<std::size_t>(at_ - from_),
@@ -104,7 +105,7 @@ class BinaryValues {
 class TextValues {
  public:
   TextValues(std::string_view text, std::uint64_t lines_before)
-      : text_(text, false, false), end_(text.data() + text.size()), lines_before_(lines_before) {}
+      : text_(text, false, false), lines_before_(lines_before) {}
 
   void begin_entry(const PlyElement& element, std::uint64_t entry) {
     element_ = &element;
@@ -138,7 +139,8 @@ class TextValues {
   }
   void require(std::uint64_t count, PlyType) const { require(count, std::uint64_t{1}); }
 
-  [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - text_.at()); }
+  [[nodiscard]] const char* at() const { return text_.at(); }
+  [[nodiscard]] std::size_t left() const { return text_.left(); }
   [[noreturn]] void fail(const std::string& found) const {
     refuse_line(text_.line() + lines_before_,
                 fmt::format("{} {}: {}", shown(element_->name), entry_, found));
@@ -149,7 +151,6 @@ class TextValues {
 
  private:
   TextCursor text_;
-  const char* end_;
   std::uint64_t lines_before_;
   const PlyElement* element_ = nullptr;
   std::uint64_t entry_ = 0;
@@ -171,7 +172,8 @@ double full_scale(PlyType type) {
 template <class Values>
 class PlyReader {
  public:
-  PlyReader(const PlyHeader& header, Values& values) : header_(header), values_(values) {}
+  PlyReader(const PlyHeader& header, Values& values, FileContent& file, SourceModel& source)
+      : header_(header), values_(values), file_(file), source_(source) {}
 
   void read() {
     for (const PlyElement& element : header_.elements) {
@@ -190,21 +192,23 @@ class PlyReader {
       throw Refusal{"the PLY file has no element 'vertex'", "export the model again"};
     }
     const std::string rest = values_.rest();
-    if (!rest.empty()) notes_.push_back("after the last element: " + rest + ", not used");
+    if (!rest.empty()) source_.notes.add("after the last element: " + rest + ", not used");
     finish();
   }
 
   FileLists take_lists() { return std::move(lists_); }
-  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
-  [[nodiscard]] std::uint64_t lines_and_points() const { return lines_and_points_; }
-  [[nodiscard]] std::size_t vertices() const { return vertex_count_; }
   /// TextureFile of each part.
   [[nodiscard]] const std::vector<std::size_t>& textures() const { return textures_; }
 
  private:
+  void begin_entry(const PlyElement& element, std::uint64_t entry) {
+    values_.begin_entry(element, entry);
+    file_.forget_before(values_.at());
+  }
+
   /// A count beyond the file's size, before memory is allocated for it.
   void check_size(const PlyElement& element) {
-    values_.begin_entry(element, 0);
+    begin_entry(element, 0);
     std::uint64_t each = 0;
     for (const PlyProperty& p : element.properties) each += size_of(p.count.value_or(p.type));
     if (each > 0) {
@@ -235,14 +239,14 @@ class PlyReader {
 
   void skip(const PlyElement& element) {
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      values_.begin_entry(element, i);
+      begin_entry(element, i);
       for (const PlyProperty& property : element.properties) skip_value(property);
       end_entry();
     }
     if (element.name == "edge") {
-      lines_and_points_ += element.count;
+      source_.lines_and_points += element.count;
     } else {
-      notes_.push_back("element '" + shown(element.name) + "' is not used");
+      source_.notes.add("element '" + shown(element.name) + "' is not used");
     }
   }
 
@@ -254,7 +258,7 @@ class PlyReader {
       }
     }
     if (!names.empty()) {
-      notes_.push_back(
+      source_.notes.add(
           fmt::format("properties of '{}' that are not used: {}", element.name, names));
     }
   }
@@ -290,7 +294,8 @@ class PlyReader {
     const std::size_t v = element.find({"t", "v", "texture_v", "tex_v", "v0"});
     const auto uv = three(element, {u, v, v}, used);
     note_unused(element, used);
-    single_precision_ = element.properties[(*xyz)[0]].type == PlyType::f32 && !is_text_;
+    source_.is_single_precision = element.properties[(*xyz)[0]].type == PlyType::f32 &&
+                                  header_.encoding != PlyEncoding::ascii;
     lists_.positions.reserve(element.count);
     if (normal) lists_.normals.reserve(element.count);
     if (rgb) lists_.colours.reserve(element.count);
@@ -307,11 +312,10 @@ class PlyReader {
       if (rgb) lists_.colours.push_back(colour_of(element, *rgb, entry));
       if (uv) lists_.uvs.push_back(Eigen::Vector2d(at(u), at(v)).cast<float>());
     }
-    vertex_count_ = lists_.positions.size();
   }
 
   void read_entry(const PlyElement& element, std::uint64_t number, std::vector<double>& entry) {
-    values_.begin_entry(element, number);
+    begin_entry(element, number);
     for (std::size_t i = 0; i < entry.size(); ++i) {
       const PlyProperty& property = element.properties[i];
       if (property.count) {
@@ -395,7 +399,7 @@ class PlyReader {
     std::vector<double> entry(element.properties.size());
     std::vector<double> uvs;
     for (std::uint64_t n = 0; n < element.count; ++n, ++face_) {
-      values_.begin_entry(element, n);
+      begin_entry(element, n);
       read_face(element, wanted, entry, uvs);
       excess_ += values_.end_entry() ? 1 : 0;
       add_face(element, wanted, entry, uvs);
@@ -429,7 +433,7 @@ class PlyReader {
   void add_face(const PlyElement& element, const FaceProperties& wanted,
                 const std::vector<double>& entry, const std::vector<double>& uvs) {
     if (corners_.size() < 3) {
-      ++lines_and_points_;
+      ++source_.lines_and_points;
       return;
     }
     const std::size_t before = lists_.faces.vertices.size();
@@ -499,7 +503,7 @@ class PlyReader {
     note_unused(element, {indices});
     std::vector<double> strip;
     for (std::uint64_t n = 0; n < element.count; ++n, ++face_) {
-      values_.begin_entry(element, n);
+      begin_entry(element, n);
       read_strip(element, indices, strip);
       end_entry();
       add_strip(strip);
@@ -536,22 +540,22 @@ class PlyReader {
 
   void finish() {
     FaceLists& faces = lists_.faces;
-    if (limit_ > vertex_count_) {
+    if (limit_ > lists_.positions.size()) {
       throw Refusal{fmt::format("face {} names vertex {}, but there are {} (from 0)", limit_face_,
-                                limit_ - 1, vertex_count_),
+                                limit_ - 1, lists_.positions.size()),
                     "repair the file, or export the model again"};
     }
     if (!faces.uvs.empty()) faces.uvs.resize(faces.vertices.size(), kNoIndex);
     if (!faces.parts.empty()) faces.parts.resize(faces.size(), 0);
     if (excess_ > 0) {  // MeshLab writes other colours than its header states
-      notes_.push_back(fmt::format(
+      source_.notes.add(fmt::format(
           "faces with more numbers than the header states: {}; their last numbers, and colours of "
           "faces, are not used",
           excess_));
       faces.colours.clear();
     }
     if (!faces.colours.empty() && !lists_.colours.empty()) {
-      notes_.emplace_back("colours of faces are not used: the vertices have colours too");
+      source_.notes.add("colours of faces are not used: the vertices have colours too");
       faces.colours.clear();
     }
     if (!faces.colours.empty()) faces.colours.resize(faces.size(), Eigen::Vector3f::Ones());
@@ -559,21 +563,15 @@ class PlyReader {
     scale_colours(faces.colours);
   }
 
- public:
-  bool is_text_ = false;
-  bool single_precision_ = false;
-
- private:
   const PlyHeader& header_;
   Values& values_;
+  FileContent& file_;
+  SourceModel& source_;
   FileLists lists_;
   std::vector<std::uint32_t> corners_;  ///< of the current face
   std::map<std::pair<double, double>, std::uint32_t> parts_;
   std::map<std::string, std::uint32_t> nodes_;  ///< of objects
   std::vector<std::size_t> textures_;
-  std::vector<std::string> notes_;
-  std::size_t vertex_count_ = 0;
-  std::uint64_t lines_and_points_ = 0;
   std::uint64_t face_ = 0;
   std::uint64_t excess_ = 0;      ///< faces with more numbers than the header states
   std::uint32_t limit_ = 0;       ///< one more than the largest index
@@ -596,7 +594,7 @@ void add_materials(const PlyHeader& header, const std::vector<std::size_t>& text
       continue;
     }
     if (!header.textures.empty()) {
-      add_note(source, "faces name textures that no line TextureFile names: they are white");
+      source.notes.add("faces name textures that no line TextureFile names: they are white");
     }
     lists.parts[i].material = source.materials.size();
     source.materials.emplace_back();
@@ -606,21 +604,17 @@ void add_materials(const PlyHeader& header, const std::vector<std::size_t>& text
 template <class Values>
 void read_body(const ReaderInput& input, const PlyHeader& header, Values values,
                SourceModel& source) {
-  PlyReader<Values> reader(header, values);
-  reader.is_text_ = header.encoding == PlyEncoding::ascii;
+  source.notes.add(header.notes);
+  PlyReader<Values> reader(header, values, input.content(), source);
   reader.read();
   input.release();
   FileLists lists = reader.take_lists();
-  for (const std::string& note : header.notes) add_note(source, note);
-  for (const std::string& note : reader.notes()) add_note(source, note);
-  source.lines_and_points = reader.lines_and_points();
-  source.is_single_precision = reader.single_precision_;
   if (lists.faces.vertices.empty()) {
-    throw no_triangles(fmt::format(", only {} points", reader.vertices()));
+    throw no_triangles(fmt::format(", only {} points", lists.positions.size()));
   }
   const bool has_uvs = !lists.uvs.empty() || !lists.faces.uvs.empty();
   if (!header.textures.empty() && !has_uvs) {
-    add_note(source, "the file names a texture but has no texture coordinates");
+    source.notes.add("the file names a texture but has no texture coordinates");
   }
   add_materials(header, reader.textures(), lists, source);
   add_meshes(std::move(lists), source);

@@ -183,7 +183,7 @@ bool add_face(SourceMesh& mesh, std::span<const std::uint32_t> corners) {
 
 void note_intersecting(SourceModel& source, std::size_t polygons) {
   if (polygons == 0) return;
-  source.notes.push_back(
+  source.notes.add(
       fmt::format("polygons that intersect themselves, parts of which are left out: {}", polygons));
 }
 

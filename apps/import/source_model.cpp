@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace glidar::import {
 
@@ -35,28 +37,68 @@ std::uint32_t add_node(std::vector<SourceNode>& nodes, const std::string& name,
   return static_cast<std::uint32_t>(nodes.size() - 1);
 }
 
-void check_size(const SourceModel& source) {
-  std::uint64_t triangles = 0;
-  for (const Placed& placed : source.placed) {
-    triangles += source.meshes.at(placed.mesh).triangles.size();
-    if (triangles > kMaxTriangles) break;
+void Notes::add(const Note& note) {
+  constexpr std::size_t kMost = 50;
+  constexpr std::size_t kMostPlaces = 10;
+  constexpr std::size_t kLongest = 1000;
+  const auto [known, is_new] = numbers_.try_emplace(note.text.substr(0, kLongest), notes_.size());
+  if (!is_new) {
+    notes_[known->second].count += note.place.empty() ? 0 : note.count;
+    return;
   }
-  if (triangles > kMaxTriangles || source.placed.size() > kMaxRecords) {
-    throw Refusal{fmt::format("the instances in its tree have more than {} "
-                              "triangles or {} parts",
-                              kMaxTriangles, kMaxRecords),
-                  "make the model smaller, or place its parts by a scene file"};
+  const auto has_place = [](const Note& one) { return !one.place.empty(); };
+  const bool is_full = notes_.size() == kMost ||
+                       (has_place(note) && std::count_if(notes_.begin(), notes_.end(), has_place) >=
+                                               std::ptrdiff_t{kMostPlaces});
+  if (is_full) {
+    numbers_.erase(known);
+    left_out_ += note.count;
+    return;
   }
-  if (triangles > 0) return;
+  notes_.push_back({known->first, note.place, note.count});
+}
+
+void Notes::add(const std::string& note) {
+  add(Note{note, ""});
+}
+
+void Notes::add_at(const std::string& place, const std::string& note) {
+  add(Note{note, place});
+}
+
+void Notes::add(const Notes& others) {
+  for (const Note& note : others.notes_) add(note);
+  left_out_ += others.left_out_;
+}
+
+std::vector<std::string> Notes::texts() const {
+  std::vector<std::string> all;
+  for (const Note& note : notes_) {
+    std::string& text = all.emplace_back(note.place.empty() ? "" : note.place + ": ");
+    text += note.text;
+    if (note.count > 1) text += fmt::format("; {} more such lines", note.count - 1);
+  }
+  if (left_out_ > 0) all.push_back(fmt::format("and {} more notes", left_out_));
+  return all;
+}
+
+void SourceModel::place(Placed instance) {
+  triangles_ += meshes.at(instance.mesh).triangles.size();
+  placed.push_back(std::move(instance));
+  if (triangles_ <= kMaxTriangles && placed.size() <= kMaxRecords) return;
+  throw Refusal{fmt::format("the instances in its tree have more than {} triangles or {} parts",
+                            kMaxTriangles, kMaxRecords),
+                "make the model smaller, or place its parts by a scene file"};
+}
+
+void require_triangles(const SourceModel& source) {
+  const bool has_some = std::any_of(
+      source.placed.begin(), source.placed.end(),
+      [&](const Placed& placed) { return !source.meshes.at(placed.mesh).triangles.empty(); });
+  if (has_some) return;
   throw no_triangles(source.lines_and_points > 0
                          ? fmt::format(", only {} points and lines", source.lines_and_points)
                          : "");
-}
-
-void add_note(SourceModel& source, const std::string& note) {
-  if (std::find(source.notes.begin(), source.notes.end(), note) == source.notes.end()) {
-    source.notes.push_back(note);
-  }
 }
 
 }  // namespace glidar::import

@@ -29,6 +29,36 @@ Refusal no_triangles(const std::string& instead);
 
 inline constexpr std::uint64_t kMaxTriangles = 100'000'000;  ///< of all instances
 
+/// Frees the memory of a list, which the assignment of an empty one keeps.
+template <class List>
+void free_memory(List& list) {
+  List().swap(list);
+}
+
+/// Messages for the user about a file, in their order, limited in number and length.
+class Notes {
+ public:
+  /// Adds a note once.
+  void add(const std::string& note);
+  /// Adds a note with the first place that it concerns ("line 7") and the number of places.
+  void add_at(const std::string& place, const std::string& note);
+  void add(const Notes& others);
+
+  [[nodiscard]] std::vector<std::string> texts() const;
+
+ private:
+  struct Note {
+    std::string text;
+    std::string place;        ///< empty: it concerns the file
+    std::uint64_t count = 1;  ///< of places
+  };
+  void add(const Note& note);
+
+  std::vector<Note> notes_;
+  std::map<std::string, std::size_t> numbers_;  ///< by text
+  std::uint64_t left_out_ = 0;
+};
+
 /// A mesh with one material, V vertices, T triangles.
 struct SourceMesh {
   std::vector<Eigen::Vector3d> positions;           ///< V
@@ -106,7 +136,7 @@ struct SourceModel {
   ModelFrame declared = {};  ///< by the file or by the standard of its format
   std::vector<SourceMesh> meshes;
   std::vector<SourceMaterial> materials;  ///< at least one
-  std::vector<Placed> placed;             ///< in the order of the model's parts
+  std::vector<Placed> placed;             ///< in the order of the model's parts, by place()
   std::vector<SourceNode> nodes = {SourceNode{}};
   std::map<std::string, EmbeddedImage> images;
   std::uint64_t lines_and_points = 0;  ///< left out
@@ -114,13 +144,17 @@ struct SourceModel {
   ModelContent stated = {};  ///< by the file: its lists and headers; none where it states nothing
   /// Vertices of `stated` that faces use; none where `stated` has none.
   std::optional<std::uint64_t> used_vertices;
-  std::vector<std::string> notes;
+  Notes notes;
+
+  /// Adds an instance. Throws Refusal if the instances have too many triangles or parts: a small
+  /// file can place a mesh very often.
+  void place(Placed instance);
+
+ private:
+  std::uint64_t triangles_ = 0;  ///< of all instances
 };
 
-/// Throws Refusal if it has no triangles, or too many.
-void check_size(const SourceModel& source);
-
-/// Adds a note once.
-void add_note(SourceModel& source, const std::string& note);
+/// Throws Refusal if it has no triangles.
+void require_triangles(const SourceModel& source);
 
 }  // namespace glidar::import

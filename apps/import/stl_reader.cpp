@@ -72,17 +72,18 @@ class PositionTable {
 
 class AsciiStl {
  public:
-  AsciiStl(std::string_view text, SourceModel& source, FileLists& lists)
-      : text_(text, false, false), source_(source), lists_(lists), positions_(lists) {}
+  AsciiStl(std::string_view text, FileContent& content, SourceModel& source, FileLists& lists)
+      : text_(text, false, false),
+        content_(content),
+        source_(source),
+        lists_(lists),
+        positions_(lists) {}
 
   void read() {
     while (text_.find_word()) {
       const std::string word = next();
-      if (word == "solid") {
-        read_solid();
-      } else {
-        refuse_line(text_.line(), "'" + shown(word) + "' instead of 'solid'");
-      }
+      if (word != "solid") refuse_word(word, "instead of 'solid'");
+      read_solid();
     }
   }
 
@@ -90,11 +91,22 @@ class AsciiStl {
   /// The next word, in small letters; empty at the end of the file.
   std::string next() { return text_.find_word() ? lower_case(text_.word()) : ""; }
 
+  [[noreturn]] void refuse_word(const std::string& word, const std::string& why) const {
+    refuse_line(text_.line(),
+                word.empty() ? "the file ends too early" : "'" + shown(word) + "' " + why);
+  }
+
   void expect(const char* wanted) {
     const std::string word = next();
-    if (word == wanted) return;
-    refuse_line(text_.line(), word.empty() ? "the file ends too early"
-                                           : "'" + shown(word) + "' instead of '" + wanted + "'");
+    if (word != wanted) refuse_word(word, "instead of '" + std::string(wanted) + "'");
+  }
+
+  /// "endloop" or "end loop", and the like.
+  void expect_end(const std::string& word, const char* of) {
+    if (word == "end") return expect(of);
+    if (word != std::string("end") + of) {
+      refuse_word(word, "instead of 'end" + std::string(of) + "'");
+    }
   }
 
   void read_solid() {
@@ -112,14 +124,14 @@ class AsciiStl {
         skip_name(name);
         break;
       } else if (word.empty()) {
-        add_note(source_, "the file ends without 'endsolid': it may be cut off");
+        source_.notes.add("the file ends without 'endsolid': it may be cut off");
         break;
       } else {
-        refuse_line(text_.line(), "'" + shown(word) + "' instead of 'facet' or 'endsolid'");
+        refuse_word(word, "instead of 'facet' or 'endsolid'");
       }
     }
     if (lists_.faces.size() == before) {
-      add_note(source_, "solid '" + shown(name) + "' is empty");
+      source_.notes.add("solid '" + shown(name) + "' is empty");
     }
   }
 
@@ -157,6 +169,7 @@ class AsciiStl {
   }
 
   void read_facet() {
+    content_.forget_before(text_.at());
     std::string word = next();
     // The normal may be missing, incomplete or nan.
     if (word == "normal") {
@@ -164,28 +177,14 @@ class AsciiStl {
         word = next();
       } while (!word.empty() && word != "outer" && is_number(word));
     }
-    if (word != "outer") {
-      refuse_line(text_.line(), word.empty() ? "the file ends too early"
-                                             : "'" + shown(word) + "' instead of 'outer loop'");
-    }
+    if (word != "outer") refuse_word(word, "instead of 'outer loop'");
     expect("loop");
     corners_.clear();
     for (word = next(); word == "vertex"; word = next()) read_vertex();
-    if (word == "end") {
-      expect("loop");
-    } else if (word != "endloop") {
-      refuse_line(text_.line(), word.empty() ? "the file ends too early"
-                                             : "'" + shown(word) + "' instead of 'endloop'");
-    }
+    expect_end(word, "loop");
     if (corners_.size() < 3) refuse_line(text_.line(), "a facet with fewer than 3 vertices");
     lists_.faces.add(corners_);
-    word = next();
-    if (word == "end") {
-      expect("facet");
-    } else if (word != "endfacet") {
-      refuse_line(text_.line(), word.empty() ? "the file ends too early"
-                                             : "'" + shown(word) + "' instead of 'endfacet'");
-    }
+    expect_end(next(), "facet");
   }
 
   static bool is_number(const std::string& word) { return number_in(word).has_value(); }
@@ -195,17 +194,14 @@ class AsciiStl {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string word = next();
       const auto number = number_in(word);
-      if (!number) {
-        refuse_line(text_.line(), word.empty()
-                                      ? "the file ends too early"
-                                      : "'" + shown(word) + "' in 'vertex' is not a number");
-      }
+      if (!number) refuse_word(word, "in 'vertex' is not a number");
       position[axis] = *number;
     }
     corners_.push_back(positions_.index_of(position));
   }
 
   TextCursor text_;
+  FileContent& content_;
   SourceModel& source_;
   FileLists& lists_;
   PositionTable positions_;
@@ -242,8 +238,9 @@ std::optional<Eigen::Vector3f> colour_of_object(std::string_view header) {
 
 class BinaryStl {
  public:
-  BinaryStl(std::string_view file, SourceModel& source, FileLists& lists)
+  BinaryStl(std::string_view file, FileContent& content, SourceModel& source, FileLists& lists)
       : file_(file),
+        content_(content),
         source_(source),
         lists_(lists),
         object_(colour_of_object(file.substr(0, kHeader))) {}
@@ -256,13 +253,14 @@ class BinaryStl {
     }
     const std::size_t end = kData + kFacet * std::size_t{stated};
     if (end < file_.size()) {
-      add_note(source_,
-               fmt::format("{} bytes after the last facet are not used", file_.size() - end));
+      source_.notes.add(
+          fmt::format("{} bytes after the last facet are not used", file_.size() - end));
     }
     const bool has_colours = find_colours(stated);
     PositionTable positions(lists_);
     lists_.faces.vertices.reserve(3 * std::size_t{stated});
     for (std::size_t at = kData; at < end; at += kFacet) {
+      content_.forget_before(file_.data() + at);
       std::array<std::uint32_t, 3> corners{};
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::size_t from = at + 12 * (corner + 1);
@@ -297,11 +295,12 @@ class BinaryStl {
       any = any || (word >> 15U) == 1;
       others = others || (word != 0 && (word >> 15U) == 0);
     }
-    if (others) add_note(source_, "attributes of facets that are no colours are not used");
+    if (others) source_.notes.add("attributes of facets that are no colours are not used");
     return any;
   }
 
   std::string_view file_;
+  FileContent& content_;
   SourceModel& source_;
   FileLists& lists_;
   std::optional<Eigen::Vector3f> object_;
@@ -335,13 +334,13 @@ SourceModel read_stl(const ReaderInput& input) {
   const std::string_view text = has_size_of_binary(file) ? "" : utf8_text(file, storage);
   FileLists lists;
   if (is_ascii(text)) {
-    AsciiStl(text, source, lists).read();
+    AsciiStl(text, input.content(), source, lists).read();
   } else if (file.size() < kData) {
     throw Refusal{
         "neither text that begins with 'solid' nor binary STL, which has at least 84 bytes",
         "export the model again"};
   } else {
-    BinaryStl(file, source, lists).read();
+    BinaryStl(file, input.content(), source, lists).read();
     source.is_single_precision = true;
   }
   input.release();

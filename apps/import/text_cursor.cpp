@@ -5,7 +5,7 @@
 #include <glidar/core/text.hpp>
 #include <glidar/math/constants.hpp>
 
-#include <algorithm>
+#include <array>
 #include <charconv>
 #include <system_error>
 
@@ -19,6 +19,15 @@ bool is_blank(char c) {
 bool is_line_end(char c) {
   return c == '\n' || c == '\r';
 }
+
+/// Characters that may end a word, by their codes.
+constexpr auto kMayEndWord = [] {
+  std::array<bool, 256> may_end{};
+  for (const char c : {' ', '\t', '\v', '\f', '\n', '\r', '#', '\\'}) {
+    may_end[static_cast<unsigned char>(c)] = true;
+  }
+  return may_end;
+}();
 
 void append_utf8(char32_t code, std::string& text) {
   constexpr char32_t kTail = 0x3F;
@@ -56,6 +65,18 @@ std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
   return text;
 }
 
+/// Most words of faces are short and have digits only.
+std::optional<double> short_whole_number(std::string_view word) {
+  constexpr std::size_t kMostDigits = 9;
+  if (word.empty() || word.size() > kMostDigits) return std::nullopt;
+  std::uint32_t value = 0;
+  for (const char c : word) {
+    if (c < '0' || c > '9') return std::nullopt;
+    value = 10 * value + static_cast<std::uint32_t>(c - '0');
+  }
+  return value;
+}
+
 /// "1.#QNAN", "-1.#IND", "1.#INF00", "-nan(ind)".
 std::optional<double> number_of_windows(std::string_view word) {
   const double sign = word.starts_with('-') ? -1.0 : 1.0;
@@ -80,6 +101,7 @@ std::string_view utf8_text(std::string_view bytes, std::string& storage) {
 }
 
 std::optional<double> number_in(std::string_view word) {
+  if (const auto whole = short_whole_number(word)) return whole;
   const char* from = word.data();
   const char* const end = from + word.size();
   if (from != end && *from == '+') {
@@ -153,10 +175,11 @@ std::string_view TextCursor::word() {
                            std::string_view("IQS").find(at_[1]) != std::string_view::npos;
     return comments_ && *at_ == '#' && !is_number;
   };
-  while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && !is_comment() &&
-         continuation(at_) == nullptr) {
-    ++at_;
-  }
+  const auto ends = [&] {
+    return kMayEndWord[static_cast<unsigned char>(*at_)] &&
+           (is_blank(*at_) || is_line_end(*at_) || is_comment() || continuation(at_) != nullptr);
+  };
+  while (at_ != end_ && !ends()) ++at_;
   return {from, static_cast<std::size_t>(at_ - from)};
 }
 

@@ -49,6 +49,7 @@ class TextCursor {
 
   [[nodiscard]] std::uint64_t line() const { return line_; }  ///< from 1
   [[nodiscard]] const char* at() const { return at_; }
+  [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
 
  private:
   void skip_blanks();

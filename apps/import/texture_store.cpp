@@ -33,7 +33,7 @@ constexpr std::size_t kMaxNameLength = 1024;  // for messages and lists
 
 }  // namespace
 
-TextureStore::TextureStore(const SourceModel& source, ModelFolder folder, ModelFiles& files,
+TextureStore::TextureStore(SourceModel& source, ModelFolder folder, ModelFiles& files,
                            ImportedModel& imported)
     : source_(source), folder_(std::move(folder)), files_(files), imported_(imported) {}
 
@@ -47,7 +47,7 @@ std::int32_t TextureStore::decode(const std::string& name) {
   Decoded decoded;
   std::string file;
   if (const auto image = source_.images.find(name); image != source_.images.end()) {
-    decoded = decode_embedded(image->second, budget_);
+    decoded = decode_embedded(std::move(image->second), budget_);
   } else if (name.starts_with("data:")) {
     decoded = decode_data_uri(name, budget_);
   } else {

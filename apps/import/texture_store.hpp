@@ -16,8 +16,8 @@ namespace glidar::import {
 /// Finds and decodes the textures of materials, each once, into the model.
 class TextureStore {
  public:
-  TextureStore(const SourceModel& source, ModelFolder folder, ModelFiles& files,
-               ImportedModel& imported);
+  /// Frees the embedded images of `source` that it decodes.
+  TextureStore(SourceModel& source, ModelFolder folder, ModelFiles& files, ImportedModel& imported);
 
   /// Index of the texture; TextureUse::kNone if it is missing, which is then listed.
   std::int32_t colours(const std::string& name);
@@ -33,7 +33,7 @@ class TextureStore {
   std::int32_t keep(Texture texture);
   std::int32_t decode(const std::string& name);
 
-  const SourceModel& source_;
+  SourceModel& source_;
   ModelFolder folder_;
   ModelFiles& files_;
   ImportedModel& imported_;

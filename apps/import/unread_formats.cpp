@@ -35,6 +35,7 @@ struct Format {
 // Marks first, so that a file with a wrong extension is named too.
 constexpr std::array kFormats = std::to_array<Format>({
     {"VRML", kVrml, "#VRML V", ".wrl .vrml .wrz"},
+    {"X3D", kVrml, "", ".x3d .x3dz"},
     {"X3D (classic encoding)", kVrml, "#X3D V", ".x3dv"},
     {"X3D (binary)", kVrml, "\xE0\0\0\x01"sv, ".x3db"},
     {"USD (text)", kUsd, "#usda ", ".usda"},
@@ -121,6 +122,13 @@ bool is_iges(std::string_view text) {
   return text.size() > 80 && text.substr(kColumn, 8) == "S      1";
 }
 
+/// X3D in XML.
+bool is_x3d(std::string_view text) {
+  const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
+  return text.substr(std::min(first, text.size())).starts_with('<') &&
+         text.find("<X3D") != std::string_view::npos;
+}
+
 /// A ZIP archive whose first file is a layer of USD.
 bool is_usdz(std::string_view bytes) {
   constexpr std::size_t kNameLength = 26;
@@ -140,6 +148,7 @@ const Format* by_mark(std::string_view bytes) {
   if (is_step(bytes)) return by_name("STEP");
   if (is_iges(bytes)) return by_name("IGES");
   if (is_usdz(bytes)) return by_name("USD");
+  if (is_x3d(bytes)) return by_name("X3D");
   for (const Format& format : kFormats) {
     if (!format.mark.empty() && bytes.starts_with(format.mark)) return &format;
   }

@@ -9,26 +9,25 @@
 #include <zip.h>
 
 #include <algorithm>
-#include <memory>
 #include <new>
 
 namespace glidar::import {
 namespace {
 
-using Archive = std::unique_ptr<zip_t, void (*)(zip_t*)>;
-
-Archive open_zip(std::string_view archive) {
-  zip_source_t* source = zip_source_buffer_create(archive.data(), archive.size(), 0, nullptr);
+zip_t* open_zip(std::string_view bytes) {
+  zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, nullptr);
   zip_t* opened = source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY, nullptr);
   if (opened == nullptr) zip_source_free(source);
-  return {opened, zip_discard};
+  return opened;
 }
 
 }  // namespace
 
-std::string zip_text(std::string_view archive, const std::string& name, std::size_t max_bytes) {
-  const Archive opened = open_zip(archive);
-  zip_file_t* file = opened ? zip_fopen(opened.get(), name.c_str(), ZIP_FL_NOCASE) : nullptr;
+ZipArchive::ZipArchive(std::string_view bytes)
+    : archive_(open_zip(bytes), zip_discard), bytes_(bytes.size()) {}
+
+std::string ZipArchive::text(const std::string& name, std::size_t max_bytes) const {
+  zip_file_t* file = archive_ ? zip_fopen(archive_.get(), name.c_str(), ZIP_FL_NOCASE) : nullptr;
   if (file == nullptr) return "";
   std::string text(max_bytes, '\0');
   const zip_int64_t size = zip_fread(file, text.data(), text.size());
@@ -37,13 +36,12 @@ std::string zip_text(std::string_view archive, const std::string& name, std::siz
   return text;
 }
 
-std::string zip_content(std::string_view archive, const std::string& name) {
-  const Archive opened = open_zip(archive);
+std::string ZipArchive::content(const std::string& name) const {
   zip_stat_t state;
-  const bool is_known = opened && zip_stat(opened.get(), name.c_str(), 0, &state) == 0;
+  const bool is_known = archive_ && zip_stat(archive_.get(), name.c_str(), 0, &state) == 0;
   constexpr zip_uint64_t kMostPerByte = 1100;  // deflate gives 1032 at most
-  const bool is_possible = is_known && state.size / kMostPerByte <= archive.size();
-  zip_file_t* file = is_possible ? zip_fopen(opened.get(), name.c_str(), 0) : nullptr;
+  const bool is_possible = is_known && state.size / kMostPerByte <= bytes_;
+  zip_file_t* file = is_possible ? zip_fopen(archive_.get(), name.c_str(), 0) : nullptr;
   const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> closed(file, zip_fclose);
   std::string content(file == nullptr ? 0 : state.size, '\0');
   // The last read checks the checksum.
@@ -80,15 +78,14 @@ std::string make_zip(const std::map<std::string, std::string>& files) {
   return archive;
 }
 
-std::vector<std::string> zip_names(std::string_view archive) {
-  std::vector<std::string> names;
-  const Archive opened = open_zip(archive);
-  const zip_int64_t count = opened ? zip_get_num_entries(opened.get(), 0) : 0;
+std::vector<std::string> ZipArchive::names() const {
+  std::vector<std::string> all;
+  const zip_int64_t count = archive_ ? zip_get_num_entries(archive_.get(), 0) : 0;
   for (zip_int64_t i = 0; i < count; ++i) {
-    const char* name = zip_get_name(opened.get(), static_cast<zip_uint64_t>(i), 0);
-    if (name != nullptr) names.emplace_back(name);
+    const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
+    if (name != nullptr) all.emplace_back(name);
   }
-  return names;
+  return all;
 }
 
 std::string zip_name(std::string_view reference) {

@@ -2,26 +2,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+struct zip;  // zip_t of libzip
+
 namespace glidar::import {
 
-/// The start of a file in a ZIP archive in memory, at most `max_bytes`; ignores the case of its
-/// name. Empty if it is unreadable.
-std::string zip_text(std::string_view archive, const std::string& name, std::size_t max_bytes);
+/// A ZIP archive in memory, which must outlive it.
+class ZipArchive {
+ public:
+  explicit ZipArchive(std::string_view bytes);
 
-/// A whole file in a ZIP archive, of any size that its compressed data can have (ZIP64 too). Throws
-/// Refusal if it is damaged.
-std::string zip_content(std::string_view archive, const std::string& name);
+  /// Names of its files, in its order; none if it is unreadable.
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// The start of a file, at most `max_bytes`; ignores the case of its name. Empty if it is
+  /// unreadable.
+  [[nodiscard]] std::string text(const std::string& name, std::size_t max_bytes) const;
+  /// A whole file, of any size that its compressed data can have (ZIP64 too). Throws Refusal if it
+  /// is damaged.
+  [[nodiscard]] std::string content(const std::string& name) const;
+
+ private:
+  std::unique_ptr<zip, void (*)(zip*)> archive_;  ///< null: unreadable
+  std::size_t bytes_;
+};
 
 /// A plain ZIP archive of these files, not compressed.
 std::string make_zip(const std::map<std::string, std::string>& files);
-
-/// The names in a ZIP archive, in its order; none if it is unreadable.
-std::vector<std::string> zip_names(std::string_view archive);
 
 /// The name of a file in an archive from a reference to it: "./a%20b.dae" or "/a%20b.dae" is
 /// "a b.dae".

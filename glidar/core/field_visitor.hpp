@@ -140,6 +140,8 @@ class FieldVisitor {
   virtual void texts(const FieldInfo& field, std::vector<std::string>& /*values*/) { key(field); }
   /// A path, seen from the folder of the file, or the name of a built-in model.
   virtual void path(const FieldInfo& field, std::string& /*value*/) { key(field); }
+  /// A path, seen from the folder of the file, or a list of them.
+  virtual void paths(const FieldInfo& field, std::vector<std::string>& /*values*/) { key(field); }
   /// One of the words; `value` is its index.
   virtual void word(const FieldInfo& field, std::span<const char* const> /*words*/,
                     std::size_t& /*value*/) {

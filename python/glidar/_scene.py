@@ -7,7 +7,7 @@ from __future__ import annotations
 import itertools
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -27,6 +27,7 @@ from ._simulator import Simulator
 
 _UNITS = dict(_core.length_units())
 _AXES = ("x", "y", "z")
+_Folders: TypeAlias = str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 _MAX_SIMULATORS = 8
 _PLACING = ("pose", "scale", "name", "id", "class_name", "materials", "visible_to", "hidden_from")
 _UNIT_TOLERANCE = 1e-3  # for normals that a file rounds to three digits
@@ -67,6 +68,7 @@ class Scene(SceneData):
         up: the axis of a model file that becomes z: "x", "y", "z"; None: the axis that the file declares,
             else unchanged axes.
         centre: whether to move the centre of a model's bounding box to its origin.
+        texture_folder: a folder, or a list of them, below which textures outside the model's folder are searched.
 
     Raises:
         Error: the file cannot be read, with line, column and field where known.
@@ -79,8 +81,10 @@ class Scene(SceneData):
         unit: str | float | None = None,
         up: str | None = None,
         centre: bool = False,
+        texture_folder: _Folders = None,
     ) -> None:
-        self._set_recipe(Recipe.empty() if source is None else _loaded(source, _options(unit, up, centre)))
+        options = _options(unit, up, centre, texture_folder)
+        self._set_recipe(Recipe.empty() if source is None else _loaded(source, options))
 
     def _set_recipe(self, recipe: Recipe) -> None:
         """Makes every change of the scene release the simulators, which measure its earlier state."""
@@ -130,19 +134,20 @@ class Scene(SceneData):
         unit: str | float | None = None,
         up: str | None = None,
         centre: bool = False,
+        texture_folder: _Folders = None,
         **placing: Any,
     ) -> SceneObject:
         """Adds a model file or "builtin:NAME"; returns its object.
 
         Args:
-            unit, up, centre: as for ``Scene``.
+            unit, up, centre, texture_folder: as for ``Scene``.
             placing: pose (4, 4), scale (one factor, or three along the object's axes; negative ones mirror),
                 name, id, class_name, materials, visible_to, hidden_from of the object.
 
         Raises:
             Error: the file cannot be read, or an argument is invalid; the scene is unchanged then.
         """
-        index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre))
+        index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre, texture_folder))
         return self._initialised(index, placing)
 
     def add_parts(
@@ -154,6 +159,7 @@ class Scene(SceneData):
         unit: str | float | None = None,
         up: str | None = None,
         centre: bool = False,
+        texture_folder: _Folders = None,
         **placing: Any,
     ) -> tuple[SceneObject, ...]:
         """Adds a model of which parts become objects of their own; returns these objects. ``list_parts`` lists parts.
@@ -164,7 +170,7 @@ class Scene(SceneData):
                 "material:NAME", e.g. ``{"arm/*": {"class": "arm"}, "material:glass": {"hidden_from": ["lidar"]}}``;
                 their `pose` may be an array (4, 4), parent_from_part.
             split: "parts" or "materials": each becomes an object with a consecutive id, and its name as class.
-            unit, up, centre: as for ``Scene``.
+            unit, up, centre, texture_folder: as for ``Scene``.
             placing: pose (4, 4), scale, name, id, class_name, materials, visible_to, hidden_from of the model.
 
         Raises:
@@ -183,7 +189,7 @@ class Scene(SceneData):
             entry["parts"] = {name: _part_entry(changes, name) for name, changes in parts.items()}
         first = len(self)
         text = json.dumps({"models": [plain(entry, "models[0]")]}, ensure_ascii=False)
-        self._recipe.add_models(text, _options(unit, up, centre))
+        self._recipe.add_models(text, _options(unit, up, centre, texture_folder))
         return self.objects[first:]
 
     def add_mesh(
@@ -331,10 +337,15 @@ class Scene(SceneData):
 
 
 def load_scene(
-    path: str | os.PathLike[str], *, unit: str | float | None = None, up: str | None = None, centre: bool = False
+    path: str | os.PathLike[str],
+    *,
+    unit: str | float | None = None,
+    up: str | None = None,
+    centre: bool = False,
+    texture_folder: _Folders = None,
 ) -> Scene:
     """The scene of a scene file, a model file, or "builtin:NAME"; the same as ``Scene(path)``."""
-    return Scene(path, unit=unit, up=up, centre=centre)
+    return Scene(path, unit=unit, up=up, centre=centre, texture_folder=texture_folder)
 
 
 def list_parts(
@@ -348,7 +359,7 @@ def list_parts(
     Raises:
         Error: the file cannot be read.
     """
-    listed = _core.list_parts(path_of(source, "model"), _options(unit, up, centre), log)
+    listed = _core.list_parts(path_of(source, "model"), _options(unit, up, centre, None), log)
     return [ModelPart(**part) for part in listed]
 
 
@@ -383,12 +394,14 @@ def _loaded(source: str | os.PathLike[str], options: dict[str, Any]) -> Recipe:
     return recipe
 
 
-def _options(unit: str | float | None, up: str | None, centre: bool) -> dict[str, Any]:
+def _options(unit: str | float | None, up: str | None, centre: bool, texture_folder: _Folders) -> dict[str, Any]:
     """Options for reading a model file, as the extension accepts them."""
     if not isinstance(centre, bool):
         raise Error("centre", shown(centre), "True or False")
     metres = None if unit is None else _metres(unit)
-    return {"metres_per_unit": metres, "up": _axis(up), "centre": centre}
+    folders = [] if texture_folder is None else texture_folder if isinstance(texture_folder, (list, tuple)) else [texture_folder]
+    absolute = [os.path.abspath(path_of(folder, "texture_folder")) for folder in folders]
+    return {"metres_per_unit": metres, "up": _axis(up), "centre": centre, "texture_folders": absolute}
 
 
 def _metres(unit: str | float) -> float:

@@ -33,6 +33,9 @@ ModelOptions model_options(const nb::dict& given) {
   options.metres_per_unit = entry<double>(given, "metres_per_unit");
   if (const auto up = entry<int>(given, "up")) options.up = static_cast<Axis>(*up);
   options.centre = entry<bool>(given, "centre").value_or(false);
+  for (const std::string& folder : entry<std::vector<std::string>>(given, "texture_folders")
+                                       .value_or(std::vector<std::string>()))
+    options.texture_folders.emplace_back(folder);
   return options;
 }
 

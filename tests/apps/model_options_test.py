@@ -27,6 +27,37 @@ class ModelOptions(CliTest):
         report = json.loads(self.succeed("info", "a.amf", "--unit", "m", "--json").stdout)
         self.assertEqual((report["metres_per_unit"], report["unit_declared"]), (1.0, 0.0254))
 
+    def test_texture_folders(self):
+        for folder in ("model", "art/images", "art/others"):
+            os.makedirs(os.path.join(self.folder, folder))
+        self.write("model/a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
+        self.write("model/a.mtl", "newmtl m\nmap_Kd ../images/a.ppm\nmap_Ks model://skins/others/b.ppm\n")
+        for name in ("images/a", "others/b"):
+            self.write(f"art/{name}.ppm", "P6 1 1 255\nabc")
+
+        def missing(*options):
+            return [t["name"] for t in json.loads(self.succeed("info", "model/a.obj", "--json", *options).stdout)["missing_textures"]]
+
+        self.assertEqual(missing(), ["../images/a.ppm", "model://skins/others/b.ppm"])
+        self.assertIn("name its folder with --texture-folder", self.succeed("info", "model/a.obj").stdout)
+        self.assertEqual(missing("--texture-folder", "art"), [])
+        self.assertEqual(missing("--texture-folder", "art/images"), ["model://skins/others/b.ppm"])
+        self.assertEqual(missing("--texture-folder", "art/images", "--texture-folder", "art/others"), [])
+        self.assertIn("'gone' is not a folder", self.refused("info", "model/a.obj", "--texture-folder", "gone"))
+        camera = "sensor: {optics: {width: 4, height: 3, fov_deg: 30}}\n"
+        os.makedirs(os.path.join(self.folder, "scenes"))
+        for folders, all_found in (("../art", True), ("[../art/images, ../art/others]", True), ("../art/images", False)):
+            self.write("scenes/a.yaml", f"models: [{{model: ../model/a.obj, texture_folder: {folders}}}]\n{camera}")
+            done = self.succeed("render", "scenes/a.yaml", "-o", "x.pcd")
+            self.assertEqual("textures missing" not in done.stderr, all_found, folders)
+        self.write("scenes/a.yaml", f"models: [{{model: ../model/a.obj, texture_folder: ../art}}, {{model: ../model/a.obj}}]\n{camera}")
+        self.assertIn("textures missing", self.succeed("render", "scenes/a.yaml", "-o", "x.pcd").stderr)
+        self.write("scenes/a.yaml", f"models: [{{model: ../model/a.obj}}]\n{camera}")
+        done = self.succeed("render", "scenes/a.yaml", "-o", "x.pcd", "--texture-folder", "art")
+        self.assertNotIn("textures missing", done.stderr)
+        self.write("scenes/a.yaml", f"models: [{{model: ../model/a.obj, texture_folder: ../gone}}]\n{camera}")
+        self.assertIn("a.yaml:1", self.refused("render", "scenes/a.yaml", "-o", "x.pcd"))
+
     def test_centre_and_sizes(self):
         self.write("far.obj", "v 1000 0 0\nv 1004 0 0\nv 1000 2 0\nf 1 2 3\n")
         report = json.loads(self.succeed("info", "far.obj", "--centre", "--json").stdout)

@@ -3,6 +3,7 @@
 // The reader of glTF, in this process: whatever the bytes are, it gives a model whose triangles
 // have vertices, or throws Refusal.
 #include "demand.hpp"
+#include "input_cost.hpp"
 
 #include <import/gltf/read_gltf.hpp>
 
@@ -39,6 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace glidar;
+  const testing::InputCost cost(size);
   // Files beside the model have these bytes.
   static const std::string kBeside(4096, '\1');
   try {

@@ -25,7 +25,7 @@ void check(const import::SourceModel& source) {
     }
     if (!sound) throw std::logic_error("a reader made a mesh with invalid indices");
   }
-  import::check_size(source);
+  import::require_triangles(source);
 }
 
 }  // namespace

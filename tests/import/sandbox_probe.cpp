@@ -210,7 +210,7 @@ int run(const char* const* argv) {
   if (!apply(limits)) return 2;
   Attempts attempts = plan(argv[1], static_cast<pid_t>(limits.parent));
   for (const std::string& note :
-       enter_sandbox(model_folder(argv[1]).root, kLastFd, attempts.newest_landlock)) {
+       enter_sandbox(model_folder(argv[1]).allowed(), kLastFd, attempts.newest_landlock)) {
     attempts.report += "note: " + note + "|";
   }
   // Without its sandbox it would succeed in some.

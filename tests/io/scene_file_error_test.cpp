@@ -67,7 +67,8 @@ const BadFile kBadScenes[] = {
      "s.yaml:3:5: models[1]: the key 'model' is missing; add 'model: ...'"},
     {"UnknownModelKey", model("scal: 2"),
      "s.yaml:3:5: models[0].scal: unknown key 'scal'; allowed: model, name, unit, up, centre, "
-     "size, radius, tube_radius, scale, pose, id, class, materials, motion; did you mean 'scale'?"},
+     "texture_folder, size, radius, tube_radius, scale, pose, id, class, materials, motion; did "
+     "you mean 'scale'?"},
     {"UnknownUnit", model("unit: inch"),
      "s.yaml:3:11: models[0].unit: 'inch'; allowed: mm, cm, m, in; did you mean 'in'?"},
     {"UnknownAxis", model("up: w"), "s.yaml:3:9: models[0].up: 'w'; allowed: x, y, z"},

@@ -205,6 +205,26 @@ def test_a_rig_is_measured_like_on_the_command_line(tmp_path, program):
         glidar.simulate_rig(glidar.Scene("builtin:box"))
 
 
+def test_models_accept_texture_folders(tmp_path, caplog):
+    for name in ("model", "art/images"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "art/images/a.ppm").write_text("P6 1 1 255\nabc")
+    (tmp_path / "model/a.mtl").write_text("newmtl m\nmap_Kd ../images/a.ppm\n")
+    model = tmp_path / "model/a.obj"
+    model.write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
+    glidar.Scene(model)
+    assert "--texture-folder" in caplog.text
+    caplog.clear()
+    scene = glidar.Scene(model, texture_folder=tmp_path / "art")
+    scene.add_model(model, texture_folder=[str(tmp_path / "art/images"), tmp_path])
+    glidar.Scene.from_dict({"models": [{"model": str(model), "texture_folder": [str(tmp_path / "art")]}]})
+    assert "missing" not in caplog.text
+    with pytest.raises(glidar.Error, match="is not a folder"):
+        glidar.Scene(model, texture_folder=tmp_path / "gone")
+    with pytest.raises(glidar.Error, match="texture_folder"):
+        glidar.Scene(model, texture_folder=3)
+
+
 def test_models_accept_units_and_up_axes():
     path = ROOT / "models/satellite/satellite.obj"
     metres, inches = glidar.Scene(path), glidar.Scene(path, unit="in", up="y")

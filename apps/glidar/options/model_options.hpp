@@ -7,7 +7,7 @@
 
 namespace glidar::app {
 
-/// --unit --up --centre --no-cache --cache-folder.
+/// --unit --up --centre --texture-folder --no-cache --cache-folder.
 void add_model_options(CLI::App& command, ModelOptions& options);
 
 }  // namespace glidar::app

@@ -67,26 +67,6 @@ T stored(const char* at) {
   return value;
 }
 
-/// Calls `read` with a zero of the type of the components.
-template <class Read>
-auto with_type(Component type, const Read& read) {
-  switch (type) {
-    case Component::int8:
-      return read(std::int8_t{});
-    case Component::uint8:
-      return read(std::uint8_t{});
-    case Component::int16:
-      return read(std::int16_t{});
-    case Component::uint16:
-      return read(std::uint16_t{});
-    case Component::uint32:
-      return read(std::uint32_t{});
-    case Component::float32:
-      break;
-  }
-  return read(float{});
-}
-
 /// Copies the `n` components of an element. Signed ones are not read as unsigned integers.
 template <class T, class Number>
 void copy_element(const char* from, std::size_t n, Number* to) {
@@ -116,6 +96,16 @@ std::vector<Number> read_stored(const Accessor& accessor) {
   });
 }
 
+/// The accessor, of unsigned integers.
+const Accessor& checked_integers(const Accessor& accessor) {
+  const bool fits = accessor.type == Component::uint8 || accessor.type == Component::uint16 ||
+                    accessor.type == Component::uint32;
+  if (!fits || accessor.normalized) {
+    refuse(accessor.path + ".componentType", "unsigned integers are needed (5121, 5123, 5125)");
+  }
+  return accessor;
+}
+
 Sparse read_sparse(const Value& sparse, const Accessor& accessor, Buffers& buffers) {
   const std::size_t count = sparse.required("count").count();
   const Value indices = sparse.required("indices");
@@ -129,7 +119,7 @@ Sparse read_sparse(const Value& sparse, const Accessor& accessor, Buffers& buffe
   const View view = buffers.view(indices.required("bufferView"));
   list.bytes = elements_in(indices, view.bytes, count, list.stride, list.stride);
   Sparse read;
-  read.indices = read_integers(list);
+  read.indices = read_stored<std::uint32_t>(checked_integers(list));
   for (std::size_t i = 0; i < count; ++i) {
     if (read.indices[i] >= accessor.count) {
       indices.refuse(fmt::format("index {} of {} elements", read.indices[i], accessor.count));
@@ -152,7 +142,8 @@ bool is_close(double stated, double found, double extent) {
 }
 
 template <class Number>
-void check_limits(const Accessor& accessor, const std::vector<Number>& stored_values) {
+void check_limits(const Accessor& accessor, const std::vector<Number>& stored_values,
+                  Notes& notes) {
   const bool is_stated = !accessor.min.empty() || !accessor.max.empty();
   const bool has_data = !accessor.bytes.empty() || accessor.sparse;
   if (!is_stated || !has_data) return;
@@ -173,22 +164,24 @@ void check_limits(const Accessor& accessor, const std::vector<Number>& stored_va
                          const std::vector<double>& found) {
     for (std::size_t k = 0; k < limits.size(); ++k) {
       if (low[k] > high[k] || is_close(limits[k], found[k], extent)) continue;
-      refuse(fmt::format("{}.{}[{}]", accessor.path, name, k),
-             fmt::format("{} is stated, the data has {}", limits[k], found[k]),
-             "the data or the limits are damaged: export the file again");
+      const std::string path = fmt::format("{}.{}[{}]", accessor.path, name, k);
+      const std::string what = fmt::format("{} is stated, the data has {}", limits[k], found[k]);
+      if (accessor.needs_limits) {
+        refuse(path, what, "the data or the limits are damaged: export the file again");
+      }
+      notes.add_at(path, what);
     }
   };
   check("min", accessor.min, low);
   check("max", accessor.max, high);
 }
 
-/// The integer that means 1 when normalized.
+}  // namespace
+
 double largest_of(Component type) {
   return with_type(type,
                    [](auto zero) { return double{std::numeric_limits<decltype(zero)>::max()}; });
 }
-
-}  // namespace
 
 std::size_t size_of(Component type) {
   return with_type(type, [](auto zero) { return sizeof zero; });
@@ -230,23 +223,18 @@ Accessor open_accessor(const Document& document, Buffers& buffers, const Value& 
   return accessor;
 }
 
-std::vector<double> read_numbers(const Accessor& accessor) {
+std::vector<double> read_numbers(const Accessor& accessor, Notes& notes) {
   std::vector<double> values = read_stored<double>(accessor);
-  check_limits(accessor, values);
+  check_limits(accessor, values, notes);
   if (!accessor.normalized) return values;
   const double one = largest_of(accessor.type);
   for (double& value : values) value = std::max(value / one, -1.0);
   return values;
 }
 
-std::vector<std::uint32_t> read_integers(const Accessor& accessor) {
-  const bool fits = accessor.type == Component::uint8 || accessor.type == Component::uint16 ||
-                    accessor.type == Component::uint32;
-  if (!fits || accessor.normalized) {
-    refuse(accessor.path + ".componentType", "unsigned integers are needed (5121, 5123, 5125)");
-  }
-  std::vector<std::uint32_t> values = read_stored<std::uint32_t>(accessor);
-  check_limits(accessor, values);
+std::vector<std::uint32_t> read_integers(const Accessor& accessor, Notes& notes) {
+  std::vector<std::uint32_t> values = read_stored<std::uint32_t>(checked_integers(accessor));
+  check_limits(accessor, values, notes);
   return values;
 }
 

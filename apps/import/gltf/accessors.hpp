@@ -24,6 +24,26 @@ enum class Component : std::uint16_t {
   float32 = 5126
 };
 
+/// Calls `read` with a zero of the type of the components.
+template <class Read>
+auto with_type(Component type, const Read& read) {
+  switch (type) {
+    case Component::int8:
+      return read(std::int8_t{});
+    case Component::uint8:
+      return read(std::uint8_t{});
+    case Component::int16:
+      return read(std::int16_t{});
+    case Component::uint16:
+      return read(std::uint16_t{});
+    case Component::uint32:
+      return read(std::uint32_t{});
+    case Component::float32:
+      break;
+  }
+  return read(float{});
+}
+
 /// Values that replace others of an accessor.
 struct Sparse {
   std::vector<std::uint32_t> indices;  ///< strictly increasing, below the accessor's count
@@ -42,6 +62,7 @@ struct Accessor {
   std::optional<Sparse> sparse;
   std::vector<double> min;  ///< as stated, of each component; empty: not stated
   std::vector<double> max;
+  bool needs_limits = false;  ///< the standard requires them: of positions
 };
 
 /// The accessor that `index` names. Throws Refusal for one outside its buffer, of an unknown type
@@ -53,11 +74,15 @@ Accessor describe_accessor(const Value& accessor);
 
 std::size_t size_of(Component type);
 
+/// The integer that means 1 when normalized.
+double largest_of(Component type);
+
 /// All components of all elements, as numbers: c / 65535 and the like for normalized integers (glTF
-/// 2.0, 3.11). Throws Refusal if the stated minimum or maximum is not that of the data.
-std::vector<double> read_numbers(const Accessor& accessor);
+/// 2.0, 3.11). If the stated minimum or maximum is not that of the data, adds a note, or throws
+/// Refusal where the standard requires it.
+std::vector<double> read_numbers(const Accessor& accessor, Notes& notes);
 
 /// The same, as integers: indices, joints. Throws Refusal for other component types too.
-std::vector<std::uint32_t> read_integers(const Accessor& accessor);
+std::vector<std::uint32_t> read_integers(const Accessor& accessor, Notes& notes);
 
 }  // namespace glidar::import::gltf

@@ -64,7 +64,7 @@ std::string_view open_binary(std::string_view file, Document& document) {
     refuse("header", fmt::format("its length is {} bytes, the file has {}", size, file.size()));
   }
   if (size < file.size()) {
-    document.notes.push_back(
+    document.notes.add(
         fmt::format("{} bytes after the end of the .glb data are left out", file.size() - size));
   }
   std::string_view rest = file.substr(kHead, size - kHead);
@@ -79,8 +79,7 @@ std::string_view open_binary(std::string_view file, Document& document) {
       document.chunk = chunk;
       document.has_chunk = true;
     } else {
-      document.notes.push_back(
-          fmt::format("a chunk of the unknown type {:#010x} is left out", type));
+      document.notes.add(fmt::format("a chunk of the unknown type {:#010x} is left out", type));
     }
   }
   return text;

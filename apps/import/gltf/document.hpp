@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <import/source_model.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -68,7 +70,7 @@ struct Document {
   Json json;
   std::string_view chunk;  ///< the binary chunk of a .glb file, a part of the file's bytes
   bool has_chunk = false;
-  std::vector<std::string> notes;
+  Notes notes;
 
   [[nodiscard]] Value root() const { return {json, ""}; }
   /// The element of a top-level list that `index` names.

@@ -32,25 +32,6 @@ std::string rows_of(const draco::PointCloud& mesh, const draco::PointAttribute& 
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-std::string rows_of(const draco::PointCloud& mesh, const draco::PointAttribute& attribute,
-                    const Accessor& accessor) {
-  switch (accessor.type) {
-    case Component::int8:
-      return rows_of<std::int8_t>(mesh, attribute, accessor.components);
-    case Component::uint8:
-      return rows_of<std::uint8_t>(mesh, attribute, accessor.components);
-    case Component::int16:
-      return rows_of<std::int16_t>(mesh, attribute, accessor.components);
-    case Component::uint16:
-      return rows_of<std::uint16_t>(mesh, attribute, accessor.components);
-    case Component::uint32:
-      return rows_of<std::uint32_t>(mesh, attribute, accessor.components);
-    case Component::float32:
-      break;
-  }
-  return rows_of<float>(mesh, attribute, accessor.components);
-}
-
 std::unique_ptr<draco::Mesh> decompressed(const Value& extension, std::string_view bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
@@ -63,7 +44,7 @@ std::unique_ptr<draco::Mesh> decompressed(const Value& extension, std::string_vi
 void note_size(Document& document, const Value& accessor, std::size_t found) {
   const std::size_t stated = accessor.required("count").count();
   if (stated == found) return;
-  document.notes.push_back(
+  document.notes.add(
       fmt::format("{}.count: {} is stated, its Draco data has {}", accessor.path(), stated, found));
 }
 
@@ -83,7 +64,9 @@ DracoMesh decode_draco(Document& document, Buffers& buffers, const Value& primit
     const Value value = document.target("accessors", index);
     Accessor accessor = describe_accessor(value);
     note_size(document, value, mesh->num_points());
-    std::string& bytes = result.bytes[name] = rows_of(*mesh, *attribute, accessor);
+    std::string& bytes = result.bytes[name] = with_type(accessor.type, [&](auto zero) {
+      return rows_of<decltype(zero)>(*mesh, *attribute, accessor.components);
+    });
     accessor.count = mesh->num_points();
     accessor.stride = accessor.components * size_of(accessor.type);
     if (bytes.size() != accessor.count * accessor.stride) {

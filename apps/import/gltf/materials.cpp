@@ -171,7 +171,7 @@ class Reader {
     if (!is_dark) note("light that surfaces emit is left out");
   }
 
-  void note(const std::string& text) { add_note(model_, text); }
+  void note(const std::string& text) { model_.notes.add(text); }
   void leave_out(const Value& texture_info, const std::string& text) {
     if (texture_info) note(text);
   }

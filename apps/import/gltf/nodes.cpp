@@ -100,9 +100,8 @@ std::vector<std::size_t> roots_of_scene(Document& document, const Family& family
   if (!chosen && scenes.size() == 0) return without_parent(family);
   const Value scene = chosen ? document.target("scenes", chosen) : scenes.at(0);
   if (scenes.size() > 1) {
-    document.notes.push_back(
-        fmt::format("{} of {} scenes is loaded: {}", scene.path(), scenes.size(),
-                    chosen ? "it is the default" : "the file names no default"));
+    document.notes.add(fmt::format("{} of {} scenes is loaded: {}", scene.path(), scenes.size(),
+                                   chosen ? "it is the default" : "the file names no default"));
   }
   std::vector<std::size_t> roots;
   const Value list = scene["nodes"];
@@ -133,8 +132,7 @@ void drop_hidden(Document& document, const Family& family, std::vector<std::size
   if (count == 0) return;
   order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t i) { return hidden[i]; }),
               order.end());
-  document.notes.push_back(
-      fmt::format("{} nodes are hidden by KHR_node_visibility: left out", count));
+  document.notes.add(fmt::format("{} nodes are hidden by KHR_node_visibility: left out", count));
 }
 
 void note_outside(Document& document, const std::vector<std::size_t>& in_scene) {
@@ -146,8 +144,7 @@ void note_outside(Document& document, const std::vector<std::size_t>& in_scene) 
     count += !is_inside[i] && nodes.at(i)["mesh"] ? 1 : 0;
   }
   if (count == 0) return;
-  document.notes.push_back(
-      fmt::format("{} nodes with meshes are not in the scene: left out", count));
+  document.notes.add(fmt::format("{} nodes with meshes are not in the scene: left out", count));
 }
 
 /// Rows of an attribute of the copies; `fallback` for each if it is absent.
@@ -160,7 +157,7 @@ std::vector<Eigen::VectorXd> rows_of(const Value& index, std::size_t components,
     index.refuse(fmt::format("{} components, {} are needed", accessor.components, components));
   }
   if (accessor.count != count) index.refuse("the attributes of the copies differ in number");
-  const std::vector<double> numbers = read_numbers(accessor);
+  const std::vector<double> numbers = read_numbers(accessor, document.notes);
   std::vector<Eigen::VectorXd> rows;
   for (std::size_t i = 0; i < count; ++i) {
     rows.emplace_back(Eigen::Map<const Eigen::VectorXd>(numbers.data() + i * components,
@@ -215,9 +212,7 @@ std::vector<Eigen::Matrix4d> copies_of(Document& document, Buffers& buffers, con
     count = describe_accessor(document.target("accessors", index)).count;
     const bool is_used = name == "TRANSLATION" || name == "ROTATION" || name == "SCALE";
     if (is_used) continue;
-    const std::string note = "attributes of copies are left out: " + name.substr(0, 80);
-    std::vector<std::string>& notes = document.notes;
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+    document.notes.add("attributes of copies are left out: " + name.substr(0, 80));
   }
   const auto rows = [&](const char* name, std::size_t components, const Eigen::VectorXd& fallback) {
     return rows_of(attributes[name], components, fallback, count, document, buffers);

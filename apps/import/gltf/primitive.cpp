@@ -18,9 +18,6 @@
 namespace glidar::import::gltf {
 namespace {
 
-/// Modes of glTF 2.0, 5.24.4.
-enum Mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, strip, fan };
-
 /// What an attribute may be made of.
 struct Kind {
   std::size_t components = 0;
@@ -61,7 +58,7 @@ class PrimitiveReader {
     const Value index = attributes_[name.c_str()];
     const Accessor accessor = open(name, index);
     check_shape(accessor, index, 4);
-    return read_integers(accessor);
+    return read_integers(accessor, context_.model.notes);
   }
 
   /// The corners of all triangles, lines or points.
@@ -75,7 +72,7 @@ class PrimitiveReader {
     }
     const Accessor accessor = open_accessor(context_.document, context_.buffers, index);
     if (accessor.components != 1) index.refuse("indices are of the type SCALAR");
-    return checked(read_integers(accessor), index);
+    return checked(read_integers(accessor, context_.model.notes), index);
   }
 
   [[nodiscard]] std::size_t mode() const {
@@ -90,7 +87,9 @@ class PrimitiveReader {
  private:
   Accessor open(const std::string& name, const Value& index) {
     if (draco_ && draco_->views.contains(name)) return draco_->views.at(name);
-    return open_accessor(context_.document, context_.buffers, index);
+    Accessor accessor = open_accessor(context_.document, context_.buffers, index);
+    accessor.needs_limits = name == "POSITION";
+    return accessor;
   }
 
   void check_shape(const Accessor& accessor, const Value& index, std::size_t components) const {
@@ -114,7 +113,7 @@ class PrimitiveReader {
       refuse(accessor.path + ".componentType",
              "integers that are not normalized, of " + index.path());
     }
-    return read_numbers(accessor);
+    return read_numbers(accessor, context_.model.notes);
   }
 
   std::vector<std::uint32_t> checked(std::vector<std::uint32_t> all, const Value& where) const {
@@ -203,7 +202,7 @@ std::vector<Eigen::Matrix4d> skin_of(PrimitiveReader& reader, const Value& primi
     is_scaled = is_scaled || std::abs(sums[v] - 1.0) > kNearOne;
   }
   if (is_scaled) {
-    add_note(model, primitive.path() + ": weights of joints do not add to 1, they are scaled");
+    model.notes.add(primitive.path() + ": weights of joints do not add to 1, they are scaled");
   }
   return skin;
 }
@@ -247,7 +246,7 @@ void note_leftover(const Value& primitive, std::size_t corners, std::size_t mode
   const bool is_short = mode != Mode::triangles && corners < 3;
   const std::size_t left = mode == Mode::triangles ? corners % 3 : is_short ? corners : 0;
   if (left == 0) return;
-  add_note(model, fmt::format("{}: {} corners form no triangle: left out", primitive.path(), left));
+  model.notes.add(fmt::format("{}: {} corners form no triangle: left out", primitive.path(), left));
 }
 
 /// Notes attributes that nothing here reads.
@@ -262,15 +261,16 @@ void note_attributes(const Value& primitive, const Value& attributes, const UvSe
     }
     const bool is_skin = name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
     if (is_read || (is_skin && is_skinned)) continue;
-    add_note(model, is_skin ? "joints of a mesh without a skin are left out"
+    model.notes.add(is_skin ? "joints of a mesh without a skin are left out"
                             : "attributes are left out: " + name.substr(0, 80));
   }
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string name = "TEXCOORD_" + std::to_string(sets.sets[k]);
     if (!sets.needed[k] || attributes[name.c_str()]) continue;
-    add_note(model, fmt::format("{} has no {}, which a texture of its material needs: (0, 0) is "
-                                "assumed",
-                                primitive.path(), name));
+    model.notes.add(
+        fmt::format("{} has no {}, which a texture of its material needs: (0, 0) is "
+                    "assumed",
+                    primitive.path(), name));
   }
 }
 
@@ -292,7 +292,7 @@ void read_colours(PrimitiveReader& reader, const Morphs& morphs, SourceMesh& mes
   morph(reader, morphs, "COLOR_0", {3, true}, colours, n);
   mesh.colours = vectors_of<Eigen::Vector3f>(colours, n);
   for (std::size_t i = 3; n == 4 && i < colours.size(); i += 4) {
-    if (colours[i] < 1.0) add_note(model, "the opacity of vertex colours is left out");
+    if (colours[i] < 1.0) model.notes.add("the opacity of vertex colours is left out");
   }
 }
 
@@ -304,10 +304,10 @@ std::optional<SourceMesh> read_primitive(Context& context, const Value& primitiv
   SourceModel& model = context.model;
   const std::size_t vertices = reader.count_vertices();
   if (vertices == 0) {
-    add_note(model, primitive.path() + " has no vertices: left out");
+    model.notes.add(primitive.path() + " has no vertices: left out");
     return std::nullopt;
   }
-  const std::vector<std::uint32_t> corners = reader.corners();
+  std::vector<std::uint32_t> corners = reader.corners();
   const std::size_t mode = reader.mode();
   if (mode < Mode::triangles) {
     model.lines_and_points += lines_or_points(corners.size(), mode);
@@ -323,6 +323,7 @@ std::optional<SourceMesh> read_primitive(Context& context, const Value& primitiv
   note_attributes(primitive, reader.attributes(), sets, is_skinned, model);
   note_leftover(primitive, corners.size(), mode, model);
   mesh.triangles = triangles_of(corners, mode);
+  free_memory(corners);
   const Morphs morphs{primitive["targets"], deformation.weights};
   const auto morphed = [&](const char* name, std::size_t components) {
     std::vector<double> values = reader.numbers(name, {components, false});

@@ -7,12 +7,18 @@
 #include <import/source_model.hpp>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace glidar::import::gltf {
 
 /// What the reading of primitives needs.
+/// Modes of primitives (glTF 2.0, 5.24.4).
+struct Mode {
+  enum : std::uint8_t { points, lines, line_loop, line_strip, triangles, strip, fan };
+};
+
 struct Context {
   Document& document;
   Buffers& buffers;

@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/gltf/read_gltf.hpp>
 
+#include <import/gltf/accessors.hpp>
+#include <import/gltf/draco.hpp>
 #include <import/gltf/materials.hpp>
 #include <import/gltf/nodes.hpp>
 #include <import/gltf/primitive.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -42,7 +47,7 @@ std::vector<Eigen::Matrix4d> joints_of(const Context& context, const Value& skin
   if (accessor.count < joints.size()) {
     index.refuse(fmt::format("{} matrices for {} joints", accessor.count, joints.size()));
   }
-  const std::vector<double> numbers = read_numbers(accessor);
+  const std::vector<double> numbers = read_numbers(accessor, context.model.notes);
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const Eigen::Map<const Eigen::Matrix4d> bind(numbers.data() + i * 16);
     if (bind.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
@@ -52,6 +57,89 @@ std::vector<Eigen::Matrix4d> joints_of(const Context& context, const Value& skin
   }
   return joints;
 }
+
+/// What the document states about a primitive that is read.
+struct StatedPrimitive {
+  std::uint64_t faces = 0;
+  Eigen::AlignedBox3d box;  ///< by the limits of its positions; empty: it states none
+};
+
+/// The box that the limits of positions state, and a mesh has that nothing deforms.
+Eigen::AlignedBox3d stated_box(const Value& primitive, const Accessor& positions) {
+  Eigen::AlignedBox3d box;
+  const bool is_stated = positions.min.size() == 3 && positions.max.size() == 3;
+  if (!is_stated || primitive["targets"] || primitive.extension(kDracoExtension)) return box;
+  const double one = positions.normalized ? largest_of(positions.type) : 1.0;
+  box.extend(Eigen::Vector3d(positions.min.data()) / one);
+  box.extend(Eigen::Vector3d(positions.max.data()) / one);
+  return box;
+}
+
+StatedPrimitive stated_by(const Document& document, const Value& primitive) {
+  const Value index = primitive["attributes"]["POSITION"];
+  if (!index) return {};
+  const Accessor positions = describe_accessor(document.target("accessors", index));
+  const Value indices = primitive["indices"];
+  const std::size_t corners =
+      indices ? describe_accessor(document.target("accessors", indices)).count : positions.count;
+  const bool is_list = primitive["mode"].count_or(Mode::triangles) == Mode::triangles ||
+                       primitive.extension(kDracoExtension);
+  return {is_list ? corners / 3 : std::max<std::size_t>(corners, 2) - 2,
+          stated_box(primitive, positions)};
+}
+
+/// Whether a box stays the bounding box of its content: axes become axes.
+bool keeps_boxes(const Eigen::Matrix4d& matrix) {
+  for (int row = 0; row < 3; ++row) {
+    if ((matrix.row(row).head<3>().array() != 0.0).count() > 1) return false;
+  }
+  return true;
+}
+
+/// Adds up what the document states about the instances that the model has.
+class StatedContent {
+ public:
+  /// Each primitive once.
+  void add_vertices(const Document& document, const Value& primitive, const SourceMesh& mesh) {
+    const Value index = primitive["attributes"]["POSITION"];
+    const std::size_t number = document.number("accessors", index);
+    std::vector<bool>& used = used_[number];
+    used.resize(std::max({used.size(), mesh.positions.size(),
+                          document.target("accessors", index).required("count").count()}));
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t corner : triangle) used[corner] = true;
+    }
+  }
+
+  void add_instance(const StatedPrimitive& stated, const Eigen::Matrix4d& matrix) {
+    faces_ += stated.faces;
+    ++instances_;
+    has_box_ = has_box_ && !stated.box.isEmpty() && keeps_boxes(matrix);
+    if (!has_box_) return;
+    for (const Eigen::Vector3d& corner : {stated.box.min(), stated.box.max()}) {
+      box_.extend((matrix * corner.homogeneous()).head<3>());
+    }
+  }
+
+  void finish(SourceModel& model) const {
+    model.stated.vertices = model.used_vertices = 0;
+    for (const auto& [number, used] : used_) {
+      *model.stated.vertices += used.size();
+      *model.used_vertices +=
+          static_cast<std::uint64_t>(std::count(used.begin(), used.end(), true));
+    }
+    model.stated.faces = faces_;
+    model.stated.instances = instances_;
+    if (has_box_) model.stated.bounds = box_;
+  }
+
+ private:
+  std::map<std::size_t, std::vector<bool>> used_;  ///< of each accessor of positions
+  std::uint64_t faces_ = 0;
+  std::uint64_t instances_ = 0;
+  Eigen::AlignedBox3d box_;
+  bool has_box_ = true;
+};
 
 /// Places the meshes of nodes in the model.
 class Placement {
@@ -69,7 +157,7 @@ class Placement {
       return;
     }
     const Value mesh = context_.document.target("meshes", node["mesh"]);
-    const std::vector<std::size_t>& parts = meshes_of(node, mesh);
+    const std::vector<Part>& parts = meshes_of(node, mesh);
     const std::vector<Eigen::Matrix4d> copies =
         copies_of(context_.document, context_.buffers, node);
     if (skin && node.extension("EXT_mesh_gpu_instancing")) {
@@ -88,14 +176,21 @@ class Placement {
       // The skeleton places a mesh with a skin.
       const Eigen::Matrix4d matrix =
           skin ? Eigen::Matrix4d(Eigen::Matrix4d::Identity()) : scene_from_copy;
-      for (const std::size_t part : parts) {
-        context_.model.placed.push_back({part, matrix, name, of});
-        check_growth(part);
+      for (const Part& part : parts) {
+        context_.model.place({part.mesh, matrix, name, of});
+        content_.add_instance(part.stated, matrix);
       }
     }
   }
 
+  void finish() { content_.finish(context_.model); }
+
  private:
+  struct Part {
+    std::size_t mesh = 0;
+    StatedPrimitive stated;
+  };
+
   /// A node without a name has that of its mesh; without either it is no part.
   void add_part(std::size_t number, const Value& node) {
     std::string name = node["name"].text_or("");
@@ -109,15 +204,8 @@ class Placement {
                  nodes_.scene_from_node[number]);
   }
 
-  /// Stops before many copies fill the memory.
-  void check_growth(std::size_t part) {
-    triangles_ += context_.model.meshes[part].triangles.size();
-    const bool is_huge = triangles_ > kMaxTriangles;
-    if (is_huge) check_size(context_.model);
-  }
-
   /// The primitives of a mesh as the node shows them; read once for nodes that show them alike.
-  const std::vector<std::size_t>& meshes_of(const Value& node, const Value& mesh) {
+  const std::vector<Part>& meshes_of(const Value& node, const Value& mesh) {
     const bool is_own = node["skin"] || node["weights"];
     const auto key = std::pair(mesh.path(), is_own ? node.path() : std::string());
     const auto [known, is_new] = read_.try_emplace(key);
@@ -134,7 +222,10 @@ class Placement {
       deformation.weights = weights_of(node, mesh, primitive["targets"]);
       auto part = read_primitive(context_, primitive, deformation);
       if (!part) continue;
-      known->second.push_back(context_.model.meshes.size());
+      content_.add_vertices(context_.document, primitive, *part);
+      StatedPrimitive stated = stated_by(context_.document, primitive);
+      if (node["skin"]) stated.box.setEmpty();
+      known->second.push_back({context_.model.meshes.size(), stated});
       context_.model.meshes.push_back(std::move(*part));
     }
     return known->second;
@@ -143,8 +234,8 @@ class Placement {
   Context& context_;
   const Nodes& nodes_;
   std::vector<std::uint32_t> part_of_node_;  ///< index into SourceModel::nodes
-  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> read_;
-  std::uint64_t triangles_ = 0;
+  std::map<std::pair<std::string, std::string>, std::vector<Part>> read_;
+  StatedContent content_;
 };
 
 }  // namespace
@@ -165,7 +256,9 @@ SourceModel read_gltf(std::string_view file, OpenFile open) {
   const Nodes nodes = read_nodes(document);
   Placement placement(context, nodes);
   for (const std::size_t node : nodes.shown) placement.place(node);
-  model.notes.insert(model.notes.begin(), document.notes.begin(), document.notes.end());
+  placement.finish();
+  document.notes.add(model.notes);
+  model.notes = std::move(document.notes);
   return model;
 }
 

@@ -251,9 +251,6 @@ std::string places(const Unused& unused) {
   return fmt::format("{} and {} more", unused.first_path, unused.count - 1);
 }
 
-/// A file of unknown members may have any number of kinds of them.
-constexpr std::size_t kMaxNotes = 30;
-
 void note_extensions(const Search& found, Document& document) {
   const Value listed = document.root()["extensionsUsed"];
   std::map<std::string, Unused> all = found.unused_extensions;
@@ -262,16 +259,14 @@ void note_extensions(const Search& found, Document& document) {
     if (!is_used(name)) all.try_emplace(name);
   }
   for (const auto& [name, unused] : all) {
-    if (document.notes.size() > kMaxNotes) break;
     const std::string where = unused.count == 0 ? "" : " (" + places(unused) + ")";
-    document.notes.push_back(
-        fmt::format("the extension {} is left out{}", name.substr(0, 80), where));
+    document.notes.add(fmt::format("the extension {} is left out{}", name.substr(0, 80), where));
   }
 }
 
 void note_list(Document& document, const char* list, const char* note) {
   const std::size_t count = document.root()[list].size();
-  if (count > 0) document.notes.push_back(fmt::format("{} {}", count, note));
+  if (count > 0) document.notes.add(fmt::format("{} {}", count, note));
 }
 
 }  // namespace
@@ -294,11 +289,7 @@ void note_unused(Document& document) {
   search.object(document.json, "glTF", "");
   note_extensions(search, document);
   for (const auto& [kind, unused] : search.members) {
-    if (document.notes.size() > kMaxNotes) {
-      document.notes.emplace_back("more members are not part of glTF 2.0: left out");
-      break;
-    }
-    document.notes.push_back(
+    document.notes.add(
         fmt::format("{} is not part of glTF 2.0: left out", places(unused).substr(0, 160)));
   }
   note_list(document, "animations", "animations are left out: the model is in its initial pose");

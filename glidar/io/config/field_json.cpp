@@ -31,6 +31,9 @@ class FieldWriter final : public FieldVisitor {
     if (is_report() || !values.empty()) json_[field.key] = values;
   }
   void path(const FieldInfo& field, std::string& value) override { text(field, value); }
+  void paths(const FieldInfo& field, std::vector<std::string>& values) override {
+    texts(field, values);
+  }
   void word(const FieldInfo& field, std::span<const char* const> words,
             std::size_t& value) override {
     json_[field.key] = words[value];

@@ -41,6 +41,10 @@ Schema list_schema(const Schema& item, std::size_t min_size, std::size_t max_siz
   return {{"type", "array"}, {"items", item}, {"minItems", min_size}, {"maxItems", max_size}};
 }
 
+Schema path_schema() {
+  return {{"type", "string"}, {"minLength", 1}, {"x-allowed", "a path"}};
+}
+
 /// {from: , to: , count: }
 Schema range_schema(const NumberListRule& rule) {
   const Schema number = number_schema(rule.number);
@@ -107,8 +111,9 @@ class SchemaBuilder final : public FieldVisitor {
   void texts(const FieldInfo& field, std::vector<std::string>& /*values*/) override {
     add(field, {{"type", "array"}, {"items", {{"type", {"string", "number"}}}}});
   }
-  void path(const FieldInfo& field, std::string& /*value*/) override {
-    add(field, {{"type", "string"}, {"minLength", 1}, {"x-allowed", "a path"}});
+  void path(const FieldInfo& field, std::string& /*value*/) override { add(field, path_schema()); }
+  void paths(const FieldInfo& field, std::vector<std::string>& /*values*/) override {
+    add(field, {{"anyOf", {path_schema(), {{"type", "array"}, {"items", path_schema()}}}}});
   }
   void word(const FieldInfo& field, std::span<const char* const> words,
             std::size_t& value) override {

@@ -16,12 +16,13 @@
 #include <set>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace glidar {
 namespace {
 
 /// Instances that agree in these share one mesh.
-using LoadKey = std::tuple<std::string, std::optional<double>, std::optional<Axis>, bool>;
+using LoadKey = std::pair<std::string, ModelOptions>;
 
 /// The same text for every spelling of a file's path.
 std::string canonical_name(const std::string& path) {
@@ -36,8 +37,7 @@ using RealPaths = std::unordered_map<std::string, std::string>;
 LoadKey load_key(const PlannedInstance& planned, RealPaths& known) {
   const auto [real, is_new] = known.try_emplace(planned.source);
   if (is_new) real->second = canonical_name(planned.source);
-  return {real->second, planned.options.metres_per_unit, planned.options.up,
-          planned.options.centre};
+  return {real->second, planned.options};
 }
 
 /// Where in Scene::textures the files lie that this scene names.

@@ -44,6 +44,17 @@ void visit_options(FieldVisitor& visitor, ModelOptions& options) {
                    "`true`: moves the centre of the bounding box to the origin, after `unit` and "
                    "`up`"},
                   options.centre);
+  std::vector<std::string> folders;
+  if (visitor.is_writing()) {
+    for (const fs::path& folder : options.texture_folders) folders.push_back(folder.string());
+  }
+  visitor.paths({"texture_folder",
+                 "a folder, or a list of them, below which "
+                 "[textures outside the model's folder](models.md#folders) are searched",
+                 kNoUnit, false, "`--texture-folder`, else none"},
+                folders);
+  if (visitor.is_reading() && visitor.has("texture_folder"))
+    options.texture_folders.assign(folders.begin(), folders.end());
 }
 
 /// A size of a built-in model, which becomes part of its source. Documents have it there.

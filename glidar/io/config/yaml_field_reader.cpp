@@ -79,6 +79,13 @@ class FieldReader final : public FieldVisitor {
     const bool is_builtin = glidar::text(*given).starts_with(kBuiltinPrefix);
     value = is_builtin ? given->node.Scalar() : path_beside(*given);
   }
+  void paths(const FieldInfo& field, std::vector<std::string>& values) override {
+    const auto given = value_of(field);
+    if (!given) return;
+    values.clear();
+    if (!given->node.IsSequence()) return values.push_back(path_beside(*given));
+    for (const YamlField& item : items(*given)) values.push_back(path_beside(item));
+  }
   void word(const FieldInfo& field, std::span<const char* const> words,
             std::size_t& value) override {
     if (const auto given = value_of(field)) value = one_of(*given, words_of(words));

@@ -93,11 +93,14 @@ ImportRun run_import(const ImportRequest& request, const Report& report) {
   run.answer = moved_up(program, ::memfd_create("glidar-import", MFD_CLOEXEC));
   ProgressPipe pipe = make_pipe(program);
   const Clock::time_point start = Clock::now();
-  const pid_t child = start_helper(
-      {program, request.model.string(), fmt::format("{:.17g}", request.crease_angle_rad),
-       std::to_string(run.memory_limit_bytes), fmt::format("{:.3f}", request.time_limit_s),
-       std::to_string(::getpid())},
-      run.answer.get(), pipe.write_end.get());
+  std::vector<std::string> arguments = {program,
+                                        request.model.string(),
+                                        fmt::format("{:.17g}", request.crease_angle_rad),
+                                        std::to_string(run.memory_limit_bytes),
+                                        fmt::format("{:.3f}", request.time_limit_s),
+                                        std::to_string(::getpid())};
+  for (const fs::path& folder : request.texture_folders) arguments.push_back(folder.string());
+  const pid_t child = start_helper(std::move(arguments), run.answer.get(), pipe.write_end.get());
   pipe.write_end.reset();
   bool in_time = false;
   try {

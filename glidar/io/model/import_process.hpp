@@ -10,18 +10,20 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
 /// A run of the import process. Model importers crash on malicious and on some valid files, so
-/// they run in a separate process, which may read the model's folder and must stay within
-/// these limits.
+/// they run in a separate process, which may read the model's folder and the texture folders, and
+/// must stay within these limits.
 struct ImportRequest {
   std::filesystem::path model;  ///< canonical path
   double crease_angle_rad = 0.785398163397448310;
   double time_limit_s = 20.0;
   std::uint64_t memory_limit_bytes =
       0;  ///< address space; 0: default_memory_limit of the file's size
+  std::vector<std::filesystem::path> texture_folders = {};  ///< canonical
 };
 
 struct ImportRun {

@@ -162,7 +162,7 @@ auto fields(Is<ImportedModel> auto& imported) {
   auto& model = imported.model;
   return std::tie(model.format, model.mesh, model.materials, model.textures, model.parts,
                   model.nodes, model.missing_textures, model.notes, model.stated, model.loaded,
-                  model.declared, imported.files, imported.absent, imported.texture_folders,
+                  model.declared, imported.files, imported.absent, imported.material_folders,
                   imported.lookups, imported.libraries, imported.hashes, imported.sandbox_notes);
 }
 

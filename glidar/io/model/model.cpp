@@ -54,6 +54,22 @@ fs::path model_file(const std::string& source) {
   return real;
 }
 
+/// The options with canonical paths of folders.
+ModelOptions resolved(ModelOptions options) {
+  for (fs::path& folder : options.texture_folders) {
+    std::error_code error;
+    const fs::path real = fs::canonical(folder, error);
+    if (error || !fs::is_directory(real, error)) {
+      throw Error({.where = "texture folder",
+                   .found = "'" + folder.string() + "' is not a folder",
+                   .allowed = "a folder",
+                   .remedy = "check the path"});
+    }
+    folder = real;
+  }
+  return options;
+}
+
 struct Loaded {
   ImportedModel imported;
   std::string hash;
@@ -65,7 +81,7 @@ Loaded import(const fs::path& file, const ModelOptions& options, const Report& r
   const double time_limit_s =
       options.time_limit_s > 0.0 ? options.time_limit_s : default_time_limit_s(fs::file_size(file));
   const ImportRequest request{file, options.crease_angle_rad, time_limit_s,
-                              options.memory_limit_bytes};
+                              options.memory_limit_bytes, options.texture_folders};
   Loaded loaded;
   {
     const ImportRun run = run_import(request, report);
@@ -74,7 +90,7 @@ Loaded import(const fs::path& file, const ModelOptions& options, const Report& r
   loaded.hash = combined_hash(loaded.imported.hashes);
   // They depend on the run, not on the model.
   std::vector<std::string> sandbox_notes = std::exchange(loaded.imported.sandbox_notes, {});
-  const std::string changed = changed_file(loaded.imported, file);
+  const std::string changed = changed_file(loaded.imported, file, options.texture_folders);
   if (!changed.empty()) {
     report.warn(changed + " was changed while it was read; the model has its earlier content");
   } else if (entry) {
@@ -201,7 +217,7 @@ Model load_model(const std::string& source, const ModelOptions& options, const R
     return model;
   }
   const fs::path file = model_file(source);
-  Loaded loaded = load_file(file, options, report);
+  Loaded loaded = load_file(file, resolved(options), report);
   Model model = std::move(loaded.imported.model);
   model.source = source;
   model.hash = std::move(loaded.hash);

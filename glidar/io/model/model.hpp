@@ -6,6 +6,7 @@
 #include <glidar/core/scene.hpp>
 
 #include <Eigen/Geometry>
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -24,10 +25,15 @@ struct ModelOptions {
   bool centre = false;  ///< move the centre of the model's bounding box to the origin
   double crease_angle_rad =
       0.785398163397448310;  ///< generated normals do not smooth sharper edges
+  /// More folders that the import process may read; textures outside the model's folder are
+  /// searched below them by the last components of their names.
+  std::vector<std::filesystem::path> texture_folders;
   bool use_cache = true;
   std::filesystem::path cache_folder;    ///< empty: $XDG_CACHE_HOME/glidar or ~/.cache/glidar
   double time_limit_s = 0.0;             ///< for the import process; 0: 20 s, more for big files
   std::uint64_t memory_limit_bytes = 0;  ///< for the import process; 0: 1 GiB, more for big files
+
+  auto operator<=>(const ModelOptions&) const = default;
 };
 
 /// The unit and the up axis of a model's coordinates.
@@ -95,7 +101,7 @@ struct Model {
 /// Loads a file of any format that Assimp reads, or a built-in model (make_builtin_model()).
 /// The importer runs in a separate process (glidar-import) with limits on time and memory, and
 /// reads only below the model's folder (in a model package with `model.config`, or with `meshes`
-/// and `materials` side by side, below the package's).
+/// and `materials` side by side, below the package's) and the texture folders.
 /// Coordinates are those of the file with node transforms. Unit and up axis are those of the
 /// options, else those that the file declares: COLLADA (`unit`, `up_axis`; without them 1 m and y),
 /// FBX (UnitScaleFactor in cm, UpAxis), 3MF and AMF (`unit`; without it 1 mm; z is up), glTF (1 m

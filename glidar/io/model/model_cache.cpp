@@ -52,8 +52,9 @@ bool still_absent(const std::string& path, const ModelFolder& folder) {
 bool holds(const CachedFile& cached, const CacheEntry& entry, const fs::path& canonical_model) {
   const CacheIndex& index = cached.index;
   const ImportedModel& imported = cached.imported;
-  ModelFolder folder = model_folder(canonical_model);
-  folder.material_folders.assign(imported.texture_folders.begin(), imported.texture_folders.end());
+  ModelFolder folder = model_folder(canonical_model, entry.texture_folders);
+  folder.material_folders.assign(imported.material_folders.begin(),
+                                 imported.material_folders.end());
   if (index.importer != entry.importer || index.importer.empty() ||
       imported.files.front() != canonical_model.string() || index.root != folder.root.string() ||
       index.folder != folder.folder.string() ||
@@ -66,7 +67,7 @@ bool holds(const CachedFile& cached, const CacheEntry& entry, const fs::path& ca
   for (const TextureLookup& lookup : imported.lookups) {
     if (find_texture(lookup.name, folder) != lookup) return false;
   }
-  return changed_file(imported, canonical_model).empty();
+  return changed_file(imported, canonical_model, entry.texture_folders).empty();
 }
 
 }  // namespace
@@ -81,12 +82,12 @@ std::optional<CacheEntry> cache_entry(const fs::path& canonical_model, const Mod
     report.warn(folder.problem);
     return std::nullopt;
   }
-  const std::string key =
-      fmt::format("{}\n{:.17g}", canonical_model.string(), options.crease_angle_rad);
+  std::string key = fmt::format("{}\n{:.17g}", canonical_model.string(), options.crease_angle_rad);
+  for (const fs::path& one : options.texture_folders) key += "\n" + one.string();
   ContentHash hash;
   hash.add(key.data(), key.size());
   return CacheEntry{std::move(folder), hex(hash.value()) + ".model", importer_version(),
-                    limit_bytes};
+                    options.texture_folders, limit_bytes};
 }
 
 std::optional<CachedModel> read_cache(const CacheEntry& entry, const fs::path& canonical_model) {
@@ -104,13 +105,17 @@ std::optional<CachedModel> read_cache(const CacheEntry& entry, const fs::path& c
   }
 }
 
-std::string changed_file(const ImportedModel& imported, const fs::path& canonical_model) {
-  const ModelFolder folder = model_folder(canonical_model);
+std::string changed_file(const ImportedModel& imported, const fs::path& canonical_model,
+                         const std::vector<fs::path>& texture_folders) {
+  const ModelFolder folder = model_folder(canonical_model, texture_folders);
   if (imported.files.front() != canonical_model.string()) {
     reject_answer(canonical_model, "it is for another model");
   }
-  for (const std::string& place : imported.texture_folders) {
-    if (!is_inside(place, folder.root)) reject_answer(canonical_model, "a folder outside");
+  const std::vector<fs::path> allowed = folder.allowed();
+  for (const std::string& place : imported.material_folders) {
+    const bool is_allowed = std::any_of(allowed.begin(), allowed.end(),
+                                        [&](const fs::path& one) { return is_inside(place, one); });
+    if (!is_allowed) reject_answer(canonical_model, "a folder outside");
   }
   std::string changed;
   for (std::size_t i = 0; i < imported.files.size() && changed.empty(); ++i) {

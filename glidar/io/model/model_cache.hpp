@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -17,7 +18,8 @@ struct CacheEntry {
   CacheFolder folder;
   std::string name;
   std::string importer;  ///< version of the import program; a different one invalidates the file
-  std::uint64_t limit_bytes = 0;  ///< of all entries together
+  std::vector<std::filesystem::path> texture_folders;  ///< of the options
+  std::uint64_t limit_bytes = 0;                       ///< of all entries together
 };
 
 /// The cache entry of a model with these options; empty when there is no folder
@@ -42,7 +44,8 @@ std::optional<CachedModel> read_cache(const CacheEntry& entry,
 /// is not sufficient: a model is cached only when the files have the hashes that it reports.
 /// Throws Error when it lists files or folders that it must not read.
 std::string changed_file(const ImportedModel& imported,
-                         const std::filesystem::path& canonical_model);
+                         const std::filesystem::path& canonical_model,
+                         const std::vector<std::filesystem::path>& texture_folders = {});
 
 /// One hash of all files: the model file first, the others in the order of their hashes, so that
 /// renaming the folder changes nothing.

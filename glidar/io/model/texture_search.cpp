@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -19,6 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kPlaces = {"", "textures", "materials/textures",
                                                      "../materials/textures", "../textures"};
+/// Of names that are paths.
+constexpr std::array<std::string_view, 3> kSchemes = {"file://", "model://", "package://"};
 constexpr std::string_view kPadding = " \t\r\n\v\f\"";
 constexpr std::size_t kMaxTextureName = 4096;  // PATH_MAX of Linux
 
@@ -30,11 +34,19 @@ bool is_absolute(const std::string& path) {
   return path.front() == '/' || (path.size() > 1 && path[1] == ':');
 }
 
-/// The names to search for, the model's own first.
-std::vector<std::string> spellings(const std::string& name) {
+/// The name without padding and scheme, with slashes.
+std::string tidied(const std::string& name) {
   std::string tidy(trimmed(name, kPadding));
   std::replace(tidy.begin(), tidy.end(), '\\', '/');
-  if (tidy.starts_with("file://")) tidy.erase(0, 7);
+  for (const std::string_view scheme : kSchemes) {
+    if (tidy.starts_with(scheme)) return tidy.substr(scheme.size());
+  }
+  return tidy;
+}
+
+/// The names to search for, the model's own first.
+std::vector<std::string> spellings(const std::string& name) {
+  const std::string tidy = tidied(name);
   std::vector<std::string> all;
   const auto add = [&all](std::string spelling) {
     if (spelling.empty()) return;
@@ -68,7 +80,26 @@ std::optional<fs::path> any_case(const fs::path& place, const std::string& base)
 }
 
 bool has_scheme(std::string_view name) {
-  return name.find("://") != std::string_view::npos && !name.starts_with("file://");
+  return name.find("://") != std::string_view::npos &&
+         std::none_of(kSchemes.begin(), kSchemes.end(),
+                      [name](std::string_view scheme) { return name.starts_with(scheme); });
+}
+
+/// The last components of the name, most of them first: of "../a/b.png" a/b.png and b.png.
+std::vector<fs::path> endings(const std::string& name) {
+  std::vector<fs::path> all;
+  constexpr std::ptrdiff_t kMost = 16;  // components
+  const std::string tidy = tidied(name);
+  for (const std::string& spelling : {tidy, percent_decoded(tidy)}) {
+    const fs::path path = fs::path(spelling).lexically_normal().relative_path();
+    for (auto from = path.begin(); from != path.end(); ++from) {
+      if (*from == ".." || std::distance(from, path.end()) > kMost) continue;
+      fs::path ending;
+      for (auto part = from; part != path.end(); ++part) ending /= *part;
+      all.push_back(std::move(ending));
+    }
+  }
+  return all;
 }
 
 /// Folders to search, in this order.
@@ -102,6 +133,9 @@ TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
   TextureLookup result{name, "", "not found"};
   if (name.size() > kMaxTextureName) return {name, "", "the name is too long for a file"};
   if (has_scheme(trimmed(name, kPadding))) return {name, "", "network addresses are not followed"};
+  if (name.find("://") != std::string::npos && !name.starts_with("file://")) {
+    result.reason = "not found; name the folder of its package with --texture-folder";
+  }
   const std::vector<std::string> wanted = spellings(name);
   const auto take = [&](const fs::path& path) {
     const ConfinedFile file = confine(path, folder);
@@ -111,12 +145,19 @@ TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
     }
     return file.access == Access::granted;
   };
-  const std::vector<fs::path> look_in = places(folder);
+  std::vector<fs::path> look_in = places(folder);
   for (const std::string& spelling : wanted) {
     for (const fs::path& place : look_in) {
       if (take(place / spelling)) return result;
     }
   }
+  const std::vector<fs::path>& others = folder.texture_folders;
+  for (const fs::path& ending : others.empty() ? std::vector<fs::path>() : endings(name)) {
+    for (const fs::path& place : others) {
+      if (take(place / ending)) return result;
+    }
+  }
+  look_in.insert(look_in.end(), others.begin(), others.end());
   for (const fs::path& place : look_in) {
     for (const std::string& spelling : wanted) {
       const auto match = any_case(place, base_name(spelling));

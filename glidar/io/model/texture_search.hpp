@@ -20,12 +20,13 @@ struct TextureLookup {
 /// The text with percent-encoding such as %20 decoded.
 std::string percent_decoded(const std::string& text);
 
-/// Searches for the file of a texture name, never outside the model's root.
-/// The name is used as it is and normalised (surrounding spaces, backslashes, `file://`, %20),
-/// absolute and `C:\` paths are cut to their base name, and it is searched as given, then by its
-/// base name, in the model's folder, `textures/`, `materials/textures/` and, in a model package,
-/// `../materials/textures/` and `../textures/`, then in the folders of material files; finally in
-/// the same folders ignoring letter case.
+/// Searches for the file of a texture name, never outside the model's root and the texture folders.
+/// The name is used as it is and normalised (surrounding spaces, backslashes, %20, `file://`,
+/// `model://`, `package://`), absolute and `C:\` paths are cut to their base name, and it is
+/// searched as given, then by its base name, in the model's folder, `textures/`,
+/// `materials/textures/` and, in a model package, `../materials/textures/` and `../textures/`, then
+/// in the folders of material files; then by its last components, most of them first, below each
+/// texture folder; finally by its base name in all these folders ignoring letter case.
 TextureLookup find_texture(const std::string& name, const ModelFolder& folder);
 
 }  // namespace glidar

@@ -96,6 +96,12 @@ def threemf(names="", item='<item objectid="1"/>', pictures=(), encoding="utf-8"
     return data.getvalue()
 
 
+def damaged(package):
+    """With another byte in the compressed data of the model, which its checksum shows."""
+    at = package.index(b"3D/3dmodel.model") + len("3D/3dmodel.model") + 100
+    return package[:at] + bytes([package[at] ^ 1]) + package[at + 1:]
+
+
 def zae():
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
@@ -110,10 +116,11 @@ PACKAGES = {"plain.3mf": threemf(), "thumbnail.3mf": threemf(pictures=["Metadata
             "utf16le.dae": dae().replace("utf-8", "utf-16").encode("utf-16"), "utf16be.dae": b"\xfe\xff" + dae().replace("utf-8", "utf-16").encode("utf-16-be")}
 BAD_PACKAGES = {"parts elsewhere": (threemf(PRODUCTION, '<item objectid="1" p:path="/3D/b.model"/>'), "production extension"),
                 "required": (threemf(PRODUCTION + ' requiredextensions="p"'), "requires the extension"),
-                "damaged": (threemf().replace(b"\xcb", b"\xcc"), "")}
+                "damaged": (damaged(threemf()), "its archive is damaged: '3D/3dmodel.model'")}
 
 UNREAD = {  # file name, first bytes, the name in the message
     "a.wrl": (b"#VRML V2.0 utf8\n", "VRML"), "a.obj": (b"#VRML V1.0 ascii\n", "VRML"), "b.wrl": (b"Separator {}", "VRML"),
+    "a.x3d": (b"<?xml version='1.0'?><X3D/>", "X3D"), "b.xml": (b"<?xml version='1.0'?>\n<X3D profile='Full'>", "X3D"),
     "a.x3dv": (b"#X3D V3.3 utf8\n", "X3D (classic encoding)"), "a.step": (b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));", "STEP"),
     "a.stp": (b"ISO-10303-21;", "STEP"), "a.igs": (b" " * 72 + b"S      1\n", "IGES"), "a.iges": (b"x", "IGES"), "a.usda": (b"#usda 1.0\n", "USD (text)"),
     "a.usd": (b"PXR-USDC\0", "USD (binary)"), "a.usdz": (b"PK\3\4" + bytes(22) + b"\5\0\0\0a.usd", "USD"), "a.blend": (b"BLENDER-v300", "Blender"),

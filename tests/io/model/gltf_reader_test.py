@@ -252,6 +252,7 @@ NOTED = {
     "line strip": (lambda: points_too(3), "3 points and lines are left out"),
     "other scenes": (lambda: changed(lambda j: j["scenes"].append({})), "scenes[0] of 2 scenes is loaded: it is the default"),
     "no default scene": (lambda: changed(lambda j: [j.pop("scene"), j["scenes"].append({})]), "the file names no default"),
+    "limits of indices": (lambda: changed(lambda j: j["accessors"][1].update(min=[0], max=[7])), "accessors[1].max[0]: 7 is stated, the data has 3"),
     "nodes outside": (lambda: changed(lambda j: j["nodes"].append({"mesh": 0})), "1 nodes with meshes are not in the scene"),
     "hidden nodes": (lambda: changed(lambda j: [j["nodes"].append({"mesh": 0, "extensions": {"KHR_node_visibility": {"visible": False}}}),
                                                 j["scenes"][0].update(nodes=[0, 1])]), "1 nodes are hidden"),
@@ -297,6 +298,43 @@ class GltfReader(unittest.TestCase):
                 with self.subTest(name, suffix=suffix):
                     made = make()
                     self.compare(self.read(made, "a" + suffix), Reader(self.folder / ("a" + suffix)).triangles())
+
+    def test_what_the_document_states_is_loaded(self):
+        for name, make in SHAPES.items():
+            with self.subTest(name):
+                report = self.read(make())
+                stated, loaded = report["stated"], report["loaded"]
+                self.assertEqual((stated["faces"], stated["instances"]), (loaded["faces"], loaded["instances"]))
+                self.assertEqual(stated["vertices"] - loaded["vertices"], 2 if name == "without indices" else 0)  # of 5, no triangle has
+
+    def test_boxes_are_stated_by_the_limits_of_positions_through_the_nodes(self):
+        turned = with_nodes([{"mesh": 0, "rotation": [0, 0, 0.6, 0.8]}])
+        for name, made, top in (("floats", plate(), 1), ("normalized", positions("u2", True), 100), ("turned", turned, 1), ("morph", morphed([0.5]), 1),
+                                *((name, SHAPES[name](), 1) for name in ("matrix", "mirrored", "tree"))):
+            with self.subTest(name):
+                made.json["accessors"][0].update(min=[0, 0, 0], max=[top, top, 0])
+                report = self.read(made)
+                if name in ("turned", "morph"):  # the box of a box is larger
+                    self.assertIsNone(report["stated"]["min"])
+                    continue
+                for key in ("min", "max"):
+                    np.testing.assert_allclose(report["stated"][key], report["loaded"][key], atol=1e-6)
+
+    def test_vertices_that_no_triangle_has_are_stated_and_not_loaded(self):
+        made = Gltf()
+        made.primitive([*SQUARE, [9, 9, 9]], [0, 1, 2, 0, 2, 3])
+        made.json["accessors"][0].update(min=[0, 0, 0], max=[9, 9, 9])
+        report = self.read(made)
+        self.assertEqual((report["stated"]["vertices"], report["loaded"]["vertices"]), (5, 4))
+        np.testing.assert_allclose(report["stated"]["max"], [9, 9, 9])
+        np.testing.assert_allclose(report["loaded"]["max"], [1, 1, 0])
+
+    def test_too_many_copies_of_a_mesh_are_refused(self):
+        count = (1 << 20) + 1
+        made = copies(TRANSLATION=(np.zeros((count, 3)), "f4"))
+        made.json["buffers"] = [{"byteLength": len(made.bytes), "uri": "a.bin"}]
+        (self.folder / "a.bin").write_bytes(made.bytes)
+        self.assertIn("more than 100000000 triangles or 1048576 parts", str(info(made.write(self.folder / "a.gltf"))))
 
     def test_invalid_statements_are_refused_with_their_path(self):
         for name, (make, message) in REFUSED.items():

@@ -127,6 +127,28 @@ TEST_F(ModelCache, ACorruptFileIsReplaced) {
   EXPECT_EQ(testing::read_file(cache_file()), whole);
 }
 
+TEST_F(ModelCache, TextureFoldersAreReadInTheSandboxAndBelongToTheEntry) {
+  const TestFolder art;
+  const fs::path hidden = art.write("other/shine.ppm", testing::ppm(1, 1, "abc"));
+  EXPECT_EQ(load().missing_textures.size(), 1U);
+  options_.texture_folders = {art.path()};
+  EXPECT_EQ(load().missing_textures.size(), 1U);  // not below a deeper folder
+  options_.texture_folders = {art.path(), art.path() / "other"};
+  const Model found = load();
+  EXPECT_FALSE(found.from_cache);
+  EXPECT_EQ(found.missing_textures.size(), 0U);
+  EXPECT_EQ(found.files.back(), hidden.string());
+  EXPECT_TRUE(load().from_cache);
+  art.write("other/shine.ppm", testing::ppm(1, 1, "abd"));
+  EXPECT_FALSE(load().from_cache);
+  art.write("shine.ppm", testing::ppm(2, 1, "abc"));  // is searched first
+  const Model other = load();
+  EXPECT_FALSE(other.from_cache);
+  EXPECT_EQ(other.files.back(), (art.path() / "shine.ppm").string());
+  options_.texture_folders = {art.path() / "gone"};
+  EXPECT_THAT(testing::load_error(file_, options_), HasSubstr("gone' is not a folder"));
+}
+
 TEST_F(ModelCache, AnotherImporterInvalidatesTheEntry) {
   load();
   auto entry = cache_entry(fs::canonical(file_), options_, {});
@@ -228,12 +250,14 @@ TEST_F(ModelCache, UnverifiedHashesOfTheImportProcessAreNotCached) {
   EXPECT_EQ(changed_file(imported, file_), file_.string());
   imported.hashes = {hex(*hash_file(file_))};
   EXPECT_EQ(changed_file(imported, file_), "");
-  imported.texture_folders = {"/etc"};
+  imported.material_folders = {"/etc"};
   EXPECT_THROW(changed_file(imported, file_), Error);
-  imported.texture_folders = {};
+  imported.material_folders = {};
   imported.files.emplace_back("/etc/passwd");
   imported.hashes.push_back(hex(*hash_file("/etc/passwd")));
   EXPECT_THROW(changed_file(imported, file_), Error);
+  EXPECT_THROW(changed_file(imported, file_, {"/etc/ssl"}), Error);
+  EXPECT_EQ(changed_file(imported, file_, {"/etc"}), "");
   imported.files = {(temp_ / "a.mtl").string()};
   EXPECT_THROW(changed_file(imported, file_), Error);
 }

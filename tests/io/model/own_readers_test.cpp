@@ -96,6 +96,7 @@ std::vector<Case> obj_cases() {
        "line 5: a face names a 'vt'"},
       {"no_such_vn", f, one + "f 1//4 2//4 3//-1\n", 1, 0.5, "line 4: a face names a 'vn'"},
       {"smoothing", f, one + "s 1\nf 1 2 3\n", 1, 0.5, "smoothing groups (line 4)"},
+      {"no_corners", f, one + "f\nf 1 2 3\n", 1, 0.5, "fewer than 3 corners"},
       {"smoothing_off", f, one + "s off\nf 1 2 3\n", 1, 0.5},
       {"lines", f, one + "l 1 2\np 3\nf 1 2 3\n", 1, 0.5, "2 points and lines"},
       {"curve", f, one + "curv 0 1 1 2 \\\n 3\nend\nf 1 2 3\n", 1, 0.5, "'curv' (line 4)"},
@@ -249,6 +250,9 @@ std::vector<Case> off_cases() {
       {"lines", f, "OFF\n4 2 0\n" + square + "4 0 1 2 3\n2 0 1\n", 2, 1.0, "1 points and lines"},
       {"four", f, "4OFF\n1 0 0\n0 0 0 1\n", 0, 0.0, "line 1"},
       {"any_dimension", f, "nOFF\n3\n1 0 0\n0 0 0\n", 0, 0.0, "line 1"},
+      {"colours_that_are_not_stated", f,
+       "OFF\n3 1 0\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n", 1, 0.5,
+       "the first line does not state"},
       {"more_numbers", f, "OFF\n4 1 0\n0 0 0 1\n" + square, 0, 0.0, "line 3"},
       {"index_beyond", f, "OFF\n4 1 0\n" + square + "4 0 1 2 4\n", 0, 0.0, "line 7"},
       {"missing_corner", f, "OFF\n4 1 0\n" + square + "4 0 1 2\n", 0, 0.0, "line 7"},
@@ -435,6 +439,26 @@ TEST(ModelMtl, OptionsAndOddLines) {
   EXPECT_EQ(model.materials[1].diffuse, Eigen::Vector3f(0, 1, 0));
   EXPECT_THAT(model.notes, Contains(HasSubstr("a b.mtl, line 3")));
   EXPECT_THAT(model.notes, Contains(HasSubstr("Ni, aniso")));
+}
+
+TEST(ModelNotes, RepeatedOnesAreCountedAndTheirNumberIsLimited) {
+  const TestFolder temp;
+  std::string lines;
+  for (int i = 0; i < 100'000; ++i) lines += "f 1 2\n";
+  const Model model = load(temp.write("a.obj", kSquare + "f 1 2 3 4\n" + lines));
+  EXPECT_THAT(model.notes,
+              Contains("line 6: a face has fewer than 3 corners: left out; 99999 more such lines"));
+  EXPECT_LT(model.notes.size(), 4U);
+  std::string header = "ply\nformat ascii 1.0\n";
+  for (int i = 0; i < 100'000; ++i) header += "x" + std::to_string(i) + "\n";
+  const Model other =
+      load(temp.write("a.ply", header + "element vertex 3\nproperty float x\nproperty float "
+                                        "y\nproperty float z\nelement face 1\nproperty list "
+                                        "uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n"
+                                        "0 1 0\n3 0 1 2\n"));
+  ASSERT_EQ(other.notes.size(), 11U);
+  EXPECT_THAT(other.notes.front(), HasSubstr("line 3: 'x0'"));
+  EXPECT_EQ(other.notes.back(), "and 99990 more notes");
 }
 
 TEST(ModelContents, WhatIsMissingIsNamed) {

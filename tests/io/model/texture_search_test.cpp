@@ -119,6 +119,53 @@ TEST(TextureSearch, ALinkOutOfTheRootIsRejected) {
               ::testing::StartsWith("outside the model's folder"));
 }
 
+/// A model's folder, and a texture folder beside it.
+class TextureFolders : public ::testing::Test {
+ protected:
+  TextureFolders() { temp_.write("art/skins/images/a.png", "x"); }
+  [[nodiscard]] TextureLookup find(const std::string& name) const {
+    return find_texture(name, folder_);
+  }
+
+  TestFolder temp_;
+  ModelFolder folder_ = model_folder(temp_.write("model/a.obj", "x"), {temp_ / "art/skins"});
+};
+
+TEST_F(TextureFolders, AreSearchedByTheLastComponentsOfTheName) {
+  for (const char* name :
+       {"../images/a.png", "../../x/images/a.png", "/home/somebody/images/a.png", "images\\a.png",
+        "C:\\art\\images\\a.png", "model://NAME/images/a.png", "package://NAME/images/a.png",
+        "file:///home/images/a.png", "..%2Fimages/a.png"}) {
+    EXPECT_EQ(find(name).found, (temp_ / "art/skins/images/a.png").string()) << name;
+  }
+}
+
+TEST_F(TextureFolders, MoreComponentsWinOverFewerAndTheModelsFolderOverAll) {
+  temp_.write("art/skins/a.png", "x");
+  EXPECT_EQ(find("../images/a.png").found, (temp_ / "art/skins/images/a.png").string());
+  EXPECT_EQ(find("../other/a.png").found, (temp_ / "art/skins/a.png").string());
+  temp_.write("model/a.png", "x");
+  EXPECT_EQ(find("../images/a.png").found, (temp_ / "model/a.png").string());
+}
+
+TEST_F(TextureFolders, AreSearchedInTheirOrderIgnoringLetterCaseLast) {
+  const fs::path second = temp_.write("more/B.PNG", "x");
+  folder_.texture_folders.push_back(temp_ / "more");
+  EXPECT_EQ(find("../b.png").found, second.string());
+  const fs::path exact = temp_.write("art/skins/b.png", "x");
+  EXPECT_EQ(find("../b.png").found, exact.string());
+}
+
+TEST_F(TextureFolders, NothingOutsideOfThemIsFound) {
+  temp_.write("art/secret.png", "x");
+  fs::create_symlink("../secret.png", temp_ / "art/skins/link.png");
+  for (const char* name : {"../art/secret.png", "../link.png", "model://skins/../secret.png"}) {
+    EXPECT_EQ(find(name).found, "") << name;
+  }
+  EXPECT_THAT(find("../art/secret.png").reason, ::testing::HasSubstr("--texture-folder"));
+  EXPECT_THAT(find("model://NAME/b.png").reason, ::testing::HasSubstr("--texture-folder"));
+}
+
 TEST(TextureSearch, FoldersAndDevicesAreNotAcceptedAsTextures) {
   const TestFolder temp;
   fs::create_directory(temp.path() / "a.png");
