@@ -97,7 +97,7 @@ ImportRun run_import(const ImportRequest& request, const Report& report) {
       {program, request.model.string(), fmt::format("{:.17g}", request.crease_angle_rad),
        std::to_string(run.memory_limit_bytes), fmt::format("{:.3f}", request.time_limit_s),
        std::to_string(::getpid())},
-      run.answer.get(), pipe.write_end.get());
+      {.answer = run.answer.get(), .control = pipe.write_end.get()});
   pipe.write_end.reset();
   bool in_time = false;
   try {
