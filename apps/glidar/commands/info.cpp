@@ -251,7 +251,7 @@ int run_info(const InfoFlags& flags) {
   if (flags.json) {
     // names in files may be invalid UTF-8; invalid bytes are replaced
     const Json json = json_of(report, up_hint);
-    print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+    print_json(json);
   } else {
     print_table(report, up_hint);
   }

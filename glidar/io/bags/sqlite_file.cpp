@@ -49,11 +49,12 @@ int read_database(sqlite3_file* file, void* to, int count, sqlite3_int64 offset)
   return found == bytes.size() ? SQLITE_OK : SQLITE_IOERR_SHORT_READ;
 }
 
-int refuse_write(sqlite3_file*, const void*, int, sqlite3_int64) {
+int refuse_write(sqlite3_file* /*file*/, const void* /*from*/, int /*count*/,
+                 sqlite3_int64 /*offset*/) {
   return SQLITE_READONLY;
 }
 
-int refuse_size(sqlite3_file*, sqlite3_int64) {
+int refuse_size(sqlite3_file* /*file*/, sqlite3_int64 /*size*/) {
   return SQLITE_READONLY;
 }
 
@@ -62,24 +63,24 @@ int size_of_database(sqlite3_file* file, sqlite3_int64* size) {
   return SQLITE_OK;
 }
 
-int accept(sqlite3_file*, int) {
+int accept(sqlite3_file* /*file*/, int /*what*/) {
   return SQLITE_OK;
 }
 
-int find_no_lock(sqlite3_file*, int* is_locked) {
+int find_no_lock(sqlite3_file* /*file*/, int* is_locked) {
   *is_locked = 0;
   return SQLITE_OK;
 }
 
-int know_no_control(sqlite3_file*, int, void*) {
+int know_no_control(sqlite3_file* /*file*/, int /*control*/, void* /*argument*/) {
   return SQLITE_NOTFOUND;
 }
 
-int sector_size(sqlite3_file*) {
+int sector_size(sqlite3_file* /*file*/) {
   return 4096;
 }
 
-int characteristics(sqlite3_file*) {
+int characteristics(sqlite3_file* /*file*/) {
   return SQLITE_IOCAP_IMMUTABLE;
 }
 
@@ -101,7 +102,8 @@ sqlite3_io_methods file_methods() {
   return methods;
 }
 
-int open_database(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* out_flags) {
+int open_database(sqlite3_vfs* /*vfs*/, const char* name, sqlite3_file* file, int flags,
+                  int* out_flags) {
   static const sqlite3_io_methods kMethods = file_methods();
   file->pMethods = nullptr;
   if (name == nullptr || (flags & SQLITE_OPEN_MAIN_DB) == 0) return SQLITE_CANTOPEN;
@@ -117,18 +119,19 @@ int open_database(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags,
   return SQLITE_OK;
 }
 
-int refuse_delete(sqlite3_vfs*, const char*, int) {
+int refuse_delete(sqlite3_vfs* /*vfs*/, const char* /*name*/, int /*is_synced*/) {
   return SQLITE_IOERR_DELETE;
 }
 
-int find_nothing(sqlite3_vfs*, const char*, int, int* is_there) {
+int find_nothing(sqlite3_vfs* /*vfs*/, const char* /*name*/, int /*flags*/, int* is_there) {
   *is_there = 0;
   return SQLITE_OK;
 }
 
-int keep_name(sqlite3_vfs*, const char* name, int size, char* to) {
-  if (std::strlen(name) >= static_cast<std::size_t>(size)) return SQLITE_CANTOPEN;
-  std::strcpy(to, name);
+int keep_name(sqlite3_vfs* /*vfs*/, const char* name, int size, char* to) {
+  const std::size_t bytes = std::strlen(name) + 1;
+  if (bytes > static_cast<std::size_t>(size)) return SQLITE_CANTOPEN;
+  std::memcpy(to, name, bytes);
   return SQLITE_OK;
 }
 
