@@ -10,7 +10,7 @@ import hostile
 
 
 class HostileClients:
-    """For a run with peace, findings, endpoint, port and connect(); each client continues until there is peace."""
+    """For a run with attack_end, findings, endpoint, port and connect(); each client continues until attack_end."""
 
     def hostile_clients(self):
         return [self.send_garbage, self.send_endless, self.subscribe_without_end, self.hold_connections, self.flood,
@@ -18,7 +18,7 @@ class HostileClients:
 
     def attack(self, do, pause_s=0.2):
         """Again and again; a connection that is closed or refused is what should happen."""
-        while not self.peace.wait(pause_s):
+        while not self.attack_end.wait(pause_s):
             with contextlib.suppress(OSError):
                 do()
             self.findings.add(attacks=1)
@@ -63,7 +63,7 @@ class HostileClients:
     def send_until_closed(self, port, socket_type, data, seconds=5):
         with hostile.Peer(port, socket_type) as peer:
             end = time.monotonic() + seconds
-            while time.monotonic() < end and not self.peace.is_set() and not peer.is_closed():
+            while time.monotonic() < end and not self.attack_end.is_set() and not peer.is_closed():
                 peer.send_some(data)
 
     def hold_connections(self, _random):
@@ -72,7 +72,7 @@ class HostileClients:
                 for port, _ in self.ports():
                     for _ in range(100):
                         held.enter_context(hostile.Peer(port))
-                self.peace.wait(2)
+                self.attack_end.wait(2)
         self.attack(do)
 
     def ask_for_too_much(self, _random):

@@ -79,7 +79,7 @@ class Soak(HostileClients):
     def __init__(self, folder, seconds, is_hostile=False):
         self.folder, self.seconds, self.findings, self.is_hostile = Path(folder), seconds, Findings(), is_hostile
         self.context, self.over, self.first_replies = zmq.Context(), threading.Event(), {}
-        self.peace = threading.Event()  # the attackers end
+        self.attack_end = threading.Event()
         self.log = open(self.folder / "log.txt", "w", encoding="utf-8")
         self.lockstep = self.start("--lockstep", "tcp://127.0.0.1:*", "--stats", "lockstep.json")
         self.endpoint = self.lockstep.stdout.readline().split()[-1]
@@ -158,11 +158,11 @@ class Soak(HostileClients):
         end = time.monotonic() - self.started + self.seconds
         attackers = self.begin(self.hostile_clients(), first_seed)
         self.watch(memory, lambda now: now > end)
-        self.peace.set()
+        self.attack_end.set()
         for thread in attackers:
             thread.join()
-        patience = time.monotonic() - self.started + MAX_WAIT_S
-        self.watch(memory, lambda now: (memory[-1][1:] <= level + HOSTILE_TOLERANCE_MB).all() or now > patience)
+        deadline = time.monotonic() - self.started + MAX_WAIT_S
+        self.watch(memory, lambda now: (memory[-1][1:] <= level + HOSTILE_TOLERANCE_MB).all() or now > deadline)
         for name, before, after in zip(PROGRAMS, level, memory[-1][1:]):
             if after > before + HOSTILE_TOLERANCE_MB:
                 self.findings.errors.append(f"{name}: memory stays at {after:.1f} MB after the attacks; it was "
@@ -316,8 +316,10 @@ def find_errors(findings, memory, stats, is_hostile=False):
         growth = growth_mb(memory[:, 0], memory[:, column])
         if growth > MEMORY_TOLERANCE_MB and not is_hostile:
             errors.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {MEMORY_TOLERANCE_MB}")
-    held = stats[0].get("held_bytes", 0)
-    if held > HELD_TOLERANCE_BYTES:
+    held = stats[0].get("held_bytes")
+    if held is None:
+        errors.append("lock-step: its statistics have no held_bytes")
+    elif held > HELD_TOLERANCE_BYTES:
         errors.append(f"lock-step: it holds {held} bytes for clients that have left")
     if not findings.has_all():
         errors.append("a client did nothing")

@@ -23,13 +23,13 @@ void limit_sqlite() {
 
 }  // namespace
 
-bool decode_file(const std::string& kind, const std::filesystem::path& path,
-                 const DecodeStreams& streams) {
-  RecordWriter records(streams.answer);
+bool decode_file(const std::string& kind, const std::filesystem::path& path, const HelperFds& fds) {
+  SharedRing ring(fds.shared);
+  RecordWriter records(fds.answer, &ring);
   try {
     if (kind == kBagDecoder.name) {
       limit_sqlite();
-      bags::send_bag(*bags::open_bag_unconfined(path), records, streams.control);
+      bags::send_bag(*bags::open_bag_unconfined(path), records, fds.control);
     } else if (kind == kCaptureDecoder.name) {
       send_packets(path, records);
     } else if (kind == kGreyImageDecoder.name) {

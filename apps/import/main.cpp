@@ -7,7 +7,8 @@
 //
 // glidar-import --decode KIND PATH MEMORY_BYTES TIME_S PARENT
 // Reads a bag, capture or image and writes its records (glidar/io/decoder/record_stream.hpp) to
-// descriptor 3; requests come from descriptor 4.
+// descriptor 3; requests come from descriptor 4, and long records are in the memory of
+// descriptor 5.
 //
 // It reads in a sandbox (sandbox.hpp). The GLIDAR library starts it; it is not for direct use.
 
@@ -60,17 +61,19 @@ int answer(const char* const* arguments, std::vector<std::filesystem::path> text
 
 int answer_records(const char* const* arguments) {
   const std::string path = arguments[3];
-  enter_sandbox({path}, kControlFd);
-  return decode_file(arguments[2], path, {kAnswerFd, kControlFd}) ? kExitAnswered : kExitFailed;
+  enter_sandbox({path}, kSharedFd);
+  return decode_file(arguments[2], path, {kAnswerFd, kControlFd, kSharedFd}) ? kExitAnswered
+                                                                             : kExitFailed;
 }
 
 int run(int argc, const char* const* argv) {
   const bool is_model = argc > 1 && std::string(argv[1]) != kDecodeOption;
   const int arguments = is_model ? 6 : 7;
   if (argc < arguments || (!is_model && argc > arguments)) return kExitFailed;
-  // A fixed threshold returns every large block to the system: glibc's own adapts and keeps some.
+  // A fixed threshold returns every large block of a model to the system: glibc's own adapts and
+  // keeps some, as the messages of a bag need.
   constexpr int kLarge_bytes = 1 << 20;
-  ::mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
+  if (is_model) ::mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
   const char* const* last = argv + arguments - 3;
   const ProcessLimits limits{std::strtoull(last[0], nullptr, 10), std::strtod(last[1], nullptr),
                              std::strtoll(last[2], nullptr, 10)};

@@ -27,7 +27,7 @@ std::vector<ObjectBox> boxes_of(Measured& measured, bool all) {
       ensure_boxes(measured);
       return measured.frame.boxes;
     }
-    const std::lock_guard turn(measured.rendered().turn);
+    const std::lock_guard lock(measured.rendered().mutex);
     return find_boxes(measured, BoxSelection::all);
   });
 }
@@ -50,7 +50,7 @@ bool lacks_boxes(const Measured& measured) {
 }
 
 void ensure_boxes(Measured& measured) {
-  const std::lock_guard turn(measured.rendered().turn);
+  const std::lock_guard lock(measured.rendered().mutex);
   if (measured.has_boxes) return;
   measured.frame.boxes = find_boxes(measured, BoxSelection::with_class);
   measured.has_boxes = true;

@@ -29,7 +29,7 @@ TracedPoint trace_point(const Measured& measured, std::size_t entry) {
     frame.sensor_id = measured.frame.sensor_id;
     frame.number = measured.frame.number;
     PreparedScene& prepared = measured.rendered();
-    const std::lock_guard turn(prepared.turn);
+    const std::lock_guard lock(prepared.mutex);
     Simulator simulator(*prepared.scene, measured.sensor, *prepared.renderer);
     TracedPoint traced{explain(simulator, *measured.motion, entry, frame, watch.progress()), ""};
     traced.text = format_trace(traced.trace, simulator, frame);

@@ -341,7 +341,7 @@ std::vector<std::string> files_read(const SceneHandle& handle) {
   return files;
 }
 
-void Turn::lock() {
+void MeasurementMutex::lock() {
   if (holder_.load() == std::this_thread::get_id()) {
     throw Error({.where = "scene",
                  .found = "a signal handler uses the scene whose measurement it interrupts",
@@ -352,7 +352,7 @@ void Turn::lock() {
   holder_.store(std::this_thread::get_id());
 }
 
-void Turn::unlock() {
+void MeasurementMutex::unlock() {
   holder_.store({});
   mutex_.unlock();
 }

@@ -22,7 +22,7 @@ namespace glidar::python {
 
 /// Measurements of a scene run one at a time. Python's signal handlers run within a measurement, in
 /// its thread, where another one of the scene would wait for it forever.
-class Turn {
+class MeasurementMutex {
  public:
   /// Throws Error in a signal handler that interrupts a measurement of the scene.
   void lock();
@@ -39,7 +39,7 @@ struct PreparedScene {
   std::shared_ptr<const Scene> scene;
   std::vector<std::string> files;      ///< all files that it was read from
   std::unique_ptr<Renderer> renderer;  ///< none: see unrendered()
-  Turn turn;
+  MeasurementMutex mutex;
 };
 
 /// A sensor on the rig of a scene file; a single one has no name.

@@ -111,7 +111,7 @@ void measure_run(const SimulatorHandle& handle, const Batch& batch, std::size_t 
 Frames measure_all(const SimulatorHandle& handle, const Batch& batch, Watch& watch) {
   Frames frames;
   for (std::size_t k = 0; k < batch.size(); ++k) frames.push_back(start(handle, batch, k));
-  const std::lock_guard turn(handle.prepared->turn);
+  const std::lock_guard lock(handle.prepared->mutex);
   for (std::size_t k = 0; k < frames.size(); k += kTogether) {
     watch.look();
     const std::size_t count = std::min(kTogether, frames.size() - k);

@@ -134,6 +134,16 @@ class Cameras(Calibrated):
         self.assertEqual((info["distortion_model"], info["d"]), ("plumb_bob", [-0.2, 0.1, 0.001, -0.002, 0.01]))
         self.assertEqual(info["k"], [60, 0.5, 31, 0, 61, 23, 0, 0, 1])
 
+    def test_calibrations_with_distortion_are_refused_for_stereo_cameras(self):
+        calibration = ("image_width: 640\nimage_height: 480\ncamera_name: left\ndistortion_model: plumb_bob\n"
+                       "camera_matrix: {{rows: 3, cols: 3, data: [600, 0, 320, 0, 600, 240, 0, 0, 1]}}\n"
+                       "distortion_coefficients: {{rows: 1, cols: 5, data: [{}, 0, 0, 0, 0]}}\n")
+        self.write("distorted.yaml", calibration.format(-0.2))
+        self.write("rectified.yaml", calibration.format(0))
+        reported = self.refused("render", *ROOM, "--sensor", "D435", "--calibration", "distorted.yaml", "-o", "a.npy")
+        self.assertIn("the optics have a lens distortion", reported)
+        self.succeed("render", *ROOM, "--sensor", "D435", "--calibration", "rectified.yaml", "-o", "a.npy")
+
     def test_images_of_cameras_that_look_back_have_ranges(self):
         self.write("s.yaml", PANORAMA)
         self.succeed("render", *ROOM, "--sensor", "s.yaml", "--columns", "range,depth", "-o", "a.npz", "-o", "a.npy",

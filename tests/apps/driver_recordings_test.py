@@ -25,7 +25,7 @@ with importing():
     from ouster.sdk.core import SensorInfo, XYZLut, destagger
     from rosbags.highlevel import AnyReader
 
-from driver_support import ROOM, DriverTest, np, points
+from driver_support import ROOM, DriverTest, np, points_of
 
 VLP16 = DATA / "recordings/velodyne/sample_velodyne_vlp16_gps.pcap"
 OUSTER = {"OS-0-128-U1_v2.3.0_1024x10": "OS-0-128-U1_v2.3.0_1024x10.pcap", "OS-1-128_v2.3.0_1024x10": "OS-1-128_v2.3.0_1024x10_lb_n3.pcap"}
@@ -60,7 +60,7 @@ class Recordings(DriverTest):
         scans = [points for _, points in vd.read_pcap(str(VLP16), config, as_pcl_structs=True)]
         real = scans[len(scans) // 2]
         self.publish(*ROOM, "--sensor", "VLP-16", "--as", "velodyne", duration="0.2")
-        mine = points(self.first("/velodyne_points"))
+        mine = points_of(self.first("/velodyne_points"))
         for name in ("x", "y", "z", "intensity", "time"):
             self.assertEqual(mine.dtype[name], real.dtype[name], name)
         # seconds before the start of the last packet, which ends 24 firings of 55.296 us after it
@@ -83,7 +83,7 @@ class Recordings(DriverTest):
                 self.write("ouster.yaml", f"name: Ouster OS\noptics: {{type: ouster, file: '{metadata}'}}\n")
                 self.publish(*ROOM, "--sensor", "ouster.yaml", "--as", "ouster")
                 cloud = self.first("/ouster/points")
-                mine = points(cloud)
+                mine = points_of(cloud)
                 self.assertEqual((cloud.height, cloud.width), (scan.h, scan.w))
                 # Rows are shifted like the recorded ones, by as many columns more or less as put +x into column 0.
                 published = SensorInfo(self.first("/ouster/metadata").data)
@@ -118,7 +118,7 @@ class Recordings(DriverTest):
             self.assertTrue((at[::2] == at[1::2]).all())  # the returns of a firing
             self.assertLess(min(at[0], 36000 - at[0]), 150)  # a cloud begins at azimuth 0
             self.assertLess(np.abs(np.diff(at[::2].astype(int)) % 36000 - 18).max(), 3)
-        stamps, counts = np.unique(points(self.first("/lidar_points"))["timestamp"], return_counts=True)
+        stamps, counts = np.unique(points_of(self.first("/lidar_points"))["timestamp"], return_counts=True)
         self.assertEqual(len(stamps), len(real))  # a time for each packet
         self.assertEqual(set(counts), {8 * 32})
 

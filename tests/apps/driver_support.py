@@ -9,6 +9,7 @@ from cli_support import CliTest
 
 try:
     import numpy as np
+    from cloud_message import points_of  # noqa: F401
     from rosbags.highlevel import AnyReader
 except ImportError as error:
     print(f"skipped: {error}")
@@ -17,7 +18,6 @@ except ImportError as error:
 ROOM = ("builtin:box:size=20,16,6", "--eye", "1,2,0", "--ground-truth")
 OPEN = ("builtin:box:size=4,4,4", "--eye", "6,0,0", "--ground-truth")  # most beams miss
 F32, F64, U8, U16, U32 = 7, 8, 2, 4, 6
-TYPES = {U8: "u1", U16: "<u2", U32: "<u4", F32: "<f4", F64: "<f8"}
 XYZI = [("x", 0, F32), ("y", 4, F32), ("z", 8, F32), ("intensity", 12, F32)]
 
 
@@ -27,13 +27,6 @@ def stamp_s(message):
 
 def stamp_ns(message):
     return message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
-
-
-def points(cloud):
-    """The points as a structured array in the shape of the message."""
-    kind = np.dtype({"names": [f.name for f in cloud.fields], "formats": [TYPES[f.datatype] for f in cloud.fields],
-                     "offsets": [f.offset for f in cloud.fields], "itemsize": cloud.point_step})
-    return np.frombuffer(bytes(cloud.data), kind).reshape(cloud.height, cloud.width)
 
 
 def layout(cloud):

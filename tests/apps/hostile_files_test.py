@@ -97,9 +97,11 @@ class Text(CliTest):
                      if character != "\n" and (unicodedata.category(character) in ("Cc", "Cf", "Zl", "Zp", "Cs"))]
             self.assertEqual(found, [], text)
 
-    def run_harmless(self, *command):
+    def run_harmless(self, *command, quotes="evil"):
+        """Runs a command that must print `quotes`, from the hostile text, and nothing that controls a terminal."""
         done = self.run_program(*command)
         self.require_harmless(done.stdout, done.stderr)
+        self.assertIn(quotes, done.stdout + done.stderr, command)
         return done
 
     def test_text_of_files_in_errors_notes_and_tables_is_printable(self):
@@ -130,22 +132,28 @@ class Text(CliTest):
         self.run_harmless("render", "m.obj", "--no-cache", *out)
         self.run_harmless("info", "m.obj")
         self.run_harmless("info", "m.obj", "--json")
-        for scene in ("scene.yaml", "missing.yaml", "key.yaml", "material.yaml"):
+        for scene in ("missing.yaml", "key.yaml", "material.yaml"):
             self.run_harmless("render", scene, *out)
-        self.run_harmless("explain", "x.pcd", "--index", "0")
-        for sensor in ("sensor.yaml", "beams.yaml", "rows.yaml", "head.yaml", "key.yaml"):
-            self.run_harmless("render", "builtin:box", "--sensor", sensor, "-o", "y.pcd")
-            self.run_harmless("sensors", sensor)
-            self.run_harmless("sensors", sensor, "--json")
-        for poses in ("poses.csv", "poses.txt"):
-            self.run_harmless("render", "builtin:box", "--trajectory", poses, *out)
+        self.run_harmless("render", "scene.yaml", *out, quotes="wrote x.pcd")
+        self.run_harmless("explain", "x.pcd", "--index", "5")
+        sensors = {"beams.yaml": "evil", "rows.yaml": "rows.csv:2: no three numbers",
+                   "head.yaml": "head.csv:2: no three numbers", "key.yaml": "evil"}
+        for sensor, quotes in sensors.items():
+            self.run_harmless("render", "builtin:box", "--sensor", sensor, "-o", "y.pcd", quotes=quotes)
+            self.run_harmless("sensors", sensor, quotes=quotes)
+            self.run_harmless("sensors", sensor, "--json", quotes=quotes)
+        self.run_harmless("render", "builtin:box", "--sensor", "sensor.yaml", "-o", "y.pcd")
+        self.run_harmless("sensors", "sensor.yaml")
+        self.run_harmless("sensors", "sensor.yaml", "--json")
+        self.run_harmless("render", "builtin:box", "--trajectory", "poses.csv", *out, quotes="poses.csv:1:1: 1 columns")
+        self.run_harmless("render", "builtin:box", "--trajectory", "poses.txt", *out)
         self.run_harmless("decode", "bag.rosbag2", "-o", "z.pcd")
         self.run_harmless("replay", "r.jsonl")
-        self.run_harmless("explain", "a.pcd", "--index", "0")
+        self.run_harmless("explain", "a.pcd", "--index", "0", quotes="the key 'glidar' is missing")
         self.run_harmless("render", bad, *out)
         self.run_harmless("render", "builtin:box", bad)
         self.run_harmless("render", "builtin:box", f"--{bad}")
-        self.run_harmless("render", "builtin:box", "--sensor", bad, *out)
+        self.run_harmless("render", "builtin:box", "--sensor", bad, "-o", "x.pcd")
 
     def test_a_line_end_in_a_name_begins_no_message(self):
         self.write("scene.yaml", 'models:\n  - {model: "a\\nglidar: error: forged"}\n')

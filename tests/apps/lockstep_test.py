@@ -244,6 +244,8 @@ class Lockstep(CliTest):
             with open(os.path.join(self.folder, "stats.json"), encoding="utf-8") as text:
                 stats = json.load(text)
             self.assertEqual((stats["requests"], stats["clouds"], stats["refused"]), (1, 3, 0))
+            self.assertEqual(stats["held_bytes"], 0)
+            self.assertGreater(stats["kept_bytes"], 0)
 
     def test_bad_options_are_refused(self):
         for endpoint, word in (("udp://x:1", "ENDPOINT|tcp://"), ("tcp://127.0.0.1", "tcp://"),

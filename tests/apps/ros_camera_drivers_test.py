@@ -9,7 +9,7 @@ realsenseai/realsense-ros 775b167, microsoft/Azure_Kinect_ROS_Driver 6ffb95a, Sl
 import math
 import unittest
 
-from driver_support import F32, ROOM, DriverTest, layout, np, points, rotation, stamp_ns
+from driver_support import F32, ROOM, DriverTest, layout, np, points_of, rotation, stamp_ns
 
 
 class Drivers(DriverTest):
@@ -42,7 +42,7 @@ class Drivers(DriverTest):
         v, u = np.nonzero(pixels)
         z = pixels[v, u] * 1e-3
         xyz = np.stack([(u - info.k[2]) / info.k[0] * z, (v - info.k[5]) / info.k[4] * z, z])
-        data = points(cloud)[0]
+        data = points_of(cloud)[0]
         self.assertEqual(data.size, z.size)
         self.assertLess(np.abs(xyz - np.stack([data[axis] for axis in "xyz"])).max(), 0.002)
 

@@ -11,7 +11,7 @@ import math
 import unittest
 from pathlib import Path
 
-from driver_support import F32, F64, OPEN, ROOM, U8, U16, U32, XYZI, DriverTest, layout, np, points, stamp_ns, stamp_s, wrapped
+from driver_support import F32, F64, OPEN, ROOM, U8, U16, U32, XYZI, DriverTest, layout, np, points_of, stamp_ns, stamp_s, wrapped
 
 
 class Drivers(DriverTest):
@@ -24,7 +24,7 @@ class Drivers(DriverTest):
         self.assertEqual(layout(cloud), [*XYZI, ("ring", 16, U16), ("time", 18, F32)])
         self.assertEqual((cloud.point_step, cloud.width, cloud.is_dense), (22, 16, False))
         self.assertIn(cloud.height, (1808, 1809))
-        data = points(cloud)
+        data = points_of(cloud)
         self.assertTrue((data["ring"] == np.arange(16)).all())
         misses = np.isnan(data["x"])
         self.assertGreater(misses.sum(), 1000)
@@ -54,7 +54,7 @@ class Drivers(DriverTest):
         self.assertEqual((scan.time_increment, scan.range_min, scan.range_max), (0, 0, 200))
         self.assertEqual(len(scan.ranges), 897)
         self.assertTrue(np.isinf(scan.ranges).any())
-        cloud = points(self.first("/velodyne_points"))[:, 8]
+        cloud = points_of(self.first("/velodyne_points"))[:, 8]
         hits = cloud[np.isfinite(cloud["x"])]
         bins = ((np.arctan2(hits["y"], hits["x"]) + np.float32(np.pi)) / np.float32(0.007)).astype(int)
         for index, x, y in zip(bins, hits["x"], hits["y"], strict=True):
@@ -63,7 +63,7 @@ class Drivers(DriverTest):
 
     def test_velodyne_leaves_out_ranges_beyond_its_limits(self):
         self.publish("builtin:box:size=1,1,1", "--eye", "0,0,0", "--ground-truth", "--sensor", "VLP-16", "--as", "velodyne")
-        self.assertTrue(np.isnan(points(self.first("/velodyne_points"))["x"]).all())  # 0.5 to 0.87 m
+        self.assertTrue(np.isnan(points_of(self.first("/velodyne_points"))["x"]).all())  # 0.5 to 0.87 m
 
     OUSTER = [("x", 0, F32), ("y", 4, F32), ("z", 8, F32), ("intensity", 16, F32), ("t", 20, U32),
               ("reflectivity", 24, U16), ("ring", 26, U16), ("ambient", 28, U16), ("range", 32, U32)]
@@ -75,7 +75,7 @@ class Drivers(DriverTest):
         self.assertEqual(layout(cloud), self.OUSTER)
         self.assertEqual((cloud.point_step, cloud.height, cloud.width), (48, 32, 1024))
         self.assertTrue(cloud.is_dense)
-        data = points(cloud)
+        data = points_of(cloud)
         self.assertTrue((data["ring"] == np.arange(32)[:, None]).all())
         self.assertGreater(data["z"][0].mean(), data["z"][-1].mean())  # row 0 is the highest
         azimuth = np.arctan2(data["y"], data["x"])
@@ -90,7 +90,7 @@ class Drivers(DriverTest):
     def test_ouster_misses_are_nan_with_range_0(self):
         self.publish(*OPEN, "--sensor", "OS1-32", "--as", "ouster")
         cloud = self.first("/ouster/points")
-        data = points(cloud)
+        data = points_of(cloud)
         self.assertFalse(cloud.is_dense)
         misses = np.isnan(data["x"])
         self.assertTrue(misses.any() and not misses.all())
@@ -107,7 +107,7 @@ class Drivers(DriverTest):
         self.assertEqual(self.parents(), {"os_sensor": "base_link", "os_lidar": "os_sensor", "os_imu": "os_sensor"})
         self.assertLess(np.abs(self.matrix("os_lidar")[:3, 3]).max(), 1e-9)  # the origin of the sensor
         self.assertLess(np.abs(self.matrix("os_imu") - np.eye(4)).max(), 1e-9)
-        data = points(self.first("/ouster/points"))
+        data = points_of(self.first("/ouster/points"))
         ranges = self.first("/ouster/range_image")
         self.assertEqual((ranges.encoding, ranges.height, ranges.width, ranges.header.frame_id),
                          ("mono16", 32, 1024, "os_lidar"))
@@ -133,7 +133,7 @@ class Drivers(DriverTest):
         self.assertAlmostEqual(scan.time_increment, 0.1 / 1024, 9)
         self.assertAlmostEqual(scan.range_min, 0.1, 6)
         self.assertEqual((scan.range_max, len(scan.ranges)), (120, 1024))
-        row = points(self.first("/ouster/points"))["range"][0] * 1e-3
+        row = points_of(self.first("/ouster/points"))["range"][0] * 1e-3
         expected = np.roll(row, -512)[::-1]
         self.assertLess(np.abs(scan.ranges - expected).max(), 1e-5)
 
@@ -163,7 +163,7 @@ class Drivers(DriverTest):
         cloud = self.first("/livox/lidar")
         self.assertEqual(layout(cloud), [*XYZI, ("tag", 16, U8), ("line", 17, U8), ("timestamp", 18, F64)])
         self.assertEqual((cloud.point_step, cloud.height, cloud.is_dense), (26, 1, True))
-        self.assertEqual(points(cloud)["timestamp"].min(), stamp_ns(cloud))
+        self.assertEqual(points_of(cloud)["timestamp"].min(), stamp_ns(cloud))
 
     def test_hesai_points_have_the_time_of_their_packet_and_azimuth_0_on_y(self):
         self.publish(*OPEN, "--sensor", "XT32", "--as", "hesai")
@@ -171,7 +171,7 @@ class Drivers(DriverTest):
         self.assertEqual(cloud.header.frame_id, "hesai_lidar")
         self.assertEqual(layout(cloud), [*XYZI, ("ring", 16, U16), ("timestamp", 18, F64)])
         self.assertEqual((cloud.point_step, cloud.height, cloud.is_dense), (26, 1, False))
-        data = points(cloud)[0]
+        data = points_of(cloud)[0]
         self.assertEqual(data.size, 32 * 2000)
         stamps, counts = np.unique(data["timestamp"], return_counts=True)
         self.assertTrue((counts == 32 * 8).all())  # 8 blocks in a packet
@@ -189,9 +189,9 @@ class Drivers(DriverTest):
     def test_hesai_points_are_at_the_same_place_of_the_rig(self):
         scene = ROOM + ("--sensor", "XT32")
         self.publish(*scene)
-        plain = points(self.first("/lidar/points"))[0]
+        plain = points_of(self.first("/lidar/points"))[0]
         self.publish(*scene, "--layout", "hesai")
-        turned = points(self.first("/lidar/points"))[0]
+        turned = points_of(self.first("/lidar/points"))[0]
         self.assertTrue((turned["x"] == -plain["y"]).all())
         self.assertTrue((turned["y"] == plain["x"]).all())
         pose = self.matrix(self.first("/lidar/points").header.frame_id)
@@ -204,7 +204,7 @@ class Drivers(DriverTest):
         self.assertEqual(cloud.header.frame_id, "rslidar")
         self.assertEqual(layout(cloud), XYZI)
         self.assertEqual((cloud.point_step, cloud.width, cloud.is_dense), (16, 16, False))
-        data = points(cloud)
+        data = points_of(cloud)
         misses = np.isnan(data["x"])
         self.assertTrue(misses.any() and not misses.all())
         self.assertFalse(np.any(data["intensity"][misses]))
@@ -243,7 +243,7 @@ rig_motion: {twist: {velocity_m_s: [1, 0, 0], rate_deg_s: [0, 0, 30]}}
                 for moving in ("/tf", imu_topic):  # from the start of the first frame on
                     self.assertEqual(self.found[moving][0][0], 1767225600 * 10**9, moving)
                 cloud = self.found[topic][-1][1]
-                data = points(cloud).ravel()
+                data = points_of(cloud).ravel()
                 xyz = np.stack([data[axis].astype(float) for axis in "xyz"])
                 kept = np.isfinite(xyz[0]) & (np.abs(xyz).max(axis=0) > 0)
                 angle = rate * (seconds_of(cloud, data)[kept] - start_s)

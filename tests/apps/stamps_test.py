@@ -20,6 +20,7 @@ from waiting import MAX_WAIT_S, wait_for_line
 
 with importing():
     import numpy as np
+    from cloud_message import points_of
     from mcap.reader import make_reader
     from mcap_ros2.decoder import DecoderFactory
     from osi3trace.osi_trace import OSITrace
@@ -32,7 +33,6 @@ FRAME = SECOND // 10
 RECORDED = 1_700_000_000_123_456_789  # the time of the first pose; no double holds it
 HOUR = 3600 * SECOND
 ROOM = ("builtin:box:size=20,16,6", "--ground-truth", "--trajectory", "drive.tum")  # every beam returns
-TYPES = {2: "u1", 4: "<u2", 6: "<u4", 7: "<f4", 8: "<f8"}
 
 
 # The times of an OS1-32 at 10 Hz with 1024 columns, and of an IMU with 200 Hz.
@@ -54,9 +54,7 @@ def sample_times(count):
 
 def point_times(cloud, stamp_ns):
     """The times of the columns: the nanoseconds `t` of Ouster's driver after the stamp of the message."""
-    kind = np.dtype({"names": [f.name for f in cloud.fields], "formats": [TYPES[f.datatype] for f in cloud.fields],
-                     "offsets": [f.offset for f in cloud.fields], "itemsize": cloud.point_step})
-    return np.unique(stamp_ns + np.frombuffer(bytes(cloud.data), kind)["t"].astype(np.int64))
+    return np.unique(stamp_ns + points_of(cloud)["t"].astype(np.int64))
 
 
 def of_messages(messages):

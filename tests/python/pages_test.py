@@ -8,6 +8,7 @@ import types
 
 import numpy as np
 import pytest
+from cloud_message import points_of
 from doc_blocks import ROOT, link_inputs, run_page
 
 import glidar
@@ -42,8 +43,4 @@ def test_the_ros_message_of_the_cookbook_has_the_points_of_the_file(tmp_path, mo
     frame.save(tmp_path / "scan.pcd", layout="autoware")
     message = names["to_message"](tmp_path / "scan.pcd", StandIn())
     assert (message.height, message.width, message.point_step) == (16, frame.range_m.shape[1], 32)
-    kinds = {7: "<f4", 8: "<f8", 2: "u1", 4: "<u2", 6: "<u4"}
-    point = np.dtype({"names": [one.name for one in message.fields], "formats": [kinds[one.datatype] for one in message.fields],
-                      "offsets": [one.offset for one in message.fields], "itemsize": message.point_step})
-    points = np.frombuffer(message.data, point).reshape(message.height, message.width)
-    assert np.array_equal(points["distance"], frame.cloud(["range"])["range"].astype("f4"), equal_nan=True)
+    assert np.array_equal(points_of(message)["distance"], frame.cloud(["range"])["range"].astype("f4"), equal_nan=True)

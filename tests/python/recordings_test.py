@@ -7,6 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from cloud_message import points_of
 from waiting import wait_until
 
 highlevel = pytest.importorskip("rosbags.highlevel")
@@ -34,14 +35,6 @@ def messages(bag):
         for connection, stamp, raw in reader.messages():
             found.setdefault(connection.topic, []).append((stamp, reader.deserialize(raw, connection.msgtype)))
     return found
-
-
-def fields(cloud):
-    formats = {2: "u1", 4: "<u2", 6: "<u4", 7: "<f4", 8: "<f8"}
-    names = [field.name for field in cloud.fields]
-    kind = np.dtype({"names": names, "formats": [formats[field.datatype] for field in cloud.fields],
-                     "offsets": [field.offset for field in cloud.fields], "itemsize": cloud.point_step})  # fmt: skip
-    return np.frombuffer(cloud.data.tobytes(), kind)
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +88,7 @@ def test_a_bag_is_written_in_the_order_of_time(folder):
 def test_points_of_a_cloud_are_dense_in_firing_order_and_on_the_box(folder):
     cloud = messages(folder / "run.mcap")["/lidar/points"][0][1]
     assert cloud.is_dense and cloud.height == 1
-    points = fields(cloud)
+    points = points_of(cloud).ravel()
     assert len(points) > 100
     assert (np.diff(points["time"].astype(np.int64)) >= 0).all()
     assert np.isfinite(points["x"]).all()

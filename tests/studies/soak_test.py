@@ -27,6 +27,9 @@ def findings(**counts):
     return soak.Findings(requests=9, vanished=9, nonsense=9, clouds=9, **counts)
 
 
+HELD_NOTHING = [{"held_bytes": 0}, {}]
+
+
 def memory(mb_per_s):
     times = np.arange(0, 3600, 1.0)
     return np.column_stack([times, 30 + mb_per_s * times, np.full_like(times, 30)])
@@ -62,9 +65,9 @@ class SoakTest(unittest.TestCase):
         self.assertEqual(run.findings.errors, ["glidar ended before its time"])
 
     def test_memory_that_grows_is_a_fault(self):
-        self.assertEqual(soak.find_errors(findings(), memory(0.0), [{}, {}]), [])
-        self.assertEqual(soak.find_errors(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800), [{}, {}]), [])
-        errors = soak.find_errors(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800), [{}, {}])
+        self.assertEqual(soak.find_errors(findings(), memory(0.0), HELD_NOTHING), [])
+        self.assertEqual(soak.find_errors(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800), HELD_NOTHING), [])
+        errors = soak.find_errors(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800), HELD_NOTHING)
         self.assertEqual(len(errors), 1)
         self.assertIn("lock-step: memory grew by 2.2 MB", errors[0])
 
@@ -72,6 +75,10 @@ class SoakTest(unittest.TestCase):
         stats = [{"held_bytes": soak.HELD_TOLERANCE_BYTES + 1}, {}]
         self.assertEqual(soak.find_errors(findings(), memory(0.0), stats),
                          [f"lock-step: it holds {soak.HELD_TOLERANCE_BYTES + 1} bytes for clients that have left"])
+
+    def test_statistics_without_held_bytes_are_a_fault(self):
+        self.assertEqual(soak.find_errors(findings(), memory(0.0), [{}, {}]),
+                         ["lock-step: its statistics have no held_bytes"])
 
     def test_memory_returns_to_its_level_after_attackers(self):
         said, complained = io.StringIO(), io.StringIO()
@@ -81,7 +88,7 @@ class SoakTest(unittest.TestCase):
         self.assertIn("cut off or refused", said.getvalue())
 
     def test_a_client_that_does_nothing_is_a_fault(self):
-        self.assertEqual(soak.find_errors(soak.Findings(), memory(0.0), [{}, {}]), ["a client did nothing"])
+        self.assertEqual(soak.find_errors(soak.Findings(), memory(0.0), HELD_NOTHING), ["a client did nothing"])
 
 
 if __name__ == "__main__":

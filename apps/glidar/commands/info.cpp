@@ -275,11 +275,6 @@ Model load(const InfoFlags& flags, Console& console) {
   return load_model(flags.input, flags.model, report_to_console);
 }
 
-/// names in files may be invalid UTF-8; invalid bytes are replaced
-void print_model_json(const Json& json) {
-  print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
-}
-
 ModelReport examine(const Model& model, const InfoFlags& flags, Console& console) {
   const ProgressScope progress(console, "examining " + flags.input);
   return inspect(model);
@@ -291,7 +286,7 @@ int run_info(const InfoFlags& flags) {
   if (flags.parts) {
     const std::vector<PartSummary> parts = list_parts(model);
     if (flags.json) {
-      print_model_json(json_of(parts));
+      print_json(json_of(parts));
     } else {
       print_parts(parts);
     }
@@ -302,7 +297,7 @@ int run_info(const InfoFlags& flags) {
       flags.model.up ? ""
                      : up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m));
   if (flags.json) {
-    print_model_json(json_of(report, up_hint));
+    print_json(json_of(report, up_hint));
   } else {
     print_table(report, up_hint);
   }

@@ -247,10 +247,6 @@ Json json_of(const std::vector<DatasheetEntry>& entries) {
   return list;
 }
 
-void print_json(const Json& json) {
-  print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
-}
-
 int print_surfaces(const SensorsFlags& flags) {
   if (!flags.name.empty() || !flags.picture.empty()) {
     throw Error({.where = "--surfaces",

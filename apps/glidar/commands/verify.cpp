@@ -133,7 +133,7 @@ nlohmann::ordered_json json_of(const AccuracyCase& row) {
           {"passed", row.verdict() == Verdict::passed}};
 }
 
-void print_json(const std::vector<AccuracyCase>& rows, const std::string& renderer) {
+void print_report(const std::vector<AccuracyCase>& rows, const std::string& renderer) {
   nlohmann::ordered_json table = nlohmann::ordered_json::array();
   for (const AccuracyCase& row : rows) table.push_back(json_of(row));
   const nlohmann::ordered_json report = {
@@ -142,7 +142,7 @@ void print_json(const std::vector<AccuracyCase>& rows, const std::string& render
       {"bounds", {{"range_ulp", kRangeBound_ulp}, {"normal_rad", kNormalBound_rad}}},
       {"passed", all_passed(rows)},
       {"rows", table}};
-  print_lines(stdout, report.dump(2, ' ', true) + "\n");
+  print_json(report);
 }
 
 int run_verify(const VerifyFlags& flags) {
@@ -153,7 +153,7 @@ int run_verify(const VerifyFlags& flags) {
     rows = verify(flags.renderer, [&console](double fraction) { console.set_progress(fraction); });
   }
   if (flags.json) {
-    print_json(rows, flags.renderer.kind);
+    print_report(rows, flags.renderer.kind);
   } else {
     print_table(rows, flags.renderer.kind);
   }

@@ -43,7 +43,7 @@ Json json_of(const ImuDatasheet& sheet) {
 }
 
 void print_imu_json(const Json& json) {
-  print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+  print_json(json);
 }
 
 }  // namespace

@@ -44,4 +44,10 @@ void print(fmt::format_string<Values...> format, Values&&... values) {
   app::print(stdout, format, std::forward<Values>(values)...);  // not fmt's
 }
 
+/// Prints JSON in ASCII; bytes that are no UTF-8 are replaced.
+template <class Json>
+void print_json(const Json& json) {
+  print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+}
+
 }  // namespace glidar::app

@@ -63,7 +63,7 @@ void list_surfaces(bool as_json) {
   }
   SurfaceJson json = SurfaceJson::array();
   for (const SurfacePreset& surface : surfaces) json.push_back(json_of(surface));
-  print_lines(stdout, json.dump(2, ' ', true, SurfaceJson::error_handler_t::replace) + "\n");
+  print_json(json);
 }
 
 }  // namespace glidar::app

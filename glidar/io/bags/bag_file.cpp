@@ -51,6 +51,14 @@ Bytes BagFile::read(std::uint64_t offset, std::uint64_t size, Bytes reused) {
   return reused;
 }
 
+void BagFile::copy(std::uint64_t offset, std::span<std::byte> to) {
+  require_within(offset, to.size());
+  const bool follows = offset >= copied_until_ && offset - copied_until_ < kWindow;
+  copied_until_ = offset + to.size();
+  if (!follows) return read_at(offset, to);
+  std::ranges::copy(peek(offset, to.size()), to.begin());
+}
+
 void BagFile::require_within(std::uint64_t offset, std::uint64_t size) const {
   if (offset <= file_.size && size <= file_.size - offset) return;
   reject_bag(place(offset),

@@ -30,6 +30,8 @@ class BagFile {
   std::span<const std::byte> peek(std::uint64_t offset, std::uint64_t size);
   /// The same, to keep, in the memory of `reused`.
   Bytes read(std::uint64_t offset, std::uint64_t size, Bytes reused = {});
+  /// The same, into `to`. It reads ahead where the bytes follow those of the last call.
+  void copy(std::uint64_t offset, std::span<std::byte> to);
 
  private:
   void require_within(std::uint64_t offset, std::uint64_t size) const;
@@ -39,6 +41,7 @@ class BagFile {
   InputFile file_;
   Bytes window_;  ///< bytes of the file, so that small records need no call of the system each
   std::uint64_t window_offset_ = 0;
+  std::uint64_t copied_until_ = 0;
 };
 
 }  // namespace glidar::bags

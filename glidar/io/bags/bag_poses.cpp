@@ -27,19 +27,13 @@ struct PairPoses {
   std::vector<TimedPose> poses;
 };
 
-/// ROS 1 had names with a leading slash.
-std::string frame_name(const FileText& text) {
-  const std::string& name = text.bytes();
-  return name.starts_with('/') ? name.substr(1) : name;
-}
-
 /// Collects the poses of each pair of frames, in the order in which the pairs appear.
 class PoseCollector {
  public:
   PoseCollector(const std::filesystem::path& path, const PoseSelection& selection)
       : path_(path),
-        parent_(frame_name(selection.parent_frame)),
-        child_(frame_name(selection.child_frame)) {}
+        parent_(ros::received_frame(selection.parent_frame)),
+        child_(ros::received_frame(selection.child_frame)) {}
 
   void add(const ros::FramePair& frames, const TimedPose& pose) {
     // GLIDAR's ground truth is a child of the body: ros::TransformMode::ground_truth
@@ -113,16 +107,18 @@ void add_message(const ros::MessageType* type, std::span<const std::byte> data, 
                  PoseCollector& collector) {
   if (type == &ros::message_type<ros::TFMessage>()) {
     for (const auto& transform : ros::deserialize<ros::TFMessage>(data, wire).transforms) {
-      collector.add({frame_name(transform.header.frame_id), frame_name(transform.child_frame_id)},
+      collector.add({ros::received_frame(transform.header.frame_id),
+                     ros::received_frame(transform.child_frame_id)},
                     ros::timed_pose(transform));
     }
   } else if (type == &ros::message_type<ros::Odometry>()) {
     const auto odometry = ros::deserialize<ros::Odometry>(data, wire);
-    collector.add({frame_name(odometry.header.frame_id), frame_name(odometry.child_frame_id)},
+    collector.add({ros::received_frame(odometry.header.frame_id),
+                   ros::received_frame(odometry.child_frame_id)},
                   ros::timed_pose(odometry));
   } else {
     const auto pose = ros::deserialize<ros::PoseStamped>(data, wire);
-    collector.add({frame_name(pose.header.frame_id), ""}, ros::timed_pose(pose));
+    collector.add({ros::received_frame(pose.header.frame_id), ""}, ros::timed_pose(pose));
   }
 }
 

@@ -114,6 +114,14 @@ Bytes decompress(const PackedChunk& packed, InputBudget& budget, const std::stri
   return decompress_zstd(bytes, size, place, std::move(reused));
 }
 
+Bytes read_chunk(BagFile& file, const StoredChunk& chunk, InputBudget& budget, Bytes reused) {
+  if (chunk.compression == Compression::none && chunk.size == chunk.stored_size)
+    return file.read(chunk.offset, chunk.size, std::move(reused));
+  const Bytes stored = file.read(chunk.offset, chunk.stored_size);
+  return decompress({stored, chunk.compression, chunk.size}, budget, file.place(chunk.offset),
+                    std::move(reused));
+}
+
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t crc) {
   return static_cast<std::uint32_t>(
       crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));

@@ -5,6 +5,7 @@
 // Private to glidar/io/bags.
 
 #include <glidar/io/bags/bag.hpp>
+#include <glidar/io/bags/bag_file.hpp>
 #include <glidar/io/bags/byte_writer.hpp>
 #include <glidar/io/files/input_budget.hpp>
 
@@ -21,6 +22,17 @@ inline constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{1} << 29U;
 /// Compresses a chunk into `to`, whose memory is reused. LZ4: one frame with independent blocks and
 /// a checksum of the content, which is all that ROS 1 reads. Not for Compression::none.
 void compress(std::span<const std::byte> chunk, Compression compression, Bytes& to);
+
+/// Where a chunk is in its file.
+struct StoredChunk {
+  std::uint64_t offset = 0;  ///< of the records, which may be compressed
+  std::uint64_t stored_size = 0;
+  std::uint64_t size = 0;  ///< when it is decompressed
+  Compression compression = Compression::none;
+};
+
+/// Reads and decompresses a chunk, in the memory of `reused`. Throws Error.
+Bytes read_chunk(BagFile& file, const StoredChunk& chunk, InputBudget& budget, Bytes reused);
 
 /// A chunk as a bag stores it.
 struct PackedChunk {

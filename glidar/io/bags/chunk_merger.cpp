@@ -73,13 +73,12 @@ void ChunkMerger::open(std::size_t number) {
   if (entries.empty()) return;
   std::stable_sort(entries.begin(), entries.end(),
                    [](const ChunkEntry& a, const ChunkEntry& b) { return a.time_ns < b.time_ns; });
-  if (opened->chunk.bytes.size() > budget_->left(Budget::held_bytes)) {
+  if (!budget_->try_take(Budget::held_bytes, opened->chunk.bytes.size())) {
     throw Error({place_,
                  fmt::format("chunks of more than {} bytes whose times overlap",
                              budget_->limit(Budget::held_bytes)),
                  "messages that are roughly in order of time", "sort the bag"});
   }
-  budget_->take(Budget::held_bytes, opened->chunk.bytes.size(), place_);
   open_.push_back(std::move(opened));
   std::push_heap(open_.begin(), open_.end(), is_later);
 }

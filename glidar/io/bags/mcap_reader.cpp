@@ -26,10 +26,7 @@ constexpr std::uint64_t kMaxRecord = std::uint64_t{16} << 20U;
 
 /// Messages in a chunk, or in records that follow each other in the file.
 struct McapChunk {
-  std::uint64_t offset = 0;  ///< of the records, which may be compressed
-  std::uint64_t stored_size = 0;
-  std::uint64_t size = 0;
-  Compression compression = Compression::none;
+  StoredChunk stored;
   std::uint32_t crc = 0;  ///< 0: none
   ChunkRange range;
 };
@@ -127,12 +124,13 @@ void McapScan::add_chunk(std::uint64_t at, std::uint64_t size) {
   McapChunk chunk;
   chunk.range.first_ns = time_of(head.number<std::uint64_t>(), head);
   chunk.range.last_ns = time_of(head.number<std::uint64_t>(), head);
-  chunk.size = head.number<std::uint64_t>();
+  chunk.stored.size = head.number<std::uint64_t>();
   chunk.crc = head.number<std::uint32_t>();
-  chunk.compression = compression_of(head.text(), head.place());
-  chunk.stored_size = head.number<std::uint64_t>();
-  chunk.offset = at + head.position();
-  if (chunk.stored_size > size - head.position()) head.reject("a chunk longer than its record");
+  chunk.stored.compression = compression_of(head.text(), head.place());
+  chunk.stored.stored_size = head.number<std::uint64_t>();
+  chunk.stored.offset = at + head.position();
+  if (chunk.stored.stored_size > size - head.position())
+    head.reject("a chunk longer than its record");
   chunks.push_back(chunk);
   run_end_.reset();
 }
@@ -145,14 +143,14 @@ void McapScan::add_message(std::uint64_t at, std::uint64_t size) {
   const std::int64_t time_ns = time_of(head.number<std::uint64_t>(), head);
   const std::uint64_t begin = at - mcap::kRecordHead;
   const std::uint64_t whole = size + mcap::kRecordHead;
-  if (run_end_ == begin && chunks.back().size < kChunkBytes) {
+  if (run_end_ == begin && chunks.back().stored.size < kChunkBytes) {
     McapChunk& run = chunks.back();
-    run.size = run.stored_size += whole;
+    run.stored.size = run.stored.stored_size += whole;
     run.range.first_ns = std::min(run.range.first_ns, time_ns);
     run.range.last_ns = std::max(run.range.last_ns, time_ns);
   } else {
-    chunks.push_back(
-        {.offset = begin, .stored_size = whole, .size = whole, .range = {time_ns, time_ns}});
+    chunks.push_back({.stored = {.offset = begin, .stored_size = whole, .size = whole},
+                      .range = {time_ns, time_ns}});
   }
   run_end_ = begin + whole;
 }
@@ -186,24 +184,16 @@ class McapReader : public BagReader {
 
  private:
   Bytes records_of(const McapChunk& chunk, Bytes reused = {}) {
-    const std::string place = file_.place(chunk.offset);
-    Bytes records = chunk.compression == Compression::none && chunk.size == chunk.stored_size
-                        ? file_.read(chunk.offset, chunk.size, std::move(reused))
-                        : unpacked(chunk, place, std::move(reused));
+    Bytes records = read_chunk(file_, chunk.stored, *budget_, std::move(reused));
     if (chunk.crc != 0 && crc32_of(records) != chunk.crc)
-      reject_bag(place, "a chunk whose checksum does not match");
+      reject_bag(file_.place(chunk.stored.offset), "a chunk whose checksum does not match");
     return records;
-  }
-
-  Bytes unpacked(const McapChunk& chunk, const std::string& place, Bytes reused) {
-    const Bytes stored = file_.read(chunk.offset, chunk.stored_size);
-    return decompress({stored, chunk.compression, chunk.size}, *budget_, place, std::move(reused));
   }
 
   LoadedChunk load(const McapChunk& chunk, Bytes reused) {
     LoadedChunk loaded;
     loaded.bytes = records_of(chunk, std::move(reused));
-    ByteReader reader(loaded.bytes, "chunk at " + file_.place(chunk.offset));
+    ByteReader reader(loaded.bytes, "chunk at " + file_.place(chunk.stored.offset));
     while (reader.left() > 0) {
       const McapRecord record = read_mcap_head(reader);
       const std::size_t begin = reader.position();
@@ -223,7 +213,7 @@ class McapReader : public BagReader {
   void find_channels() {
     for (const McapChunk& chunk : chunks_) {
       const Bytes records = records_of(chunk);
-      ByteReader reader(records, "chunk at " + file_.place(chunk.offset));
+      ByteReader reader(records, "chunk at " + file_.place(chunk.stored.offset));
       while (reader.left() > 0) {
         const McapRecord record = read_mcap_head(reader);
         ByteReader content(reader.take(record.size), reader.place());

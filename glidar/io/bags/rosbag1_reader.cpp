@@ -80,10 +80,7 @@ class BagFields {
 
 struct Rosbag1Chunk {
   std::uint64_t position = 0;  ///< of the record
-  std::uint64_t offset = 0;    ///< of the data
-  std::uint32_t stored_size = 0;
-  std::uint32_t size = 0;
-  Compression compression = Compression::none;
+  StoredChunk stored;
   std::optional<ChunkRange> range;  ///< from its chunk info
 };
 
@@ -154,8 +151,9 @@ class Rosbag1Reader : public BagReader {
       case Rosbag1Op::chunk:
         by_position_[at] = chunks_.size();
         chunks_.push_back(
-            {at, data_at, data_size, fields.number<std::uint32_t>("size"),
-             rosbag1_compression(fields.name("compression", *budget_), file_.place(at)),
+            {at,
+             {data_at, data_size, fields.number<std::uint32_t>("size"),
+              rosbag1_compression(fields.name("compression", *budget_), file_.place(at))},
              std::nullopt});
         break;
       case Rosbag1Op::connection:
@@ -196,16 +194,9 @@ class Rosbag1Reader : public BagReader {
   }
 
   LoadedChunk load(const Rosbag1Chunk& chunk, Bytes reused) {
-    const std::string place = file_.place(chunk.offset);
     LoadedChunk loaded;
-    if (chunk.compression == Compression::none && chunk.size == chunk.stored_size) {
-      loaded.bytes = file_.read(chunk.offset, chunk.stored_size, std::move(reused));
-    } else {
-      const Bytes stored = file_.read(chunk.offset, chunk.stored_size);
-      loaded.bytes =
-          decompress({stored, chunk.compression, chunk.size}, *budget_, place, std::move(reused));
-    }
-    ByteReader reader(loaded.bytes, "chunk at " + place);
+    loaded.bytes = read_chunk(file_, chunk.stored, *budget_, std::move(reused));
+    ByteReader reader(loaded.bytes, "chunk at " + file_.place(chunk.stored.offset));
     while (reader.left() > 0) {
       const BagFields fields(reader.sized(), reader.place());
       const std::size_t size = reader.number<std::uint32_t>();

@@ -5,13 +5,13 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
 #include <glidar/io/bags/byte_reader.hpp>
+#include <glidar/io/bags/sqlite_file.hpp>
 
 #include <fmt/format.h>
 #include <sqlite3.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 namespace glidar::bags {
@@ -30,17 +30,6 @@ constexpr std::array<std::pair<int, int>, 6> kLimits = {{{SQLITE_LIMIT_SQL_LENGT
                                                          {SQLITE_LIMIT_TRIGGER_DEPTH, 1},
                                                          {SQLITE_LIMIT_WORKER_THREADS, 0}}};
 
-/// A name for sqlite3_open_v2 by which SQLite takes no locks and does not look for logs.
-std::string immutable_uri(const std::string& path) {
-  std::string uri = "file:";
-  for (const char letter : path) {
-    const auto byte = static_cast<unsigned char>(letter);
-    const bool is_plain = std::isalnum(byte) != 0 && byte < 128;
-    uri += is_plain ? std::string(1, letter) : fmt::format("%{:02X}", byte);
-  }
-  return uri + "?immutable=1";
-}
-
 bool is_one_of_tables(const std::vector<std::string>& names, const char* name) {
   return name != nullptr && std::any_of(names.begin(), names.end(), [&](const std::string& one) {
            return sqlite3_stricmp(one.c_str(), name) == 0;
@@ -50,9 +39,7 @@ bool is_one_of_tables(const std::vector<std::string>& names, const char* name) {
 /// Ends the statement when the budget, `context`, is used up.
 extern "C" int glidar_count_sqlite_steps(void* context) {
   InputBudget& budget = *static_cast<InputBudget*>(context);
-  if (budget.left(Budget::steps) < kStepsBetween) return 1;
-  budget.take(Budget::steps, kStepsBetween, "");
-  return 0;
+  return budget.try_take(Budget::steps, kStepsBetween) ? 0 : 1;
 }
 
 /// Allows selecting columns of the tables in `context`. `inner`: the view or trigger that does it.
@@ -80,15 +67,15 @@ void Statement::Finaliser::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
 
-void Database::open(const std::string& name, int flags) {
+void Database::open(const std::string& name, int flags, const char* vfs) {
   sqlite3* opened = nullptr;
-  const int code = sqlite3_open_v2(name.c_str(), &opened, flags, nullptr);
+  const int code = sqlite3_open_v2(name.c_str(), &opened, flags, vfs);
   database_.reset(opened);
   if (code != SQLITE_OK) fail();
 }
 
 Database::Database(const std::filesystem::path& path) : path_(path.string()) {
-  open(path_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  open(path_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   execute("PRAGMA journal_mode=OFF");
   execute("PRAGMA synchronous=OFF");
   execute("PRAGMA locking_mode=EXCLUSIVE");
@@ -97,7 +84,7 @@ Database::Database(const std::filesystem::path& path) : path_(path.string()) {
 // sqlite.org/security.html, for databases from others
 Database::Database(const std::filesystem::path& path, std::uint64_t file_bytes, InputBudget& budget)
     : path_(path.string()), budget_(&budget) {
-  open(immutable_uri(path_), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+  open(path_, SQLITE_OPEN_READONLY, sqlite_read_only_vfs());
   sqlite3* database = database_.get();
   sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -108,7 +95,6 @@ Database::Database(const std::filesystem::path& path, std::uint64_t file_bytes, 
                 static_cast<int>(std::clamp(file_bytes, kMinLength, kMaxLength)));
   sqlite3_progress_handler(database, kStepsBetween, glidar_count_sqlite_steps, budget_);
   execute("PRAGMA cell_size_check=ON");
-  execute("PRAGMA mmap_size=0");
   execute("PRAGMA temp_store=MEMORY");
 }
 
@@ -153,7 +139,7 @@ void Database::fail() const {
   const char* reason = database_ ? sqlite3_errmsg(database_.get()) : "out of memory";
   if (budget_ != nullptr) {
     const bool is_stopped = database_ && sqlite3_errcode(database_.get()) == SQLITE_INTERRUPT;
-    if (is_stopped) budget_->take(Budget::steps, budget_->left(Budget::steps) + 1, path_);
+    if (is_stopped) budget_->fail(Budget::steps, path_);
     throw Error({path_, std::string("cannot be read by SQLite: ") + reason, "a complete bag",
                  "copy the bag again: it may be damaged"});
   }

@@ -43,7 +43,7 @@ class Database {
   struct Closer {
     void operator()(sqlite3* database) const;
   };
-  void open(const std::string& name, int flags);
+  void open(const std::string& name, int flags, const char* vfs);
   void require_no_generated_columns(const std::string& table) const;
 
   std::string path_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/bags/sqlite_bag_reader.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_file.hpp>
 #include <glidar/io/bags/byte_reader.hpp>
 #include <glidar/io/bags/sqlite.hpp>

@@ -433,6 +433,12 @@ void apply_kalibr(const YamlField& root, const std::string& name, const std::str
             file + ": " + name, sensor);
 }
 
+/// Zeros of rectified images are none, so that stereo cameras accept them.
+Distortion opencv_distortion(const std::vector<double>& coefficients) {
+  const bool is_none = std::ranges::all_of(coefficients, [](double k) { return k == 0.0; });
+  return is_none ? Distortion(NoDistortion{}) : Distortion(radial_tangential(coefficients));
+}
+
 /// The YAML of ROS' camera_calibration_parsers.
 void apply_ros_camera(const YamlField& root, const std::string& file, Sensor& sensor) {
   static const std::vector<std::string> kModels = {"plumb_bob", "rational_polynomial",
@@ -441,9 +447,8 @@ void apply_ros_camera(const YamlField& root, const std::string& file, Sensor& se
   const std::vector<double> k = numbers_of(need(need(root, "camera_matrix"), "data"), {9});
   const std::size_t model = one_of(need(root, "distortion_model"), kModels);
   const YamlField list = need(need(root, "distortion_coefficients"), "data");
-  pinhole.distortion = model == 2
-                           ? Distortion(fisheye(numbers_of(list, {4})))
-                           : Distortion(radial_tangential(numbers_of(list, {4, 5, 8, 12, 14})));
+  pinhole.distortion = model == 2 ? Distortion(fisheye(numbers_of(list, {4})))
+                                  : opencv_distortion(numbers_of(list, {4, 5, 8, 12, 14}));
   pinhole.skew_px = k[1];
   pinhole.intrinsics = {whole_number(need(root, "image_width"), 1, kMaxImageSide),
                         whole_number(need(root, "image_height"), 1, kMaxImageSide),
@@ -482,6 +487,7 @@ void apply_calibration(const fs::path& given, Sensor& sensor) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (std::holds_alternative<Pinhole>(sensor.optics)) {
     apply_camera_calibration(path, name, sensor);
+    check_depth_camera(sensor);
   } else if (!std::holds_alternative<Spinning>(sensor.optics)) {
     throw Error(
         {path.string(),

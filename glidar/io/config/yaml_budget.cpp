@@ -54,14 +54,13 @@ class Counter : public YAML::EventHandler {
 
  private:
   void add(const YAML::Mark& mark, std::size_t count) {
-    if (count > budget_.left(Budget::values)) {
+    if (!budget_.try_take(Budget::values, count)) {
       fail(mark,
            "more than " + std::to_string(budget_.limit(Budget::values)) +
                " values with aliases written out",
            "1000000 values and 2 more for each byte of the file",
            "use fewer aliases, or smaller ones");
     }
-    budget_.take(Budget::values, count, file_);
     written_out_ += count;
   }
   void build(const YAML::Mark& mark) {

@@ -67,13 +67,15 @@ class DecoderProcess {
       fail_to_start(program, errno);
     control_ = moved_up(program, sockets[0]);
     const UniqueFd control_end = moved_up(program, sockets[1]);
+    const UniqueFd shared = moved_up(program, SharedRing::create());
+    ring_ = std::make_shared<SharedRing>(shared.get());
     // the pipe stays smaller if the system forbids this size
     ::fcntl(answer_.get(), F_SETPIPE_SZ, static_cast<int>(kDecoderMiB));
     ::fcntl(answer_.get(), F_SETFL, O_NONBLOCK);
     helper_ =
         start_helper({program, kDecodeOption, kind.name, path_, std::to_string(memory_limit_bytes_),
                       fmt::format("{:.3f}", time_limit_s_), std::to_string(::getpid())},
-                     answer_end.get(), control_end.get());
+                     {answer_end.get(), control_end.get(), shared.get()});
   }
   DecoderProcess(const DecoderProcess&) = delete;
   DecoderProcess& operator=(const DecoderProcess&) = delete;
@@ -90,6 +92,8 @@ class DecoderProcess {
       if (is_closed || (!wait() && !has_bytes())) fail();
     }
   }
+
+  [[nodiscard]] std::shared_ptr<SharedRing> ring() const { return ring_; }
 
   void send(std::span<const std::byte> bytes) const {
     [[maybe_unused]] const ssize_t sent =
@@ -155,6 +159,7 @@ class DecoderProcess {
   std::uint64_t memory_limit_bytes_;
   UniqueFd answer_;
   UniqueFd control_;
+  std::shared_ptr<SharedRing> ring_;
   pid_t helper_ = 0;
   double waited_s_ = 0.0;
 };
@@ -167,7 +172,7 @@ DecoderRun start_decoder(const DecoderKind& kind, const fs::path& path) {
       kind.max_payload != 0 ? kind.max_payload : InputBudget(bytes).limit(Budget::held_bytes);
   const auto process = std::make_shared<DecoderProcess>(kind, path, bytes);
   return {RecordReader([process](std::span<std::byte> to) { return process->read(to); },
-                       path.string(), max_payload),
+                       path.string(), max_payload, process->ring()),
           [process](std::span<const std::byte> bytes_sent) { process->send(bytes_sent); }, bytes};
 }
 

@@ -42,14 +42,16 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
 
 class SpawnActions {
  public:
-  SpawnActions(int answer, int control) {
+  explicit SpawnActions(const HelperFds& fds) {
     posix_spawn_file_actions_init(&actions_);
     for (const int standard : {0, 1, 2}) {
       posix_spawn_file_actions_addopen(&actions_, standard, "/dev/null", O_RDWR, 0);
     }
-    posix_spawn_file_actions_adddup2(&actions_, answer, kAnswerFd);
-    posix_spawn_file_actions_adddup2(&actions_, control, kControlFd);
-    posix_spawn_file_actions_addclosefrom_np(&actions_, kControlFd + 1);
+    posix_spawn_file_actions_adddup2(&actions_, fds.answer, kAnswerFd);
+    posix_spawn_file_actions_adddup2(&actions_, fds.control, kControlFd);
+    const bool has_shared = fds.shared >= 0;
+    if (has_shared) posix_spawn_file_actions_adddup2(&actions_, fds.shared, kSharedFd);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, has_shared ? kSharedFd + 1 : kSharedFd);
   }
   SpawnActions(const SpawnActions&) = delete;
   SpawnActions& operator=(const SpawnActions&) = delete;
@@ -83,15 +85,15 @@ void fail_to_start(const std::string& program, int error) {
 UniqueFd moved_up(const std::string& program, int fd) {
   if (fd < 0) fail_to_start(program, errno);
   const UniqueFd low(fd);
-  UniqueFd moved(::fcntl(low.get(), F_DUPFD_CLOEXEC, kControlFd + 1));
+  UniqueFd moved(::fcntl(low.get(), F_DUPFD_CLOEXEC, kSharedFd + 1));
   if (!moved) fail_to_start(program, errno);
   return moved;
 }
 
-pid_t start_helper(std::vector<std::string> arguments, int answer, int control) {
+pid_t start_helper(std::vector<std::string> arguments, const HelperFds& fds) {
   const std::string program = arguments.front();
   std::vector<std::string> variables = helper_environment();
-  const SpawnActions actions(answer, control);
+  const SpawnActions actions(fds);
   pid_t helper = 0;
   const int error = ::posix_spawn(&helper, program.c_str(), actions.get(), nullptr,
                                   pointers_to(arguments).data(), pointers_to(variables).data());

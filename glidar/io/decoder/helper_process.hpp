@@ -18,6 +18,14 @@ namespace glidar {
 /// Descriptors of the program: its standard streams are /dev/null, all others are closed.
 inline constexpr int kAnswerFd = 3;   ///< it writes what it read
 inline constexpr int kControlFd = 4;  ///< it writes progress, or reads requests
+inline constexpr int kSharedFd = 5;   ///< memory for long records, when it does not read a model
+
+/// The descriptors here that become those.
+struct HelperFds {
+  int answer = -1;
+  int control = -1;
+  int shared = -1;  ///< -1: none
+};
 
 /// The first argument of the program when it does not read a model; then DecoderKind::name, path,
 /// memory in bytes, time in s, and id of this process.
@@ -51,7 +59,7 @@ UniqueFd moved_up(const std::string& program, int fd);
 
 /// Starts the program with these descriptors. Its environment contains only the search path of the
 /// dynamic loader. Throws Error.
-pid_t start_helper(std::vector<std::string> arguments, int answer, int control);
+pid_t start_helper(std::vector<std::string> arguments, const HelperFds& fds);
 
 /// True when the program has ended; it is not reaped yet. An unknown one counts as ended.
 bool has_ended(pid_t helper);

@@ -20,6 +20,8 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{256} << 10U;
 constexpr std::size_t kMaxFailureBytes = std::size_t{64} << 10U;
+constexpr std::size_t kMinRingPayload = std::size_t{4} << 10U;
+constexpr std::uint32_t kMaxPiece = SharedRing::kBytes / 4;
 
 /// A record in the stream, before its payload. Both ends are on one machine.
 struct RecordHead {
@@ -44,11 +46,14 @@ void RecordWriter::write(const Record& record) {
                         record.payload.size()};
   append_bytes(buffer_, &head, sizeof head);
   ++records_;
-  if (record.payload.size() >= kBufferBytes) {
+  if (ring_ != nullptr && record.payload.size() >= kMinRingPayload) {
+    put_in_ring(record.payload);
+  } else if (record.payload.size() >= kBufferBytes) {
     flush();
     return write_all(record.payload);
+  } else {
+    append_bytes(buffer_, record.payload.data(), record.payload.size());
   }
-  append_bytes(buffer_, record.payload.data(), record.payload.size());
   if (buffer_.size() >= kBufferBytes || records_ - flushed_records_ > flushed_records_) flush();
 }
 
@@ -64,9 +69,23 @@ void RecordWriter::write_failure(const ErrorParts& parts) {
   flush();
 }
 
+/// The reader must know of all bytes before this waits for space.
+void RecordWriter::put_in_ring(std::span<const std::byte> payload) {
+  while (!payload.empty()) {
+    const auto piece = static_cast<std::uint32_t>(
+        ring_->put(payload.first(std::min<std::size_t>(payload.size(), kMaxPiece))));
+    if (piece != 0) append_bytes(buffer_, &piece, sizeof piece);
+    payload = payload.subspan(piece);
+    ring_bytes_ += piece;
+    if (piece == 0 || ring_bytes_ >= kMaxPiece) flush();
+    if (piece == 0) ring_->wait_for_space();
+  }
+}
+
 void RecordWriter::flush() {
   write_all(buffer_);
   buffer_.clear();
+  ring_bytes_ = 0;
   flushed_records_ = records_;
 }
 
@@ -79,10 +98,12 @@ void RecordWriter::write_all(std::span<const std::byte> bytes) {
   }
 }
 
-RecordReader::RecordReader(Source source, std::string place, std::uint64_t max_payload)
+RecordReader::RecordReader(Source source, std::string place, std::uint64_t max_payload,
+                           std::shared_ptr<SharedRing> ring)
     : source_(std::move(source)),
       place_(std::move(place)),
       max_payload_(max_payload),
+      ring_(std::move(ring)),
       buffer_(kBufferBytes) {}
 
 void RecordReader::reject(const std::string& found) const {
@@ -101,7 +122,9 @@ Record RecordReader::next() {
                                  : kind == RecordKind::failure ? kMaxFailureBytes
                                                                : 3 * InputBudget::kMaxNameBytes;
   if (head.size > max_size) reject(fmt::format("a record of {} bytes", head.size));
-  const std::span<const std::byte> payload = take_payload(head.size);
+  const bool is_in_ring = ring_ != nullptr && head.size >= kMinRingPayload;
+  const std::span<const std::byte> payload =
+      is_in_ring ? take_from_ring(head.size) : take_payload(head.size);
   if (kind == RecordKind::failure) rethrow(payload);
   return {kind, head.index, head.stamp_ns, payload};
 }
@@ -127,16 +150,33 @@ void RecordReader::take(std::span<std::byte> to) {
 }
 
 /// A claimed size alone takes no memory: the buffer grows as the bytes arrive.
+void RecordReader::make_room(std::size_t bytes, std::uint64_t size) {
+  constexpr std::size_t kFirst = std::size_t{1} << 20U;
+  if (payload_.size() < bytes)
+    payload_.resize(std::min<std::size_t>(size, std::max(kFirst, 2 * bytes)));
+}
+
+std::span<const std::byte> RecordReader::take_from_ring(std::uint64_t size) {
+  for (std::size_t filled = 0; filled < size;) {
+    std::uint32_t piece = 0;
+    take(std::as_writable_bytes(std::span(&piece, 1)));
+    if (piece == 0 || piece > std::min<std::uint64_t>(kMaxPiece, size - filled))
+      reject(fmt::format("a piece of {} bytes", piece));
+    make_room(filled + piece, size);
+    ring_->take(std::span(payload_).subspan(filled, piece));
+    filled += piece;
+  }
+  return std::span(payload_).first(size);
+}
+
 std::span<const std::byte> RecordReader::take_payload(std::uint64_t size) {
   if (size <= end_ - begin_) {
     begin_ += size;
     return std::span(buffer_).subspan(begin_ - size, size);
   }
-  constexpr std::size_t kFirst = std::size_t{1} << 20U;
   for (std::size_t filled = 0; filled < size;) {
-    const std::size_t until =
-        std::min<std::size_t>(size, std::max({kFirst, 2 * filled, payload_.size()}));
-    if (payload_.size() < until) payload_.resize(until);
+    make_room(filled + 1, size);
+    const std::size_t until = std::min<std::size_t>(size, payload_.size());
     take(std::span(payload_).subspan(filled, until - filled));
     filled = until;
   }

@@ -5,11 +5,13 @@
 // Private to glidar/io and glidar-import: plain records of what the sandboxed process reads.
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/decoder/shared_ring.hpp>
 #include <glidar/io/files/input_budget.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,7 +26,8 @@ enum class RecordKind : std::uint32_t {
   failure,  ///< the error that ended the reading
 };
 
-/// One record; in the stream these numbers, the size and the bytes of the payload.
+/// One record; in the stream these numbers, the size and the bytes of the payload. Those of a long
+/// payload are in the shared memory, if there is one, and the stream has the sizes of its pieces.
 struct Record {
   RecordKind kind = RecordKind::end;
   std::uint32_t index = 0;    ///< of the item's topic, or what its kind of input needs
@@ -34,7 +37,7 @@ struct Record {
 
 class RecordWriter {
  public:
-  explicit RecordWriter(int fd) : fd_(fd) {}
+  explicit RecordWriter(int fd, SharedRing* ring = nullptr) : fd_(fd), ring_(ring) {}
 
   /// Throws Error when the stream cannot be written.
   void write(const Record& record);
@@ -42,9 +45,12 @@ class RecordWriter {
   void flush();
 
  private:
+  void put_in_ring(std::span<const std::byte> payload);
   void write_all(std::span<const std::byte> bytes);
 
   int fd_;
+  SharedRing* ring_;
+  std::size_t ring_bytes_ = 0;  ///< since the last flush
   std::vector<std::byte> buffer_;
   std::size_t flushed_records_ = 0;
   std::size_t records_ = 0;
@@ -58,7 +64,8 @@ class RecordReader {
   using Source = std::function<std::size_t(std::span<std::byte>)>;
 
   /// `place` names the input in errors. `max_payload`: bytes of a record.
-  RecordReader(Source source, std::string place, std::uint64_t max_payload);
+  RecordReader(Source source, std::string place, std::uint64_t max_payload,
+               std::shared_ptr<SharedRing> ring = nullptr);
 
   /// The next record, whose payload is valid until the next call. Throws the Error that the process
   /// reports, and Error when the stream is malformed or ends without its last record.
@@ -70,11 +77,14 @@ class RecordReader {
  private:
   void take(std::span<std::byte> to);
   std::span<const std::byte> take_payload(std::uint64_t size);
+  std::span<const std::byte> take_from_ring(std::uint64_t size);
+  void make_room(std::size_t bytes, std::uint64_t size);
   [[noreturn]] void rethrow(std::span<const std::byte> payload) const;
 
   Source source_;
   std::string place_;
   std::uint64_t max_payload_;
+  std::shared_ptr<SharedRing> ring_;
   std::vector<std::byte> buffer_;
   std::size_t begin_ = 0;  ///< of the bytes of buffer_ that were not returned yet
   std::size_t end_ = 0;

@@ -33,9 +33,16 @@ class InputBudget {
   /// Counts `amount` more. Throws Error with `place`, which names what is read, when there are more
   /// than the limit.
   void take(Budget what, std::uint64_t amount, const std::string& place) {
-    if (amount > left(what)) fail(what, place);
-    used_[index(what)] += amount;
+    if (!try_take(what, amount)) fail(what, place);
   }
+  /// The same for callers with an error of their own: false when there are more than the limit.
+  [[nodiscard]] bool try_take(Budget what, std::uint64_t amount) {
+    if (amount > limit(what) - used_[index(what)]) return false;
+    used_[index(what)] += amount;
+    return true;
+  }
+  /// The error of take().
+  [[noreturn]] void fail(Budget what, const std::string& place) const;
   void give_back(Budget what, std::uint64_t amount) { used_[index(what)] -= amount; }
 
   /// Counts a name. Throws Error also when it is longer than kMaxNameBytes.
@@ -43,12 +50,10 @@ class InputBudget {
   static constexpr std::size_t kMaxNameBytes = 4096;
 
   [[nodiscard]] std::uint64_t limit(Budget what) const;
-  [[nodiscard]] std::uint64_t left(Budget what) const { return limit(what) - used_[index(what)]; }
 
  private:
   static constexpr std::size_t kBudgets = static_cast<std::size_t>(Budget::steps) + 1;
   static constexpr std::size_t index(Budget what) { return static_cast<std::size_t>(what); }
-  [[noreturn]] void fail(Budget what, const std::string& place) const;
 
   std::uint64_t input_bytes_;
   std::array<std::uint64_t, kBudgets> used_{};

@@ -84,7 +84,7 @@ void check_column_names(const PointCloud& cloud, const std::filesystem::path& pa
     if (is_column_name(name)) return;
     throw Error({path.string(), fmt::format("a column '{}'", excerpt(name)),
                  fmt::format("names of 1 to {} letters, digits and _", kMaxColumnName_bytes),
-                 "rename it: FileText::column_name()"});
+                 "rename the column"});
   };
   for (const Column& column : cloud.columns) {
     check(column.name);

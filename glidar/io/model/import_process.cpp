@@ -100,7 +100,8 @@ ImportRun run_import(const ImportRequest& request, const Report& report) {
                                         fmt::format("{:.3f}", request.time_limit_s),
                                         std::to_string(::getpid())};
   for (const fs::path& folder : request.texture_folders) arguments.push_back(folder.string());
-  const pid_t child = start_helper(std::move(arguments), run.answer.get(), pipe.write_end.get());
+  const pid_t child = start_helper(std::move(arguments),
+                                   {.answer = run.answer.get(), .control = pipe.write_end.get()});
   pipe.write_end.reset();
   bool in_time = false;
   try {

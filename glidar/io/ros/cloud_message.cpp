@@ -179,14 +179,15 @@ void count_from(std::int64_t zero_ns, bool can_be_negative, Column& column) {
     values[i] = static_cast<std::uint32_t>(std::max<std::int64_t>(0, counted[i]));
 }
 
-/// The stamp of each point becomes the time that its packet states.
+/// The stamp of each point becomes the time that its packet states. A packet without a beam states
+/// none.
 void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32_t>& points,
                         Column& column) {
   const Beams& beams = source.beams;
   if (beams.times_ns.empty()) return;
   const std::size_t columns = columns_per_packet(source.sensor, beams);
-  std::vector<std::int64_t> first_ns(beams.cols / columns + 1,
-                                     std::numeric_limits<std::int64_t>::max());
+  constexpr std::int64_t kNoBeam = std::numeric_limits<std::int64_t>::max();
+  std::vector<std::int64_t> first_ns(beams.cols / columns + 1, kNoBeam);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (std::isnan(beams.directions[i].x())) continue;
     std::int64_t& first = first_ns[i % beams.cols / columns];
@@ -194,8 +195,10 @@ void take_packet_stamps(const CloudSource& source, const std::vector<std::uint32
   }
   auto& stamps = std::get<std::vector<std::int64_t>>(column.values);
   const std::int64_t offset_ns = packet_time_offset_ns(source.sensor, beams);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    stamps[i] = packet_time_ns(first_ns[points[i] % beams.cols / columns], offset_ns);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::int64_t first = first_ns[points[i] % beams.cols / columns];
+    if (first != kNoBeam) stamps[i] = packet_time_ns(first, offset_ns);
+  }
 }
 
 /// Coordinates of misses as the options ask for them.

@@ -87,6 +87,11 @@ BodyTwist mean_twist(const Pose& before, const Pose& after, double seconds) {
   return {moved_m / seconds, turned / seconds};
 }
 
+std::string received_frame(const FileText& name) {
+  const std::string& bytes = name.bytes();
+  return bytes.starts_with('/') ? bytes.substr(1) : bytes;
+}
+
 TimedPose timed_pose(const TransformStamped& transform) {
   return received(transform.header, transform.transform.translation, transform.transform.rotation);
 }

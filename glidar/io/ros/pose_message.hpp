@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/file_text.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/io/ros/messages.hpp>
 #include <glidar/motion/timed_poses.hpp>
@@ -18,6 +19,9 @@ struct FramePair {
   std::string child;
   bool operator==(const FramePair&) const = default;
 };
+
+/// The name of a coordinate frame without the leading slash that ROS 1 had.
+std::string received_frame(const FileText& name);
 
 /// A velocity in the axes of the moving body.
 struct BodyTwist {

@@ -27,18 +27,12 @@ void require_stamp(const ros::Time& stamp) {
   throw Error({"stamp of a pose", fmt::format("nanosec {}", stamp.nanosec), "0 to 999999999", ""});
 }
 
-/// ROS 1 had names with a leading slash.
-std::string frame_name(const FileText& text) {
-  const std::string& name = text.bytes();
-  return name.starts_with('/') ? name.substr(1) : name;
-}
-
 FramedPose checked_pose(const ros::Header& header, const FileText* child, const TimedPose& pose) {
   require_stamp(header.stamp);
-  FramedPose framed{.frames = {frame_name(header.frame_id), ""}, .pose = pose};
+  FramedPose framed{.frames = {ros::received_frame(header.frame_id), ""}, .pose = pose};
   require_name(framed.frames.parent, "frame_id of a pose");
   if (child != nullptr) {
-    framed.frames.child = frame_name(*child);
+    framed.frames.child = ros::received_frame(*child);
     require_name(framed.frames.child, "child_frame_id of a pose");
   }
   if (const auto error = find_error(nullptr, pose)) {

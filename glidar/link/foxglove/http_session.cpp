@@ -74,9 +74,12 @@ void HttpSession::on_read(Failure failure) {
 void HttpSession::upgrade(const Request& request) {
   const link::HttpHead head = link::head_of(request);
   if (const auto refusal = hub_.guard().refuse(head)) {
-    hub_.errors().report("Foxglove client", "refused a page of '" + excerpt(head.origin) +
-                                                "' at host '" + excerpt(head.host) + "'");
-    return respond(plain_reply(refusal->status, std::string(refusal->text)));
+    const std::string text(refusal->text);
+    hub_.errors().report("Foxglove client", "refused with status " +
+                                                std::to_string(refusal->status) + ", " + text +
+                                                "; origin '" + excerpt(head.origin) + "', host '" +
+                                                excerpt(head.host) + "'");
+    return respond(plain_reply(refusal->status, text));
   }
   const std::string_view protocol =
       choose_subprotocol(header(request, http::field::sec_websocket_protocol));

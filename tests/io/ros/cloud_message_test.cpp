@@ -111,6 +111,19 @@ TEST(CloudMessage, IsStampedWithTheFirstPointThatIsWritten) {
   EXPECT_EQ(cloud_stamp_ns(source_of(made), {.stamp = StampRule::first_firing}), 1'000'000'100);
 }
 
+TEST(CloudMessage, PointsOfAPacketWithoutABeamKeepTheirOwnTime) {
+  CloudFixture made = scan_fixture();
+  made.beams.directions.assign(made.cloud.size(), Eigen::Vector3d::Constant(kNaN));
+  const auto stamps = [&](bool of_packets) {
+    return values<std::uint32_t>(
+        sent(to_point_cloud2(made.cloud, source_of(made), {.packet_stamps = of_packets})),
+        "stamp_nsec");
+  };
+  EXPECT_EQ(stamps(true), stamps(false));
+  made.beams.directions[0] = Eigen::Vector3d::UnitX();
+  EXPECT_NE(stamps(true), stamps(false));
+}
+
 TEST(CloudMessage, CanHaveTheColumnsOfAScannerAsRows) {
   const CloudFixture made = scan_fixture();
   const PointCloud2 message =
