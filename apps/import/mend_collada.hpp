@@ -4,9 +4,7 @@
 
 #include <import/source_model.hpp>
 
-namespace pugi {
-class xml_document;
-}
+#include <pugixml.hpp>
 
 namespace glidar::import {
 

@@ -6,8 +6,6 @@
 
 #include <glidar/io/model/texture_search.hpp>
 
-#include <zip.h>
-
 #include <algorithm>
 #include <new>
 

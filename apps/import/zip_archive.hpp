@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <zip.h>
+
 #include <cstddef>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
-
-struct zip;  // zip_t of libzip
 
 namespace glidar::import {
 
@@ -28,7 +28,7 @@ class ZipArchive {
   [[nodiscard]] std::string content(const std::string& name) const;
 
  private:
-  std::unique_ptr<zip, void (*)(zip*)> archive_;  ///< null: unreadable
+  std::unique_ptr<zip_t, void (*)(zip_t*)> archive_;  ///< null: unreadable
   std::size_t bytes_;
 };
 

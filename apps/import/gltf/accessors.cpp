@@ -141,6 +141,15 @@ bool is_close(double stated, double found, double extent) {
   return std::abs(stated - found) <= kRounding * extent + 1e-6 * std::abs(found);
 }
 
+void report_limit(const Accessor& accessor, const std::string& limit, const std::string& what,
+                  Notes& notes) {
+  const std::string path = accessor.path + "." + limit;
+  if (accessor.needs_limits) {
+    refuse(path, what, "the data or the limits are damaged: export the file again");
+  }
+  notes.add_at(path, what);
+}
+
 template <class Number>
 void check_limits(const Accessor& accessor, const std::vector<Number>& stored_values,
                   Notes& notes) {
@@ -164,12 +173,8 @@ void check_limits(const Accessor& accessor, const std::vector<Number>& stored_va
                          const std::vector<double>& found) {
     for (std::size_t k = 0; k < limits.size(); ++k) {
       if (low[k] > high[k] || is_close(limits[k], found[k], extent)) continue;
-      const std::string path = fmt::format("{}.{}[{}]", accessor.path, name, k);
-      const std::string what = fmt::format("{} is stated, the data has {}", limits[k], found[k]);
-      if (accessor.needs_limits) {
-        refuse(path, what, "the data or the limits are damaged: export the file again");
-      }
-      notes.add_at(path, what);
+      report_limit(accessor, fmt::format("{}[{}]", name, k),
+                   fmt::format("{} is stated, the data has {}", limits[k], found[k]), notes);
     }
   };
   check("min", accessor.min, low);
