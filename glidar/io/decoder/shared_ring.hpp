@@ -12,7 +12,7 @@
 namespace glidar {
 
 /// A ring of bytes in memory that two processes share: one of them puts bytes, the other one takes
-/// them, and a pipe between them says how many there are. It costs less than half of a pipe, which
+/// them, and a pipe between them states how many there are. It costs less than half of a pipe, which
 /// allocates its pages for each write.
 class SharedRing {
  public:

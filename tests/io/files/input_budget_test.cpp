@@ -37,7 +37,9 @@ TEST(InputBudget, WhatIsGivenBackCanBeTakenAgain) {
     budget.take(Budget::held_bytes, all, "a");
     budget.give_back(Budget::held_bytes, all);
   }
-  EXPECT_EQ(budget.left(Budget::held_bytes), all);
+  EXPECT_FALSE(budget.try_take(Budget::held_bytes, all + 1));
+  EXPECT_TRUE(budget.try_take(Budget::held_bytes, all));
+  EXPECT_FALSE(budget.try_take(Budget::held_bytes, 1)) << "all is taken";
   EXPECT_THAT(error_text([&] { budget.take(Budget::held_bytes, UINT64_MAX, "a"); }),
               HasSubstr("bytes in memory"));
 }
