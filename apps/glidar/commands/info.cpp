@@ -28,8 +28,8 @@ namespace {
 constexpr const char* kInfoExamples = R"(Examples:
   glidar info builtin:asteroid
   glidar info builtin:torus --json
-  glidar info models/satellite/satellite.obj --parts
 With your own files:
+  glidar info satellite.obj --parts
   glidar info part.stl --unit mm --up y
 
 Exit codes: 0 done (also for models with defects), 2 the model cannot be read.)";
@@ -315,8 +315,7 @@ Command add_info(CLI::App& program) {
       ->type_name("");
   add_model_options(command, flags->model);
   command.add_flag("--parts", flags->parts,
-                   "List the parts that a scene file can change (key parts), with materials, "
-                   "triangles, box, and pose in their parent");
+                   "List the parts that scene files can change by the key parts");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run_info(*flags); };
 }

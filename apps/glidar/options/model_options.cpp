@@ -19,9 +19,7 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
   group.add_flag("--centre", "Move the centre of the model's bounding box to its origin",
                  options.centre);
   group.add_repeatable(
-      "--texture-folder", "DIR",
-      "Folder below which textures outside the model's folder are searched [none]; "
-      "repeatable",
+      "--texture-folder", "DIR", "Folder of textures outside the model's folder [none]; repeatable",
       [&options](const std::string& text) { options.texture_folders.emplace_back(text); });
   group.add_flag("--no-cache", "Neither read nor write the model cache", options.use_cache, false);
   group.add("--cache-folder", "DIR", "Folder of the model cache [~/.cache/glidar]",
