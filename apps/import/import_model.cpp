@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -105,6 +106,10 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, ModelFo
   }
   SourceModel source = read_file(canonical_model, folder, files, log, progress);
   require_triangles(source);
+  if (std::any_of(source.nodes.begin(), source.nodes.end(),
+                  [](const SourceNode& node) { return node.has_omitted_parts; })) {
+    source.notes.add("nodes nested too deeply, or too many, belong to the part above them");
+  }
   ImportedModel imported;
   Model& model = imported.model;
   model.format = source.format;

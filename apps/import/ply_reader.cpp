@@ -478,7 +478,7 @@ class PlyReader {
     if (is_new) {
       FilePart& part = lists_.parts.emplace_back();
       if (has_objects) {
-        part.name = fmt::format("object_id {:g}", object);
+        part.name = fmt::format("object_id {:.17g}", object);
         part.node = node_of(part.name);
       }
       textures_.push_back(texture >= 0.0 && texture < 1e6 ? static_cast<std::size_t>(texture)

@@ -29,11 +29,18 @@ Material SourceMaterial::white_material() {
 std::uint32_t add_node(std::vector<SourceNode>& nodes, const std::string& name,
                        std::uint32_t parent, const Eigen::Matrix4d& model_from_node) {
   // The path of a part has the names of all nodes above it.
-  constexpr std::uint32_t kMaxDepth = 64;
   constexpr std::size_t kMaxName_bytes = 100;
-  const std::uint32_t depth = nodes.at(parent).depth + 1;
-  if (name.empty() || depth > kMaxDepth || nodes.size() >= kMaxRecords) return parent;
-  nodes.push_back({excerpt(name, kMaxName_bytes), parent, depth, model_from_node});
+  constexpr std::size_t kMaxPath_bytes = 1000;
+  SourceNode& above = nodes.at(parent);
+  if (name.empty()) return parent;
+  SourceNode node{excerpt(name, kMaxName_bytes), parent, above.depth + 1, model_from_node};
+  node.path_bytes = above.path_bytes + node.name.size() + 1;
+  if (node.depth > kMaxPartDepth || node.path_bytes > kMaxPath_bytes ||
+      nodes.size() >= kMaxRecords) {
+    above.has_omitted_parts = true;
+    return parent;
+  }
+  nodes.push_back(std::move(node));
   return static_cast<std::uint32_t>(nodes.size() - 1);
 }
 
@@ -76,7 +83,7 @@ std::vector<std::string> Notes::texts() const {
   for (const Note& note : notes_) {
     std::string& text = all.emplace_back(note.place.empty() ? "" : note.place + ": ");
     text += note.text;
-    if (note.count > 1) text += fmt::format("; {} more such lines", note.count - 1);
+    if (note.count > 1) text += fmt::format("; {} more such places", note.count - 1);
   }
   if (left_out_ > 0) all.push_back(fmt::format("and {} more notes", left_out_));
   return all;

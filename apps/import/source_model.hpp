@@ -108,10 +108,12 @@ struct SourceNode {
   std::uint32_t parent = 0;  ///< index of an earlier node
   std::uint32_t depth = 0;   ///< below the file
   Eigen::Matrix4d model_from_node = Eigen::Matrix4d::Identity();
+  std::size_t path_bytes = 0;      ///< length of the part's name, which has all names above it
+  bool has_omitted_parts = false;  ///< nodes below it are no parts, see add_node()
 };
 
-/// Adds a node and returns its index. Returns the parent for a node without a name, and where the
-/// file nests nodes deeper than 64 or has more than kMaxRecords.
+/// Adds a node and returns its index. Returns the parent for a node without a name, and where nodes
+/// are nested too deeply (kMaxPartDepth, or a path of 1000 bytes) or are more than kMaxRecords.
 std::uint32_t add_node(std::vector<SourceNode>& nodes, const std::string& name,
                        std::uint32_t parent,
                        const Eigen::Matrix4d& model_from_node = Eigen::Matrix4d::Identity());

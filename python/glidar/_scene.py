@@ -381,7 +381,12 @@ def _part_entry(changes: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 def _pose_keys(pose: Any, where: str) -> Any:
     """A pose as in scene files, in which a matrix keeps every bit."""
-    return pose if isinstance(pose, Mapping) else {"matrix": floats(pose, where, (4, 4))[:3].ravel()}
+    if isinstance(pose, Mapping):
+        return pose
+    matrix = floats(pose, where, (4, 4))
+    if matrix[3].tolist() != [0, 0, 0, 1]:
+        raise Error(where, f"the last row {shown(matrix[3].tolist())}", "0, 0, 0, 1")
+    return {"matrix": matrix[:3].ravel()}
 
 
 def _loaded(source: str | os.PathLike[str], options: dict[str, Any]) -> Recipe:
@@ -400,7 +405,10 @@ def _options(unit: str | float | None, up: str | None, centre: bool, texture_fol
         raise Error("centre", shown(centre), "True or False")
     metres = None if unit is None else _metres(unit)
     folders = [] if texture_folder is None else texture_folder if isinstance(texture_folder, (list, tuple)) else [texture_folder]
-    absolute = [os.path.abspath(path_of(folder, "texture_folder")) for folder in folders]
+    paths = [path_of(folder, "texture_folder") for folder in folders]
+    if "" in paths:
+        raise Error("texture_folder", "''", "a folder")
+    absolute = [os.path.abspath(path) for path in paths]
     return {"metres_per_unit": metres, "up": _axis(up), "centre": centre, "texture_folders": absolute}
 
 

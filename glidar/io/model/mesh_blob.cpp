@@ -259,9 +259,12 @@ void check(const ModelFrame& declared) {
 }
 
 void check(const std::vector<ModelNode>& nodes) {
+  std::vector<std::uint32_t> depths(nodes.size(), 0);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (i > 0 && nodes[i].parent < i) depths[i] = depths[nodes[i].parent] + 1;
     const bool is_sound =
-        (nodes[i].parent < i || i == 0) && is_rigid(nodes[i].model_from_node) &&
+        (nodes[i].parent < i || i == 0) && depths[i] <= kMaxPartDepth &&
+        is_rigid(nodes[i].model_from_node) &&
         nodes[i].model_from_node.matrix().row(3) == Eigen::RowVector4d::UnitW().eval();
     if (!is_sound) reject_imported_data("node '" + nodes[i].name + "' has no place in the tree");
   }
@@ -275,8 +278,10 @@ void check(const Model& model) {
     reject_imported_data("a triangle without a material");
   for (const Material& material : model.materials) check(material, model.textures.size());
   for (const Texture& texture : model.textures) check(texture);
+  std::uint64_t end = 0;
   for (const ModelPart& part : model.parts) {
-    const std::uint64_t end = std::uint64_t{part.first_triangle} + part.triangle_count;
+    if (part.first_triangle < end) reject_imported_data("part '" + part.name + "' in another one");
+    end = std::uint64_t{part.first_triangle} + part.triangle_count;
     if (end > model.mesh.triangles.size())
       reject_imported_data("part '" + part.name + "' beyond the triangles");
     if (part.node >= model.nodes.size()) reject_imported_data("a part without a node");

@@ -56,6 +56,13 @@ fs::path model_file(const std::string& source) {
 
 /// The options with canonical paths of folders.
 ModelOptions resolved(ModelOptions options) {
+  constexpr std::size_t kMaxFolders = 64;
+  if (options.texture_folders.size() > kMaxFolders) {
+    throw Error({.where = "texture folder",
+                 .found = std::to_string(options.texture_folders.size()) + " folders",
+                 .allowed = "at most " + std::to_string(kMaxFolders),
+                 .remedy = "name a folder above them"});
+  }
   for (fs::path& folder : options.texture_folders) {
     std::error_code error;
     const fs::path real = fs::canonical(folder, error);

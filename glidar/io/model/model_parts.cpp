@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -12,11 +13,11 @@ namespace {
 
 /// Adds the triangles of a range to the part of its node.
 void add_triangles(const Model& model, const ModelPart& range, PartSummary& part,
-                   std::vector<bool>& has_material) {
+                   std::set<std::uint16_t>& materials) {
   part.triangles += range.triangle_count;
   for (std::uint32_t k = 0; k < range.triangle_count; ++k) {
     const std::uint32_t t = range.first_triangle + k;
-    has_material[material_slot(model.mesh, t)] = true;
+    materials.insert(material_slot(model.mesh, t));
     for (const std::uint32_t v : model.mesh.triangles[t]) {
       part.box_m.extend(vertex_m(model.mesh, v));
     }
@@ -44,8 +45,7 @@ std::vector<PartSummary> list_parts(const Model& model) {
   const std::vector<ModelNode>& nodes = model.nodes;
   const std::vector<std::string> names = part_names(nodes);
   std::vector<PartSummary> parts(nodes.size());
-  std::vector<std::vector<bool>> materials(nodes.size(),
-                                           std::vector<bool>(model.materials.size(), false));
+  std::vector<std::set<std::uint16_t>> materials(nodes.size());
   for (const ModelPart& range : model.parts) {
     add_triangles(model, range, parts[range.node], materials[range.node]);
   }
@@ -56,11 +56,9 @@ std::vector<PartSummary> list_parts(const Model& model) {
     parts[i].parent_from_part = nodes[parent].model_from_node.inverse() * nodes[i].model_from_node;
     parts[parent].triangles += parts[i].triangles;
     if (!parts[i].box_m.isEmpty()) parts[parent].box_m.extend(parts[i].box_m);
-    for (std::size_t m = 0; m < model.materials.size(); ++m) {
-      if (!materials[i][m]) continue;
-      materials[parent][m] = true;
+    for (const std::uint16_t m : materials[i])
       parts[i].materials.push_back(model.materials[m].name);
-    }
+    materials[parent].insert(materials[i].begin(), materials[i].end());
   }
   parts.erase(parts.begin());
   return parts;

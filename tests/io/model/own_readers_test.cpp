@@ -441,13 +441,46 @@ TEST(ModelMtl, OptionsAndOddLines) {
   EXPECT_THAT(model.notes, Contains(HasSubstr("Ni, aniso")));
 }
 
+TEST(ModelParts, EveryObjectIdOfAPlyFileIsAPart) {
+  const TestFolder temp;
+  const Model model = load(
+      temp.write("a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                 "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                 "property uint object_id\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1234567\n"
+                 "3 0 2 1 1234568\n"));
+  EXPECT_THAT(part_names(model.nodes),
+              ::testing::ElementsAre("", "object_id 1234567", "object_id 1234568"));
+}
+
+TEST(ModelParts, NodesThatAreNestedTooDeeplyAreNoted) {
+  const TestFolder temp;
+  std::string nodes;
+  constexpr int kDepth = 70;
+  for (int i = 0; i < kDepth; ++i) {
+    nodes += i + 1 < kDepth ? "{\"name\":\"n\",\"children\":[" + std::to_string(i + 1) + "]},"
+                            : "{\"name\":\"n\",\"mesh\":0}";
+  }
+  const Model model = load(temp.write(
+      "a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" +
+                    nodes +
+                    R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+                    R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
+                    R"("min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
+                    R"("buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+                    R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})"));
+  EXPECT_EQ(model.nodes.size(), 1U + kMaxPartDepth);
+  EXPECT_THAT(model.notes, Contains(HasSubstr("belong to the part above them")));
+}
+
 TEST(ModelNotes, RepeatedOnesAreCountedAndTheirNumberIsLimited) {
   const TestFolder temp;
   std::string lines;
   for (int i = 0; i < 100'000; ++i) lines += "f 1 2\n";
   const Model model = load(temp.write("a.obj", kSquare + "f 1 2 3 4\n" + lines));
-  EXPECT_THAT(model.notes,
-              Contains("line 6: a face has fewer than 3 corners: left out; 99999 more such lines"));
+  EXPECT_THAT(
+      model.notes,
+      Contains("line 6: a face has fewer than 3 corners: left out; 99999 more such places"));
   EXPECT_LT(model.notes.size(), 4U);
   std::string header = "ply\nformat ascii 1.0\n";
   for (int i = 0; i < 100'000; ++i) header += "x" + std::to_string(i) + "\n";
