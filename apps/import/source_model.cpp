@@ -4,6 +4,7 @@
 
 #include <glidar/core/excerpt.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
+#include <glidar/io/model/model_parts.hpp>
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #include <glidar/io/model/mesh_blob.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/model/model_parts.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -13,6 +13,9 @@
 
 namespace glidar {
 
+/// Nodes of a file are at most so far below the root; deeper ones are no parts.
+inline constexpr std::uint32_t kMaxPartDepth = 64;
+
 /// A part of a model with all parts below it.
 struct PartSummary {
   std::string name;    ///< its path
