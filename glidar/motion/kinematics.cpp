@@ -113,10 +113,12 @@ PointRates rates_of(const Mounted& mounted, const Eigen::Vector3d& point_m,
 double max_displacement_m(const Trajectory& trajectory, const Eigen::Vector3d& point_m,
                           std::int64_t t_ns, const TimeInterval& interval) {
   constexpr double kRounding = 1.0 + 0x1p-40;
+  constexpr double kClockStep_s = 4e-6;  // seconds_between() rounds times far from their origin
   const PointRates rates =
       std::visit([&](const auto& kind) { return rates_of(kind, point_m, interval); }, trajectory);
-  const double duration_s =
-      std::max(seconds_between(interval.first_ns, t_ns), seconds_between(t_ns, interval.last_ns));
+  const double before_s = seconds_between(interval.first_ns, t_ns);
+  const double after_s = seconds_between(t_ns, interval.last_ns);
+  const double duration_s = kClockStep_s + std::max(before_s, after_s);
   const double chord = std::min(rates.angular_rad_s * duration_s, 2.0);
   return kRounding * (rates.drift_m_s * duration_s + chord * rates.arm_m);
 }

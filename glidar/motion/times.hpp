@@ -10,7 +10,8 @@
 
 namespace glidar {
 
-/// The seconds from one time to another, without overflow and exact to the nanosecond.
+/// The seconds from one time to another, without overflow; exact to the nanosecond up to 104 days,
+/// to 1024 ns at most.
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   const auto from = static_cast<std::uint64_t>(from_ns);
   const auto to = static_cast<std::uint64_t>(to_ns);

@@ -72,7 +72,7 @@ void check(const CastRequest& request, const Scene& scene) {
       request.instance_enabled.empty() || request.instance_enabled.size() == scene.instances.size(),
       "enabled flags for another number of instances", "one entry per instance, or none");
   const auto is_in_scene = [&](const InstanceRange& target) {
-    return target.begin < target.end && target.end <= scene.instances.size();
+    return target.begin <= target.end && target.end <= scene.instances.size();
   };
   require(request.targets.empty() || request.targets.size() == beams.size(),
           "a number of targets that differs from the beams", "one target per beam, or none");

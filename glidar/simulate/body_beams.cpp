@@ -85,7 +85,7 @@ struct Cone {
     const double radius = radius_m + apex_radius_m;
     const double distance_m = to_centre_m.norm();
     if (distance_m - radius > farthest_m) return false;
-    if (distance_m <= radius || !(cosine > 0.0)) return true;
+    if (!(distance_m > radius) || !(cosine > 0.0)) return true;  // also for NaN
     // The sphere is seen within the angle b of its centre, sin b = radius / distance: the angle to
     // the axis must be at most that of the cone plus b.
     const double tangent_m = std::sqrt(distance_m * distance_m - radius * radius);
@@ -199,16 +199,19 @@ class FrameSearch {
     }
   }
 
-  /// Lists the pairs of a slice's beams and bodies.
+  /// Lists pairs of a slice's beams and bodies, from body `next` on, until they are many.
   void search(const Slices& slices, std::size_t slice, std::span<const MovingBody> bodies,
-              std::vector<BodyBeam>& found) const {
+              std::size_t& next, std::vector<BodyBeam>& found) const {
+    constexpr std::size_t kMany = 4096;
     found.clear();
+    if (next == bodies.size()) return;
     const auto for_beams = [&](const auto& visit) { slices.for_beams(slice, visit); };
     const Cone cone = cone_around(rest_, for_beams);
-    if (cone.farthest_m < 0.0) return;
     const TimeInterval interval = firing_interval(for_beams);
     std::vector<Run> runs;
-    for (const MovingBody& body : bodies) {
+    if (cone.farthest_m < 0.0) next = bodies.size();
+    for (; next < bodies.size() && found.size() < kMany; ++next) {
+      const MovingBody& body = bodies[next];
       if (!cone.meets(body.centre_m, body.radius_m)) continue;
       Sphere sphere;
       place_sphere(body, interval, sphere.centre_m, sphere.radius_m);
@@ -366,19 +369,25 @@ bool is_static(const Trajectory& trajectory) {
   return std::holds_alternative<ConstantPose>(trajectory);
 }
 
-void find_body_beams(const TimedScene& scene, const CastRequest& request, const Beams& at_rest,
+bool find_body_beams(const TimedScene& scene, const CastRequest& request, const Beams& at_rest,
                      std::span<const double> nearest_m, BodyBeamSearch& search) {
+  if (request.beams.size() == 0) return false;
   const RestBeams rest{at_rest, nearest_m};
   const FrameSearch frame(scene, request, rest);
-  frame.list_bodies(search);
   const Slices slices(request.beams);
-  search.slices.resize(slices.size());
+  if (search.next_body.empty()) {
+    frame.list_bodies(search);
+    search.next_body.assign(slices.size(), 0);
+    search.slices.resize(slices.size());
+  }
   scene.renderer.thread_pool().parallel_for(
       slices.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-          frame.search(slices, i, search.bodies, search.slices[i]);
+          frame.search(slices, i, search.bodies, search.next_body[i], search.slices[i]);
         }
       });
+  return std::any_of(search.slices.begin(), search.slices.end(),
+                     [](const std::vector<BodyBeam>& found) { return !found.empty(); });
 }
 
 }  // namespace glidar

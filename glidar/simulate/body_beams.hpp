@@ -46,7 +46,9 @@ struct MovingBody {
 struct BodyBeamSearch {
   std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it has moved
   std::vector<MovingBody> bodies;
-  /// Results: per slice of the beams, by increasing instance. Every beam is in one slice only.
+  /// Per slice of the beams: index of the first body that was not searched. Empty: a search begins.
+  std::vector<std::size_t> next_body;
+  /// Results: per slice, by increasing instance. Every beam is in one slice only.
   std::vector<std::vector<BodyBeam>> slices;
 };
 
@@ -55,13 +57,14 @@ bool is_static(const Trajectory& trajectory);
 
 /// Finds every moving instance that each beam may hit at its own firing time: the beam meets the
 /// instance's box there. The cost grows with these pairs, not with the number of instances times
-/// that of beams.
+/// that of beams. A call finds some of them, at most about three per beam, in place of those of the
+/// call before; false: none is left.
 ///
 /// `request` is that of a static frame: beams in the sensor's frame, poses at stamp_ns. `at_rest`:
 /// the beams in the sensor's frame at the start, as all that is static sees them; those without a
 /// direction are left out. `nearest_m`, one per beam: hits at this range or beyond do not matter,
 /// unless it is NaN; empty: all matter.
-void find_body_beams(const TimedScene& scene, const CastRequest& request, const Beams& at_rest,
+bool find_body_beams(const TimedScene& scene, const CastRequest& request, const Beams& at_rest,
                      std::span<const double> nearest_m, BodyBeamSearch& search);
 
 }  // namespace glidar

@@ -159,22 +159,16 @@ void collect_body_beams(const MovingCast& cast) {
 }
 
 /// Casts the body beams that were found.
-void cast_body_beams(const MovingCast& cast, const HitColumnMask& hit_columns,
-                     const ProgressCallback& progress) {
+void cast_body_beams(const MovingCast& cast, const HitColumnMask& hit_columns) {
   MovingCastWorkspace& memory = cast.memory;
   collect_body_beams(cast);
-  if (memory.targets.empty()) {  // which would be a cast into all instances
-    resize(memory.body_hits, 0, hit_columns);
-    if (progress) progress(1.0);
-    return;
-  }
   cast.timed.renderer.cast({.beams = memory.body_beams,
                             .world_from_sensor = cast.request.world_from_sensor,
                             .world_from_instance = cast.request.world_from_instance,
                             .hit_columns = hit_columns,
                             .cull_back_faces = cast.request.cull_back_faces,
-                            .targets = memory.targets,
-                            .progress = progress},
+                            .instance_enabled = cast.request.instance_enabled,
+                            .targets = memory.targets},
                            memory.body_hits);
 }
 
@@ -222,11 +216,13 @@ void cast_moving(const TimedScene& scene, const CastRequest& request,
   const bool has_bodies = !std::all_of(trajectories.begin(), trajectories.end(), is_static);
   express_all_beams(cast);
   cast_static(cast, subrange(request.progress, 0.0, has_bodies ? 0.5 : 1.0), hits);
-  if (has_bodies) {
-    find_body_beams(scene, request, workspace.beams, hits.range_m, workspace.search);
-    cast_body_beams(cast, request.hit_columns, subrange(request.progress, 0.5, 1.0));
+  workspace.search.next_body.clear();
+  while (has_bodies &&
+         find_body_beams(scene, request, workspace.beams, hits.range_m, workspace.search)) {
+    cast_body_beams(cast, request.hit_columns);
     merge_body_hits(cast, hits);
   }
+  if (request.progress) request.progress(1.0);
   if (request.on_tile_done) {
     cast.parallel_for(request.beams.size(), kMovedBeamsPerTask,
                       [&](std::size_t begin, std::size_t end) {
@@ -245,10 +241,12 @@ void count_body_hits(const TimedScene& scene, const CastRequest& request,
                      MovingCastWorkspace& workspace, std::span<std::uint32_t> count) {
   const MovingCast cast{scene, request, workspace};
   express_all_beams(cast);
-  find_body_beams(scene, request, workspace.beams, {}, workspace.search);
-  cast_body_beams(cast, {}, {});
-  for (const std::uint32_t instance : workspace.body_hits.instance) {
-    if (instance != kInvalidId) ++count[instance];
+  workspace.search.next_body.clear();
+  while (find_body_beams(scene, request, workspace.beams, {}, workspace.search)) {
+    cast_body_beams(cast, {});
+    for (const std::uint32_t instance : workspace.body_hits.instance) {
+      if (instance != kInvalidId) ++count[instance];
+    }
   }
 }
 

@@ -313,7 +313,9 @@ void count_hidden_in_motion(const Simulation& s, const Beams& nominal,
   const CastRequest request = cast_request(s, nominal, {});
   count_body_hits(timed_scene(s), request, memory.moving, memory.hidden);
   for (const std::uint32_t instance : first) {
-    if (instance != kInvalidId && !is_at_rest(s, instance)) --memory.hidden[instance];
+    if (instance == kInvalidId || is_at_rest(s, instance)) continue;
+    std::uint32_t& hidden = memory.hidden[instance];
+    hidden -= hidden > 0 ? 1 : 0;  // another renderer may have found the first hits
   }
   std::vector<ObjectBox> at_rest;
   std::copy_if(boxes.begin(), boxes.end(), std::back_inserter(at_rest),

@@ -310,6 +310,34 @@ TEST(MovingCast, ABodyThatNoBeamMeetsChangesNothing) {
   EXPECT_DOUBLE_EQ(reported.back(), 1.0);
 }
 
+TEST(MovingCast, BodiesAroundTheSensorAreCastAFewAtATime) {
+  Scene scene = plane();
+  add_model(scene, make_builtin_model("box"));
+  const Instance box = scene.instances[1];
+  constexpr int kBodies = 60;
+  for (int i = 1; i < kBodies; ++i) {
+    scene.instances.push_back(box);
+    scene.instances.back().id = static_cast<std::uint32_t>(1 + i);
+  }
+  Stage stage(std::move(scene));
+  for (std::size_t i = 1; i < stage.scene.instances.size(); ++i) {
+    stage.scene.instances[i].scale = 40.0 - 0.4 * static_cast<double>(i);
+    stage.motion.world_from_instance[i] =
+        ConstantTwist{.angular_rad_s = {0.1, 0.2, 0.3}, .linear_m_s = {1.0, 0.0, 2.0}};
+  }
+  const Frame frame = stage.shoot();
+  expect_as_if_cast_alone(stage, frame);
+  const TimedScene timed{*stage.renderer, stage.scene, stage.motion, 0};
+  const CastRequest request{.beams = stage.beams,
+                            .world_from_sensor = frame.world_from_sensor,
+                            .world_from_instance = frame.world_from_instance};
+  MovingCastWorkspace workspace;
+  Hits hits;
+  cast_moving(timed, request, workspace, hits);
+  EXPECT_EQ(hits.instance, frame.ground_truth.instance);
+  EXPECT_LT(workspace.targets.capacity(), kBodies * stage.beams.size() / 2);
+}
+
 TEST(MovingCast, IsExactFarFromTheWorldsOrigin) {
   Stage stage(plane());
   const Eigen::Vector3d far(1e6, -2e6, 5e5);

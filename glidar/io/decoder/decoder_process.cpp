@@ -67,7 +67,9 @@ class DecoderProcess {
       fail_to_start(program, errno);
     control_ = moved_up(program, sockets[0]);
     const UniqueFd control_end = moved_up(program, sockets[1]);
-    const UniqueFd shared = moved_up(program, SharedRing::create());
+    const int memory = SharedRing::create();
+    if (memory < 0) throw Error({"shared memory", std::generic_category().message(errno)});
+    const UniqueFd shared = moved_up(program, memory);
     ring_ = std::make_shared<SharedRing>(shared.get());
     // the pipe stays smaller if the system forbids this size
     ::fcntl(answer_.get(), F_SETPIPE_SZ, static_cast<int>(kDecoderMiB));

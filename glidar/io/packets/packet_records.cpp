@@ -26,7 +26,7 @@ void send_packets(const std::filesystem::path& capture, RecordWriter& to) {
 }
 
 CapturedPackets::CapturedPackets(const std::filesystem::path& capture)
-    : run_(start_decoder(kCaptureDecoder, checked_capture(capture))) {}
+    : CapturedPackets(start_decoder(kCaptureDecoder, checked_capture(capture))) {}
 
 bool CapturedPackets::next(UdpPacket& packet) {
   if (has_ended_) return false;
@@ -35,6 +35,9 @@ bool CapturedPackets::next(UdpPacket& packet) {
   if (has_ended_) return false;
   if (record.kind != RecordKind::item || record.payload.size() > kMaxUdpPayload)
     run_.records.reject("no datagram");
+  constexpr std::uint64_t kMinHead_bytes = 16;  // of a datagram in a file
+  if (!budget_.try_take(Budget::decompressed_bytes, kMinHead_bytes + record.payload.size()))
+    run_.records.reject("more datagrams than the capture has bytes");
   packet.stamp_ns = record.stamp_ns;
   packet.source_port = static_cast<std::uint16_t>(record.index >> 16U);
   packet.port = static_cast<std::uint16_t>(record.index);

@@ -5,6 +5,7 @@
 // Both ends of the stream of a packet capture.
 
 #include <glidar/io/decoder/decoder_process.hpp>
+#include <glidar/io/files/input_budget.hpp>
 #include <glidar/io/packets/packet_codec.hpp>
 
 #include <filesystem>
@@ -21,13 +22,14 @@ class CapturedPackets {
   /// Throws Error when the file is missing.
   explicit CapturedPackets(const std::filesystem::path& capture);
   /// Reads the datagrams of a running process.
-  explicit CapturedPackets(DecoderRun run) : run_(std::move(run)) {}
+  explicit CapturedPackets(DecoderRun run) : run_(std::move(run)), budget_(run_.input_bytes) {}
 
   /// The next datagram; false at the end. Throws Error where the file is malformed.
   bool next(UdpPacket& packet);
 
  private:
   DecoderRun run_;
+  InputBudget budget_;
   bool has_ended_ = false;
 };
 
