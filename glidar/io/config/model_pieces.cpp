@@ -8,6 +8,7 @@
 #include <glidar/io/model/model_parts.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -126,12 +127,41 @@ Displacements displacements_of(const LoadedModel& model,
   return all;
 }
 
-std::string label_of(const ModelAtom& atom, const PlannedInstance& planned,
-                     const LoadedModel& model, const Selection& selection) {
-  if (planned.split == Split::none) return "";
-  const std::string& name =
-      planned.split == Split::parts ? model.names[atom.node] : selection.material(atom.slot);
-  return name.empty() ? planned.name : name;
+/// The part or material by which `split` makes an object of the atom; empty: it has no name.
+std::string split_name(const ModelAtom& atom, Split split, const LoadedModel& model,
+                       const Selection& selection) {
+  if (split == Split::none) return "";
+  return split == Split::parts ? model.names[atom.node] : selection.material(atom.slot);
+}
+
+/// A piece without atoms yet, with its name and class.
+ModelPiece named_piece(const PlannedInstance& planned, const std::string& split_name,
+                       std::vector<const PartOverride*> overrides) {
+  ModelPiece piece;
+  if (planned.split == Split::none) {
+    if (!overrides.empty()) piece.name = overrides.back()->selector;
+  } else if (split_name.empty()) {
+    piece.name = planned.name;
+    piece.class_name = planned.class_name.empty() ? planned.name : planned.class_name;
+  } else {
+    piece.name = split_name;
+    piece.class_name = split_name;
+  }
+  piece.overrides = std::move(overrides);
+  return piece;
+}
+
+/// Leaves out the material slots that no triangle has. Returns the former numbers of the others.
+std::vector<std::uint16_t> compact_slots(Mesh& mesh) {
+  std::vector<std::uint16_t> slots = mesh.material_slots;
+  std::sort(slots.begin(), slots.end());
+  slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+  for (std::uint16_t& slot : mesh.material_slots) {
+    slot = static_cast<std::uint16_t>(std::lower_bound(slots.begin(), slots.end(), slot) -
+                                      slots.begin());
+  }
+  if (slots.empty()) slots.push_back(0);
+  return slots;
 }
 
 }  // namespace
@@ -159,27 +189,29 @@ std::vector<ModelPiece> cut_model(const PlannedInstance& planned, const Scene& s
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       if (chosen[k][a]) overrides.push_back(&planned.parts[k]);
     }
-    const std::string label = label_of(atom, planned, model, selection);
+    const std::string name = split_name(atom, planned.split, model, selection);
     const auto [place, is_new] =
-        places.try_emplace({overrides, moved.moved_with[atom.node], label}, pieces.size());
+        places.try_emplace({overrides, moved.moved_with[atom.node], name}, pieces.size());
     if (is_new) {
-      pieces.push_back({.name = !label.empty()      ? label
-                                : overrides.empty() ? ""
-                                                    : overrides.back()->selector,
-                        .label = label,
-                        .model_from_piece = moved.model_from_rest[atom.node]});
-      pieces.back().overrides = std::move(overrides);
+      pieces.push_back(named_piece(planned, name, std::move(overrides)));
+      pieces.back().model_from_piece = moved.model_from_rest[atom.node];
     }
     pieces[place->second].atoms.push_back(a);
   }
   return pieces;
 }
 
-std::uint32_t mesh_of_piece(const ModelPiece& piece, LoadedModel& model, Scene& scene) {
-  if (piece.atoms.size() == model.atoms.size()) return model.whole.mesh;
-  const auto [mesh, is_new] =
-      model.meshes.try_emplace(piece.atoms, static_cast<std::uint32_t>(scene.meshes.size()));
-  if (!is_new) return mesh->second;
+const PieceMesh& mesh_of_piece(const ModelPiece& piece, LoadedModel& model, Scene& scene) {
+  const auto [place, is_new] = model.meshes.try_emplace(piece.atoms);
+  PieceMesh& mesh = place->second;
+  if (!is_new) return mesh;
+  if (piece.atoms.size() == model.atoms.size()) {
+    mesh.index = model.whole.mesh;
+    mesh.slots.resize(model.whole.materials.size());
+    std::iota(mesh.slots.begin(), mesh.slots.end(), std::uint16_t{0});
+    return mesh;
+  }
+  mesh.index = static_cast<std::uint32_t>(scene.meshes.size());
   std::vector<std::uint32_t> triangles;
   for (const std::uint32_t a : piece.atoms) {
     const std::vector<std::uint32_t>& more = model.atoms[a].triangles;
@@ -188,7 +220,8 @@ std::uint32_t mesh_of_piece(const ModelPiece& piece, LoadedModel& model, Scene& 
   std::sort(triangles.begin(), triangles.end());
   scene.meshes.push_back(extract_triangles(scene.meshes[model.whole.mesh], triangles));
   scene.sources.push_back(MeshSource(scene.sources[model.whole.mesh]));
-  return mesh->second;
+  mesh.slots = compact_slots(scene.meshes.back());
+  return mesh;
 }
 
 }  // namespace glidar

@@ -19,6 +19,12 @@ struct ModelAtom {
   std::vector<std::uint32_t> triangles;  ///< ascending
 };
 
+/// The mesh of a piece, with the materials that its triangles have.
+struct PieceMesh {
+  std::uint32_t index = 0;           ///< into Scene::meshes
+  std::vector<std::uint16_t> slots;  ///< of the model, per slot of this mesh
+};
+
 /// A model in a scene, and what it was cut into.
 struct LoadedModel {
   Instance whole;  ///< as the model came, before the changes of a scene file
@@ -26,7 +32,7 @@ struct LoadedModel {
   std::vector<ModelNode> nodes;
   std::vector<std::string> names;  ///< part_names() of the nodes
   std::vector<ModelAtom> atoms;    ///< by node and slot; empty until the model is cut
-  std::map<std::vector<std::uint32_t>, std::uint32_t> meshes;  ///< of pieces, by their atoms
+  std::map<std::vector<std::uint32_t>, PieceMesh> meshes;  ///< of pieces, by their atoms
 };
 
 /// Atoms of a model that become one instance.
@@ -34,7 +40,7 @@ struct ModelPiece {
   std::vector<std::uint32_t> atoms = {};            ///< ascending
   std::vector<const PartOverride*> overrides = {};  ///< in the order of the file
   std::string name;                                 ///< after that of the instance; empty: the rest
-  std::string label;                                ///< of `split`; empty: none
+  std::string class_name;                           ///< by `split`; empty: that of the model
   Pose model_from_piece = Pose::Identity();         ///< by poses of parts
 };
 
@@ -44,6 +50,6 @@ std::vector<ModelPiece> cut_model(const PlannedInstance& planned, const Scene& s
                                   LoadedModel& model);
 
 /// The mesh of a piece, which the scene gets once.
-std::uint32_t mesh_of_piece(const ModelPiece& piece, LoadedModel& model, Scene& scene);
+const PieceMesh& mesh_of_piece(const ModelPiece& piece, LoadedModel& model, Scene& scene);
 
 }  // namespace glidar

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -88,10 +89,12 @@ bool concerns(const MaterialOverride& change, const Material& material) {
   return change.material == "*" || change.material == material.name;
 }
 
-void require_known(const MaterialOverride& change, const Instance& instance, const Scene& scene) {
+/// Throws Error if the change concerns none of the materials of its owner, "the model" or a part.
+void require_known(const MaterialOverride& change, const std::vector<std::uint32_t>& materials,
+                   const Scene& scene, const std::string& owner) {
   std::vector<std::string> names;
   std::string listed;
-  for (const std::uint32_t index : instance.materials) {
+  for (const std::uint32_t index : materials) {
     if (concerns(change, scene.materials[index])) return;
     const std::string& name = scene.materials[index].name;
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
@@ -99,17 +102,15 @@ void require_known(const MaterialOverride& change, const Instance& instance, con
     listed += (listed.empty() ? "'" : ", '") + name + "'";
   }
   const std::string nearest = closest_match(change.material, names);
-  throw Error({change.where, "the model has no material '" + excerpt(change.material) + "'",
+  throw Error({change.where, owner + " has no material '" + excerpt(change.material) + "'",
                listed + ", or '*' for all",
                nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
 }
 
-/// Gives the instance copies of the materials that change: others may share the originals.
+/// Gives the instance copies of the materials that change: others may share the originals. It need
+/// not have the materials of all changes.
 void override_materials(const std::vector<MaterialOverride>& overrides, TexturePlaces& places,
                         Instance& instance, Scene& scene) {
-  for (const MaterialOverride& change : overrides) {
-    require_known(change, instance, scene);
-  }
   for (std::uint32_t& index : instance.materials) {
     Material changed = scene.materials[index];
     bool is_changed = false;
@@ -122,6 +123,15 @@ void override_materials(const std::vector<MaterialOverride>& overrides, TextureP
     index = static_cast<std::uint32_t>(scene.materials.size());
     scene.materials.push_back(std::move(changed));
   }
+}
+
+/// The same for a whole model, which has the materials of all changes.
+void override_known_materials(const std::vector<MaterialOverride>& overrides, TexturePlaces& places,
+                              Instance& instance, Scene& scene) {
+  for (const MaterialOverride& change : overrides) {
+    require_known(change, instance.materials, scene, "the model");
+  }
+  override_materials(overrides, places, instance, scene);
 }
 
 /// Where in Scene::class_names the names are.
@@ -225,6 +235,59 @@ void drop_cut_meshes(const std::vector<std::uint32_t>& cut, Scene& scene) {
   for (MeshSource& source : scene.sources) source.unstretched = renumbered[source.unstretched];
 }
 
+/// The last entry that selects a piece gives it its id.
+bool has_id_of(const ModelPiece& piece, const PartOverride& part) {
+  return !piece.overrides.empty() && piece.overrides.back() == &part;
+}
+
+std::optional<std::uint32_t> given_id(const ModelPiece& piece) {
+  return piece.overrides.empty() ? std::nullopt : piece.overrides.back()->id;
+}
+
+/// Throws Error unless each given id is that of one object.
+void require_used_ids(const PlannedInstance& planned, const std::vector<ModelPiece>& pieces) {
+  for (const PartOverride& part : planned.parts) {
+    if (!part.id) continue;
+    const auto objects =
+        std::count_if(pieces.begin(), pieces.end(),
+                      [&part](const ModelPiece& piece) { return has_id_of(piece, part); });
+    if (objects == 1) continue;
+    if (objects == 0) {
+      throw Error({part.where + ".id", "later entries select all of it", "an id of an object",
+                   "give it to the last of these entries"});
+    }
+    throw Error({part.where + ".id", "an id for " + std::to_string(objects) + " objects",
+                 "an id of one object", "give the others entries after this one"});
+  }
+}
+
+/// The materials of the triangles that an entry selects, as the model came.
+std::vector<std::uint32_t> materials_of(const PartOverride& part,
+                                        const std::vector<ModelPiece>& pieces,
+                                        const LoadedModel& model) {
+  std::set<std::uint32_t> materials;
+  for (const ModelPiece& piece : pieces) {
+    const auto& entries = piece.overrides;
+    if (std::find(entries.begin(), entries.end(), &part) == entries.end()) continue;
+    for (const std::uint32_t a : piece.atoms) {
+      materials.insert(model.whole.materials[model.atoms[a].slot]);
+    }
+  }
+  return {materials.begin(), materials.end()};
+}
+
+/// Throws Error if an entry changes a material that its triangles do not have.
+void require_known_materials(const PlannedInstance& planned, const std::vector<ModelPiece>& pieces,
+                             const LoadedModel& model, const Scene& scene) {
+  for (const PartOverride& part : planned.parts) {
+    if (part.materials.empty()) continue;
+    const std::vector<std::uint32_t> materials = materials_of(part, pieces, model);
+    for (const MaterialOverride& change : part.materials) {
+      require_known(change, materials, scene, "the part '" + excerpt(part.selector) + "'");
+    }
+  }
+}
+
 /// Places the models of a plan.
 class SceneBuilder {
  public:
@@ -234,9 +297,12 @@ class SceneBuilder {
         scene_(file.scene),
         trajectories_(file.world_from_instance),
         classes_(places_of(file.scene.class_names)) {
-    for (const Instance& instance : scene_.instances) take(instance.name, instance.id);
-    for (const PlannedInstance& planned : plan.instances) take(planned.name, planned.id);
-    for (const PlannedInstance& planned : plan.instances) check_names(planned);
+    for (const Instance& instance : scene_.instances) {
+      names_.insert(instance.name);
+      ids_.insert(instance.id);
+    }
+    for (const PlannedInstance& planned : plan.instances) take_name_and_id(planned);
+    for (const PlannedInstance& planned : plan.instances) check_parts(planned);
     for (const Instance& instance : scene_.instances) {
       trajectories_.emplace_back(ConstantPose{instance.world_from_object});
     }
@@ -257,16 +323,27 @@ class SceneBuilder {
   }
 
  private:
-  void take(const std::string& name, std::uint32_t id) {
-    names_.insert(name);
-    ids_.insert(id);
+  void take_name_and_id(const PlannedInstance& planned) {
+    if (!names_.insert(planned.name).second) {
+      throw Error({planned.where,
+                   "the name '" + excerpt(planned.name) + "', which another object has",
+                   "a name that is unique in the scene", "choose another name"});
+    }
+    if (!ids_.insert(planned.id).second) {
+      throw Error({planned.where, "id " + std::to_string(planned.id) + ", which another object has",
+                   "an id that is unique in the scene", "give it another id"});
+    }
   }
 
-  /// Finds unknown sensors, and ids of parts that others have, before a model is loaded.
-  void check_names(const PlannedInstance& planned) {
+  /// Finds what is wrong with sensors and entries of `parts` before a model is loaded.
+  void check_parts(const PlannedInstance& planned) {
     Instance any;
     set_visibility(planned.visibility, plan_.sensors, any);
     for (const PartOverride& part : planned.parts) {
+      if (part.selector.empty()) {
+        throw Error({part.where, "an empty name", "names and patterns of parts, 'material:NAME'",
+                     "'*' selects the whole model"});
+      }
       set_visibility(part.visibility, plan_.sensors, any);
       if (!part.id || ids_.insert(*part.id).second) continue;
       throw Error({part.where + ".id", "id " + std::to_string(*part.id) + ", which another has",
@@ -297,7 +374,7 @@ class SceneBuilder {
     instance.id = planned.id;
     instance.class_id = class_index(planned.class_name, classes_, scene_.class_names);
     set_visibility(planned.visibility, plan_.sensors, instance);
-    override_materials(planned.overrides, textures_, instance, scene_);
+    override_known_materials(planned.overrides, textures_, instance, scene_);
     return instance;
   }
 
@@ -321,17 +398,21 @@ class SceneBuilder {
 
   void place_pieces(const PlannedInstance& planned) {
     LoadedModel& model = loaded(planned);
-    const Instance common = instance_of(planned, model);
+    Instance common = instance_of(planned, model);
+    const std::vector<std::uint32_t> materials = std::exchange(common.materials, {});
     const std::vector<ModelPiece> pieces = cut_model(planned, scene_, model);
+    require_known_materials(planned, pieces, model, scene_);
     const std::vector<std::uint32_t> ids = ids_of_pieces(planned, pieces);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const ModelPiece& piece = pieces[i];
+      const PieceMesh& mesh = mesh_of_piece(piece, model, scene_);
       Instance instance = common;
       instance.id = ids[i];
-      instance.mesh = mesh_of_piece(piece, model, scene_);
+      instance.mesh = mesh.index;
+      for (const std::uint16_t slot : mesh.slots) instance.materials.push_back(materials[slot]);
       if (!piece.name.empty()) instance.name = free_name(planned.name + "/" + piece.name);
-      if (!piece.label.empty()) {
-        instance.class_id = class_index(piece.label, classes_, scene_.class_names);
+      if (!piece.class_name.empty()) {
+        instance.class_id = class_index(piece.class_name, classes_, scene_.class_names);
       }
       for (const PartOverride* part : piece.overrides) apply_override(*part, instance);
       add(planned, std::move(instance), object_from_piece(planned, piece));
@@ -368,24 +449,21 @@ class SceneBuilder {
     return static_cast<std::uint32_t>(first);
   }
 
-  /// Ids of objects are unique. The last entry that selects a piece gives it its id.
+  /// Ids of objects are unique.
   std::vector<std::uint32_t> ids_of_pieces(const PlannedInstance& planned,
                                            const std::vector<ModelPiece>& pieces) {
-    std::vector<std::uint32_t> ids;
+    require_used_ids(planned, pieces);
+    const auto needs_id = [](const ModelPiece& piece) {
+      return !piece.name.empty() && !given_id(piece);
+    };
+    const auto count =
+        static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), needs_id));
     const bool is_split = planned.split != Split::none;
-    std::uint32_t next = first_free_id(planned, pieces.size(), is_split);
-    std::set<std::uint32_t> used;
+    std::uint32_t next = count == 0 ? planned.id : first_free_id(planned, count, is_split);
+    std::vector<std::uint32_t> ids;
     for (const ModelPiece& piece : pieces) {
-      std::uint32_t id = planned.id;
-      const PartOverride* last = piece.overrides.empty() ? nullptr : piece.overrides.back();
-      if (last != nullptr && last->id && !used.contains(*last->id)) {
-        id = *last->id;
-      } else if (!piece.name.empty()) {
-        id = next++;
-      }
-      used.insert(id);
-      ids_.insert(id);
-      ids.push_back(id);
+      ids.push_back(needs_id(piece) ? next++ : given_id(piece).value_or(planned.id));
+      ids_.insert(ids.back());
     }
     return ids;
   }
@@ -423,7 +501,7 @@ void set_materials(Scene& scene, std::size_t instance, const std::string& text,
   const std::size_t materials = scene.materials.size();
   const std::size_t textures = scene.textures.size();
   try {
-    override_materials(overrides, places, changed, scene);
+    override_known_materials(overrides, places, changed, scene);
   } catch (...) {
     scene.materials.resize(materials);
     scene.textures.resize(textures);

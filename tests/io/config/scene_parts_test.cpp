@@ -47,19 +47,20 @@ Model robot() {
   return model;
 }
 
-SceneFile build(const std::string& content) {
+SceneFile build(const std::string& content, const Model& all = robot(), Scene into = {}) {
   const TestFolder folder;
   const ScenePlan plan = read_scene_plan(folder.write("scene.yaml", content), {});
-  return build_scene(plan, [](const std::string& source, const ModelOptions&) {
-    Model model = robot();
+  const auto load = [&all](const std::string& source, const ModelOptions&) {
+    Model model = all;
     model.source = source;
     return model;
-  });
+  };
+  return build_scene(plan, load, std::move(into));
 }
 
-std::string error_of_scene(const std::string& content) {
+std::string error_of_scene(const std::string& content, Scene into = {}) {
   try {
-    build(content);
+    build(content, robot(), std::move(into));
   } catch (const Error& error) {
     return error.what();
   }
@@ -77,6 +78,15 @@ const Instance& instance_of(const Scene& scene, const std::string& name) {
     if (instance.name == name) return instance;
   }
   throw std::runtime_error("no instance " + name);
+}
+
+/// The names of the materials of an instance, in its order.
+std::vector<std::string> materials_of(const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (const std::uint32_t index : instance_of(scene, name).materials) {
+    names.push_back(scene.materials[index].name);
+  }
+  return names;
 }
 
 std::string class_of(const Scene& scene, const std::string& name) {
@@ -164,6 +174,26 @@ models:
   EXPECT_EQ(scene.meshes[instance_of(scene, "a/*/wheel*").mesh].triangles.size(), 2U);
 }
 
+TEST(SceneParts, HaveOnlyTheMaterialsOfTheirTriangles) {
+  const std::string model =
+      "{model: a, parts: {body/arm: {class: arm}, body/wheel: {class: wheel}}";
+  const Scene scene = build("models: [" + model + "}, " + model +
+                            ", id: 20, name: b, materials: {rubber: {shininess: 5}}}]\n")
+                          .scene;
+  for (const std::string name : {"a", "b"}) {
+    EXPECT_THAT(materials_of(scene, name), ElementsAre("steel", "rubber"));
+    EXPECT_THAT(materials_of(scene, name + "/body/arm"), ElementsAre("steel", "glass"));
+    EXPECT_THAT(materials_of(scene, name + "/body/wheel"), ElementsAre("rubber"));
+    EXPECT_EQ(material_of(scene, instance_of(scene, name), 0).name, "steel");
+    EXPECT_EQ(material_of(scene, instance_of(scene, name), 1).name, "rubber");
+    EXPECT_EQ(material_of(scene, instance_of(scene, name + "/body/arm"), 1).name, "glass");
+    EXPECT_EQ(material_of(scene, instance_of(scene, name + "/body/wheel"), 0).name, "rubber");
+  }
+  EXPECT_EQ(scene.meshes.size(), 3U);
+  EXPECT_EQ(material_of(scene, instance_of(scene, "b/body/wheel"), 0).shininess, 5.0F);
+  EXPECT_NE(material_of(scene, instance_of(scene, "a/body/wheel"), 0).shininess, 5.0F);
+}
+
 TEST(SceneParts, LaterEntriesOverrideEarlierOnes) {
   const Scene scene = build(R"(
 models:
@@ -198,6 +228,28 @@ TEST(SceneParts, SplitByMaterialCountsFromTheIdOfTheModel) {
     EXPECT_EQ(scene.instances[i].id, 40 + i);
     EXPECT_EQ("a/" + scene.class_names[scene.instances[i].class_id], scene.instances[i].name);
   }
+}
+
+TEST(SceneParts, SplitGivesTrianglesWithoutANameTheClassOfTheModel) {
+  Model nameless = robot();
+  nameless.parts.erase(nameless.parts.begin());  // the body
+  nameless.materials[0].name.clear();
+  for (const std::string split : {"parts", "materials"}) {
+    const std::string model = "models: [{model: a, split: " + split;
+    const Scene with_class = build(model + ", class: robot}]\n", nameless).scene;
+    EXPECT_EQ(class_of(with_class, "a/a"), "robot");
+    EXPECT_EQ(class_of(build(model + "}]\n", nameless).scene, "a/a"), "a");
+  }
+  const Scene scene = build("models: [{model: a, name: body/arm, split: parts}]\n", nameless).scene;
+  EXPECT_EQ(scene.instances.size(), 5U);  // no part has the triangles without one
+}
+
+TEST(SceneParts, NeedNoNumbersAboveTheirIds) {
+  const std::string model = "models: [{model: a, id: 4294967294, parts: {body/arm: ";
+  const Scene scene = build(model + "{id: 3}}}]\n").scene;
+  EXPECT_EQ(instance_of(scene, "a").id, 4294967294U);
+  EXPECT_EQ(instance_of(scene, "a/body/arm").id, 3U);
+  EXPECT_THAT(error_of_scene(model + "{class: arm}}}]\n"), HasSubstr("no ids are left"));
 }
 
 TEST(SceneParts, SharesTheMeshesOfAPartThatIsLoadedTwice) {
@@ -293,7 +345,47 @@ sensors: [{name: front, sensor: VLP-16}, {name: rear, sensor: VLP-16}]
   EXPECT_FALSE(sees(1, "a/body/wheel"));
 }
 
+TEST(SceneParts, AnIdIsThatOfOneObject) {
+  EXPECT_THAT(error_of_scene("models: [{model: a, parts: {body: {id: 20}, '*': {class: x}}}]\n"),
+              HasSubstr("models[0].parts.body.id: later entries select all of it; allowed: an id "
+                        "of an object; give it to the last of these entries"));
+  EXPECT_THAT(error_of_scene("models: [{model: a, parts: {material:glass: {class: window}, "
+                             "body/arm: {id: 20}}}]\n"),
+              HasSubstr("models[0].parts.body/arm.id: an id for 2 objects; allowed: an id of one "
+                        "object; give the others entries after this one"));
+  EXPECT_THAT(error_of_scene("models: [{model: a, split: parts, parts: {body/arm: {id: 20}}}]\n"),
+              HasSubstr("an id for 2 objects"));
+  const Scene scene =
+      build("models: [{model: a, split: parts, parts: {body/arm: {id: 20}, body/arm/hand: {}}}]\n")
+          .scene;
+  EXPECT_EQ(instance_of(scene, "a/body/arm").id, 20U);
+}
+
+TEST(SceneParts, NamesAndIdsOfTheSceneAreNotGivenAgain) {
+  Scene scene = build("models: [{model: a, name: robot, id: 7}]\n").scene;
+  EXPECT_THAT(error_of_scene("models: [{model: b, name: robot}]\n", scene),
+              HasSubstr("models[0].model: the name 'robot', which another object has"));
+  EXPECT_THAT(error_of_scene("models: [{model: b, id: 7}]\n", scene),
+              HasSubstr("models[0].model: id 7, which another object has"));
+  scene = build("models: [{model: b}]\n", robot(), std::move(scene)).scene;
+  EXPECT_THAT(names_of(scene), ElementsAre("robot", "b"));
+}
+
+TEST(SceneParts, MaterialsOfAnEntryAreThoseOfItsTriangles) {
+  const std::string model = "models: [{model: a, parts: {body/arm/hand: {materials: ";
+  EXPECT_THAT(error_of_scene(model + "{steel: {shininess: 5}}}}}]\n"),
+              HasSubstr("materials.steel: the part 'body/arm/hand' has no material 'steel'; "
+                        "allowed: 'glass', or '*' for all"));
+  EXPECT_THAT(error_of_scene(model + "{glas: {shininess: 5}}}}}]\n"),
+              HasSubstr("did you mean 'glass'?"));
+  const Scene scene = build(model + "{glass: {shininess: 5}}}}}]\n").scene;
+  EXPECT_EQ(material_of(scene, instance_of(scene, "a/body/arm/hand"), 0).shininess, 5.0F);
+}
+
 TEST(SceneParts, ErrorsNameWhatIsKnown) {
+  EXPECT_THAT(error_of_scene("models: [{model: a, parts: {'': {class: x}}}]\n"),
+              HasSubstr("an empty name; allowed: names and patterns of parts, 'material:NAME'; '*' "
+                        "selects the whole model"));
   EXPECT_THAT(error_of_scene("models: [{model: a, parts: {body/arn: {class: x}}}]\n"),
               HasSubstr("the model has no part 'body/arn'; allowed: 'body', 'body/arm', "
                         "'body/arm/hand', 'body/wheel', 'body/wheel_2', 'material:steel', "
