@@ -12,8 +12,8 @@
 namespace glidar {
 
 /// A ring of bytes in memory that two processes share: one of them puts bytes, the other one takes
-/// them, and a pipe between them states how many there are. It costs less than half of a pipe, which
-/// allocates its pages for each write.
+/// them, and a pipe between them states how many there are. It costs less than half of a pipe,
+/// which allocates its pages for each write.
 class SharedRing {
  public:
   static constexpr std::uint32_t kBytes = std::uint32_t{1} << 19U;
