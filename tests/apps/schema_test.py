@@ -56,7 +56,7 @@ class Schema(unittest.TestCase):
     def test_every_example_scene_refers_to_the_schema(self):
         scenes = [path for path in sorted((ROOT / "examples").glob("*.yaml"))
                   if "\nmodels:" in path.read_text(encoding="utf-8")]
-        self.assertEqual(len(scenes), 5)
+        self.assertEqual(len(scenes), 6)
         for scene in scenes:
             first = scene.read_text(encoding="utf-8").splitlines()[0]
             self.assertEqual(first, "# yaml-language-server: $schema=scene.schema.json", scene)

@@ -125,8 +125,9 @@ TEST(ModelFormats, ATextureInASiblingFolderIsReportedWithARemedy) {
   const Model model = load(temp.write("model/a.obj", testing::quad_obj("a.mtl")));
   ASSERT_EQ(model.missing_textures.size(), 1U);
   EXPECT_EQ(model.missing_textures[0].name, "../pictures/paint.ppm");
-  EXPECT_THAT(model.missing_textures[0].reason, AllOf(HasSubstr("outside the model's folder"),
-                                                      HasSubstr("copy it into the model's folder")));
+  EXPECT_THAT(
+      model.missing_textures[0].reason,
+      AllOf(HasSubstr("outside the model's folder"), HasSubstr("copy it into the model's folder")));
   temp.write("model/paint.ppm", testing::ppm(1, 1, "abc"));
   EXPECT_THAT(load(temp.path() / "model/a.obj").missing_textures, ::testing::IsEmpty());
 }
