@@ -61,9 +61,6 @@ class Pages(unittest.TestCase):
     def test_structured_light(self):
         self.run_page("docs/structured-light.md")
 
-    def test_parts_of_models(self):
-        self.run_page("docs/files/parts.md")
-
     def test_troubleshooting(self):
         self.run_page("docs/troubleshooting.md", ("5555", str(free_ports())))
 

@@ -92,8 +92,12 @@ std::vector<std::string> Notes::texts() const {
 
 void SourceModel::place(Placed instance) {
   triangles_ += meshes.at(instance.mesh).triangles.size();
+  require_room(1);
   placed.push_back(std::move(instance));
-  if (triangles_ <= kMaxTriangles && placed.size() <= kMaxRecords) return;
+}
+
+void SourceModel::require_room(std::size_t instances) const {
+  if (triangles_ <= kMaxTriangles && placed.size() + instances <= kMaxRecords) return;
   throw Refusal{fmt::format("the instances in its tree have more than {} triangles or {} parts",
                             kMaxTriangles, kMaxRecords),
                 "make the model smaller, or place its parts by a scene file"};

@@ -152,6 +152,9 @@ struct SourceModel {
   /// file can place a mesh very often.
   void place(Placed instance);
 
+  /// Throws the same for so many further instances, before memory is used for them.
+  void require_room(std::size_t instances) const;
+
  private:
   std::uint64_t triangles_ = 0;  ///< of all instances
 };

@@ -166,6 +166,7 @@ class Placement {
     std::string name = mesh["name"].text_or("");
     if (name.empty()) name = node["name"].text_or("");
     if (name.empty()) name = mesh.path();
+    context_.model.require_room(copies.size() * parts.size());
     std::vector<SourceNode>& parts_of_model = context_.model.nodes;
     for (std::size_t i = 0; i < copies.size(); ++i) {
       const Eigen::Matrix4d scene_from_copy = nodes_.scene_from_node[number] * copies[i];
