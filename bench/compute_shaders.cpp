@@ -162,9 +162,9 @@ void test_in_double(uint slot, dvec3 a, dvec3 b, dvec3 c) {
 }
 )";
 
-// Single precision: docs/ray-casting.md derives the bounds, with one cluster for all triangles.
-// Divisions here may be wrong by 2.5 roundings instead of half of one. The bounds of distances hold
-// surfaces that tie.
+// Single precision: docs/internals/ray-casting.md derives the bounds, with one cluster for all
+// triangles. Divisions here may be wrong by 2.5 roundings instead of half of one. The bounds of
+// distances hold surfaces that tie.
 constexpr const char* kSingle = R"(
 void test_triangle(uint slot) {
   vec3 a = corners[3u * slot].xyz;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that the layers include each other in one direction only (docs/architecture.md).
+"""Checks that the layers include each other in one direction only (docs/internals/architecture.md).
 
 usage: check_includes.py [ROOT]; exit status 1 when a file breaks a rule.
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the pictures of docs/infrared.md: infrared.png (image, status and depth of a scene) and infrared-curves.png
+"""Draws the pictures of docs/internals/infrared.md: infrared.png (image, status and depth of a scene) and infrared-curves.png
 (noise of a wall, edge of an object, reflectance and sunlight), and prints the numbers of its table.
 
 usage: plot_infrared.py GLIDAR_PROGRAM FOLDER

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the pictures of docs/time-of-flight.md and docs/time-of-flight-simulation.md.
+"""Draws the pictures of docs/time-of-flight.md and docs/internals/time-of-flight-simulation.md.
 
 usage: PYTHONPATH=build/dev/python build/venv/bin/python scripts/plot_tof.py FOLDER
 """

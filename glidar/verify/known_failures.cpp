@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAny = -1.0;
 
-/// A limit of the method, listed in docs/accuracy.md.
+/// A limit of the method, listed in docs/internals/accuracy.md.
 struct Entry {
   std::string_view name;   ///< of the case
   std::string_view shape;  ///< empty: any

@@ -100,8 +100,8 @@ struct AccuracyCase {
 std::string_view verdict_name(Verdict verdict);
 
 /// Measures the accuracy of hits, of all their geometric columns and of measurements on this
-/// machine (docs/accuracy.md): compares every shape at every distance from 0.1 m to 10 km, and the
-/// special cases, with closed forms.
+/// machine (docs/internals/accuracy.md): compares every shape at every distance from 0.1 m to 10
+/// km, and the special cases, with closed forms.
 std::vector<AccuracyCase> verify(const VerifySubject& subject, const ProgressCallback& progress);
 std::vector<AccuracyCase> verify(const RendererOptions& options, const ProgressCallback& progress);
 

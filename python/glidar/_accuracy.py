@@ -12,7 +12,7 @@ from ._inputs import one_of, whole
 
 @dataclass(frozen=True)
 class AccuracyCase:
-    """The result of one test case with one shape at one distance (docs/accuracy.md)."""
+    """The result of one test case with one shape at one distance (docs/internals/accuracy.md)."""
 
     name: str
     """Name of the case, such as "one shape at rest"."""

@@ -157,7 +157,8 @@ TEST_P(Rasterizer, AlphaMasksOfSomeSlotsKeepTriangleIds) {
     EXPECT_GT(expect_bits_of_rays(scene, request), 10'000U);
     return;
   }
-  // OpenGL cuts masks by texture coordinates in single precision (docs/opengl.md, "Exactness").
+  // OpenGL cuts masks by texture coordinates in single precision (docs/internals/opengl.md,
+  // "Exactness").
   const Hits drawn = draw(scene, beams, pose);
   const Hits cast = cast_by("rays", scene, request);
   std::size_t hits = 0;

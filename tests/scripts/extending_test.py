@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The example of docs/extending.md: its patch applies, keeps the rules of includes, compiles and works, and
+"""The example of docs/internals/extending.md: its patch applies, keeps the rules of includes, compiles and works, and
 touches four files."""
 
 import os
@@ -41,7 +41,7 @@ TEST(Example, KeysAreReadAndWritten) {
 
 
 def patch_text():
-    page = (ROOT / "docs/extending.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/internals/extending.md").read_text(encoding="utf-8")
     return re.search(r"```diff\n(.*?)```", page, re.DOTALL)[1]
 
 

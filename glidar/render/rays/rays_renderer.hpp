@@ -10,7 +10,7 @@
 namespace glidar {
 
 /// Ray casting on the CPU by the hit rule, in packets over 4x4 tiles of the beam grid: see
-/// docs/ray-casting.md.
+/// docs/internals/ray-casting.md.
 std::unique_ptr<Renderer> make_rays_renderer(const Scene& scene, const RendererOptions& options);
 std::unique_ptr<Renderer> make_rays_renderer(std::shared_ptr<CpuBase> base);
 
