@@ -1,19 +1,216 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/program.hpp>
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/help_text.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/interrupt.hpp>
+#include <apps/glidar/run/printing.hpp>
 #include <apps/viewer/view.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
 #include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/formats/exr_encoder.hpp>
+#include <glidar/link/control/tcp_service.hpp>
+#include <glidar/link/dds/participant.hpp>
+#include <glidar/link/foxglove/server.hpp>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <map>
 #include <new>
+#include <regex>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glidar::app {
 namespace {
+
+/// A subcommand and what adds it to the program.
+struct Subcommand {
+  std::string name;
+  /// Gets the program and the arguments of the whole command line.
+  std::function<Command(CLI::App& program, const std::vector<std::string>& arguments)> add;
+};
+
+/// Prints the message as an error; returns the exit code of invalid input.
+int report_error(const std::string& message);
+
+constexpr const char* kExamples = R"(Examples:
+  glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
+  glidar view builtin:asteroid
+  glidar stream builtin:asteroid --object-rate 0,0.5,0 --port 5555
+  glidar explain asteroid.pcd --index 30000
+  glidar info builtin:torus
+  glidar sensors
+  glidar verify
+More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
+sensors, schema, filter, align, stereo, structured-light, tof and verify)";
+
+using Commands = std::vector<std::pair<std::string, Command>>;
+
+const CLI::App& chosen(const CLI::App& program) {
+  const std::vector<const CLI::App*> subcommands =
+      program.get_subcommands([](const CLI::App* command) { return command->parsed(); });
+  return subcommands.empty() ? program : *subcommands.front();
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// The error for a word that is neither an option nor a subcommand, with a suggestion.
+std::string explain_extra(const CLI::App& program, const Commands& commands, std::string word) {
+  const CLI::App& command = chosen(program);
+  word = word.substr(0, word.find('='));
+  if (word.starts_with('-')) {
+    const std::string nearest = closest_match(word, option_names(command));
+    return nearest.empty() ? fmt::format("unknown option {}; see --help", word)
+                           : fmt::format("unknown option {}; did you mean {}?", word, nearest);
+  }
+  if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
+  std::vector<std::string> names = {"--help"};
+  for (const auto& [name, run] : commands) names.push_back(name);
+  const std::string nearest = closest_match(word, names);
+  return nearest.empty()
+             ? fmt::format(
+                   "'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",
+                   word)
+             : fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
+}
+
+/// The options that a message of CLI11 names, in their order there. Its other words depend on its
+/// version.
+std::vector<const CLI::Option*> options_in(const CLI::App& command, const std::string& message) {
+  std::map<std::size_t, const CLI::Option*> found;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_name().empty()) continue;  // hidden
+    const std::regex name(option->get_name() + "(?![-A-Za-z0-9])");
+    std::smatch match;
+    if (std::regex_search(message, match, name)) found.emplace(match.position(), option);
+  }
+  std::vector<const CLI::Option*> options;
+  for (const auto& [place, option] : found) options.push_back(option);
+  return options;
+}
+
+/// The error for an option with too few or too many values.
+std::string explain_mismatch(const CLI::App& command, const std::string& message) {
+  const std::vector<const CLI::Option*> options = options_in(command, message);
+  if (options.empty()) return message + "; see --help";
+  const CLI::Option& option = *options.front();
+  if (option.count() > 1) {
+    return fmt::format("{}: given more than once; allowed: once", option.get_name());
+  }
+  return fmt::format("{}: there is no value after it; see --help for what it takes",
+                     option.get_name());
+}
+
+/// The error for two options that exclude each other, or of which the first needs the second.
+std::string explain_conflict(const CLI::App& command, const std::string& message) {
+  const std::vector<const CLI::Option*> options = options_in(command, message);
+  if (options.size() < 2) return message + "; see --help";
+  const std::string first = options[0]->get_name();
+  const std::string second = options[1]->get_name();
+  if (options[1]->count() > 0) {
+    return fmt::format("{} and {}: both are given; give one of them", first, second);
+  }
+  return fmt::format("{0}: there is no {1}; give {1} too", first, second);
+}
+
+/// The error for a missing option or subcommand.
+std::string explain_missing(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_required() && option->count() == 0) return option->get_name() + " is required";
+  }
+  return "a subcommand is required";
+}
+
+/// The most helpful word that CLI11 did not parse: within a subcommand an option, else the word in
+/// the place of a subcommand.
+std::string first_extra(const CLI::App& program) {
+  const std::vector<std::string> extras = program.remaining(true);
+  const bool options_first = &chosen(program) != &program;
+  const auto best = std::find_if(extras.begin(), extras.end(), [&](const std::string& word) {
+    return (word.size() > 1 && word.starts_with('-')) == options_first;
+  });
+  if (best != extras.end()) return *best;
+  return extras.empty() ? "" : extras.front();
+}
+
+int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** argv) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return program.exit(help_or_version);
+  } catch (const CLI::ArgumentMismatch& error) {
+    return report_error(explain_mismatch(chosen(program), error.what()));
+  } catch (const CLI::ExcludesError& error) {
+    return report_error(explain_conflict(chosen(program), error.what()));
+  } catch (const CLI::RequiresError& error) {
+    return report_error(explain_conflict(chosen(program), error.what()));
+  } catch (const CLI::ConversionError& error) {
+    return report_error(std::string(error.what()) + "; see --help for what it takes");
+  } catch (const CLI::ParseError& error) {
+    const std::string extra = first_extra(program);
+    if (!extra.empty()) return report_error(explain_extra(program, commands, extra));
+    const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    return report_error(fmt::format(
+        "{}; see {}--help", is_missing ? explain_missing(chosen(program)) : error.what(),
+        &chosen(program) == &program ? "glidar "
+                                     : fmt::format("glidar {} ", chosen(program).get_name())));
+  }
+  for (const auto& [name, run] : commands) {
+    if (program.got_subcommand(name)) return run();
+  }
+  return kBadInput;  // unreachable: parse() requires a subcommand
+}
+
+/// The version, and the optional parts of this build.
+std::string version_text(bool has_viewer) {
+  std::vector<std::string> parts;
+  if (has_viewer) parts.emplace_back("window");
+  if (foxglove::has_foxglove_server()) parts.emplace_back("Foxglove server");
+  if (control::has_tcp_services()) parts.emplace_back("sensor control (HTTP, PTC)");
+  if (dds::has_dds()) parts.emplace_back("ROS 2 (DDS)");
+  if (has_openexr()) parts.emplace_back("OpenEXR");
+  if (parts.empty()) parts.emplace_back("none");
+  return fmt::format("glidar {}\noptional parts: {}", version(), fmt::join(parts, ", "));
+}
+
+int report_error(const std::string& message) {
+  print(stderr, "glidar: error: {}\n", message);
+  return kBadInput;
+}
+
+/// Parses the command line and runs the chosen subcommand; returns the exit code. `has_viewer`:
+/// --version lists the window.
+int run_program(std::span<const Subcommand> subcommands, bool has_viewer, int argc, char** argv) {
+  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
+                   "glidar");
+  use_help_layout(program);
+  program.set_version_flag("--version", version_text(has_viewer),
+                           "Print the version and the optional parts");
+  program.require_subcommand(1);
+  program.footer(kExamples);
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  Commands commands;
+  for (const Subcommand& subcommand : subcommands) {
+    commands.emplace_back(subcommand.name, subcommand.add(program, arguments));
+  }
+  return parse_and_run(program, commands, argc, argv);
+}
 
 /// A subcommand that needs no arguments of the whole command line.
 Subcommand subcommand(const char* name, Command (*add)(CLI::App&)) {

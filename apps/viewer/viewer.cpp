@@ -3,16 +3,39 @@
 #include <apps/viewer/viewer.hpp>
 
 #include <apps/glidar/run/outputs.hpp>
-#include <apps/viewer/cloud_points.hpp>
+#include <apps/viewer/measurement_thread.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/math/portable.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace glidar::app {
 namespace {
+
+/// The measured point of each beam in the world, relative to the anchor; NaN without a return.
+void make_cloud_points(const Snapshot& snapshot, const Eigen::Vector3d& anchor_m,
+                       std::vector<Eigen::Vector3f>& points) {
+  const Pose anchor_from_world(Eigen::Translation3d(-anchor_m));
+  const OutputFrame target_frame{
+      .frame_id = "anchor",
+      .cloud_from_sensor = anchor_from_world * snapshot.frame.world_from_sensor};
+  const std::vector<std::string> columns = {"xyz"};
+  PointCloud cloud;
+  make_point_cloud(snapshot.frame, *snapshot.beams, snapshot.prepared->scene, target_frame, columns,
+                   cloud);
+  const auto& xyz = std::get<std::vector<double>>(cloud.columns[0].values);
+  points.resize(cloud.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = Eigen::Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<float>();
+  }
+}
 
 /// The flags for another file: only those of the measurement are kept.
 RenderFlags for_file(const RenderFlags& before, const std::string& path) {

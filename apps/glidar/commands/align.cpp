@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/align_options.hpp>
+#include <apps/glidar/options/cli_fwd.hpp>
+#include <apps/glidar/options/option_group.hpp>
+#include <apps/glidar/run/depth_images.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/printing.hpp>
 #include <glidar/core/error.hpp>
@@ -11,9 +13,32 @@
 #include <CLI/CLI.hpp>
 
 #include <memory>
+#include <string>
 
 namespace glidar::app {
 namespace {
+
+/// The command line of `glidar align`.
+struct AlignFlags {
+  DepthImageFiles files;
+  std::string cameras;
+  bool keeps_depth = false;
+  bool quiet = false;
+};
+
+/// Declares all arguments.
+void add_align_options(CLI::App& command, AlignFlags& flags) {
+  command.add_option("IMAGE", flags.files.images, "Depth images")->required()->type_name("");
+  const OptionGroup output(command, "Output");
+  output.add("-o,--output", "FILE|FOLDER",
+             "PNG file, or folder for several images, which keep their names", flags.files.output);
+  output.add_flag("--keep-depth", "Depths of the depth camera, not of the colour camera",
+                  flags.keeps_depth);
+  const OptionGroup cameras(command, "Cameras");
+  cameras.add("--cameras", "FILE", "Both cameras and their poses (YAML)", flags.cameras);
+  const OptionGroup run(command, "Run");
+  run.add_flag("--quiet", "No summary, only warnings", flags.quiet);
+}
 
 constexpr const char* kAlignExamples =
     R"(Moves the depths of depth images (PNG of 16 bits, 0 for none) to the pixels of a colour camera.

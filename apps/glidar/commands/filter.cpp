@@ -1,10 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/filter_options.hpp>
+#include <apps/glidar/options/cli_fwd.hpp>
+#include <apps/glidar/options/option_group.hpp>
+#include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/run/depth_images.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/printing.hpp>
+#include <glidar/depth/depth_filter.hpp>
 #include <glidar/depth/depth_filter_chain.hpp>
+#include <glidar/io/config/depth_filter_text.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +19,38 @@
 
 namespace glidar::app {
 namespace {
+
+/// The command line of `glidar filter`.
+struct FilterFlags {
+  DepthImageFiles files;
+  std::vector<DepthFilter> filters;  ///< empty: the recommended ones
+  double focal_length_px = 0.0;      ///< 0: not given
+  double baseline_mm = 0.0;          ///< 0: not given
+  bool quiet = false;
+};
+
+/// Declares all arguments.
+void add_filter_options(CLI::App& command, FilterFlags& flags) {
+  command.add_option("IMAGE", flags.files.images, "Depth images in the order of time")
+      ->required()
+      ->type_name("");
+  const OptionGroup output(command, "Output");
+  output.add("-o,--output", "FILE|FOLDER",
+             "PNG file, or folder for several images, which keep their names", flags.files.output);
+  const OptionGroup filters(command, "Filters");
+  filters.add_repeatable(
+      "--filter", "TYPE[,KEY=VALUE]", "Next filter, such as spatial,alpha=0.6 [recommended ones]",
+      [&flags](const std::string& text) { flags.filters.push_back(parse_depth_filter(text)); });
+  const OptionGroup camera(command, "Camera");
+  camera.add("--focal-length-px", "PX", "Focal length of the images, for disparities",
+             flags.focal_length_px, number(kAboveZero, kFinite, "a finite number above 0"));
+  camera.add("--baseline-mm", "MM", "Baseline: recommended filters smooth disparities [depths]",
+             flags.baseline_mm, number(kAboveZero, 1e6, "millimetres above 0, up to 1e6"));
+  camera.add("--depth-unit-mm", "MM", "Unit of the images [1]", flags.files.unit_mm,
+             number(kAboveZero, kFinite, "a finite number above 0"));
+  const OptionGroup run(command, "Run");
+  run.add_flag("--quiet", "No summary, only warnings", flags.quiet);
+}
 
 constexpr const char* kFilterExamples =
     R"(Filters depth images (PNG of 16 bits, 0 for none) of one camera, in the given order, as the driver

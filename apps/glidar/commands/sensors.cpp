@@ -5,34 +5,157 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/options/sensor_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/imu_list.hpp>
 #include <apps/glidar/run/printing.hpp>
-#include <apps/glidar/run/surface_list.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/text.hpp>
+#include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/pictures/pattern_picture.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/sensor/lidar/return_names.hpp>
-
 #include <glidar/math/portable.hpp>
+#include <glidar/sensor/lidar/return_names.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace glidar::app {
 namespace {
+
+using SurfaceJson = nlohmann::ordered_json;
+
+constexpr std::array kSurfaceWavelengths_nm = {850, 905, 1064, 1550};
+
+std::array<double, kSurfaceWavelengths_nm.size()> reflectances(const SurfacePreset& surface) {
+  std::array<double, kSurfaceWavelengths_nm.size()> values{};
+  std::transform(kSurfaceWavelengths_nm.begin(), kSurfaceWavelengths_nm.end(), values.begin(),
+                 [&](int nm) { return interpolate(surface.spectrum, nm * 1e-9); });
+  return values;
+}
+
+SurfaceJson json_of(const SurfacePreset& surface) {
+  SurfaceJson reflectance = SurfaceJson::object();
+  const auto values = reflectances(surface);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    reflectance[std::to_string(kSurfaceWavelengths_nm[k])] = values[k];
+  }
+  return {{"name", surface.name},
+          {"about", surface.about},
+          {"reflectance_at_nm", reflectance},
+          {"diffuse", std::holds_alternative<Lambert>(surface.backscatter)},
+          {"source", surface.source},
+          {"verified", surface.verified}};
+}
+
+void print_surfaces(const std::vector<SurfacePreset>& surfaces) {
+  print("{:<16}", "name");
+  for (const int nm : kSurfaceWavelengths_nm) print("{:>6} nm", nm);
+  print("  {:<7}  {:<8}  {}\n", "form", "verified", "what it is");
+  for (const SurfacePreset& surface : surfaces) {
+    print("{:<16}", surface.name);
+    for (const double reflectance : reflectances(surface)) print("{:>9.3f}", reflectance);
+    const bool is_diffuse = std::holds_alternative<Lambert>(surface.backscatter);
+    print("  {:<7}  {:<8}  {}\n", is_diffuse ? "diffuse" : "glossy",
+          surface.verified ? "yes" : "no", surface.about);
+  }
+}
+
+/// Prints the surface presets and their reflectances.
+void list_surfaces(bool as_json) {
+  const std::vector<SurfacePreset> surfaces = load_surfaces();
+  if (!as_json) {
+    print_surfaces(surfaces);
+    return;
+  }
+  SurfaceJson json = SurfaceJson::array();
+  for (const SurfacePreset& surface : surfaces) json.push_back(json_of(surface));
+  print_json(json);
+}
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMicroG_m_s2 = 1e-6 * kStandardGravity_m_s2;
+
+void print_imu_heading() {
+  print("{:<12} {:>7} {:>15} {:>15} {:>10} {:>10} {:>9} {:>6}  {}\n", "name", "rate", "gyro noise",
+        "accel noise", "gyro bias", "accel bias", "range", "range", "backed");
+  print("{:<12} {:>7} {:>15} {:>15} {:>10} {:>10} {:>9} {:>6}\n", "", "Hz", "deg/s/sqrt(Hz)",
+        "ug/sqrt(Hz)", "deg/h", "ug", "deg/s", "g");
+}
+
+void print_row(const ImuDatasheet& sheet) {
+  const Imu& imu = sheet.imu;
+  const ValueCount values = count_values(sheet.entries);
+  print("{:<12} {:>7g} {:>15.4g} {:>15.4g} {:>10.4g} {:>10.4g} {:>9.4g} {:>6.4g}  {} of {}\n",
+        sheet.name, imu.rate_hz, imu.gyroscope.noise_density * kDegreesPerRadian,
+        imu.accelerometer.noise_density / kMicroG_m_s2,
+        imu.gyroscope.bias_instability * kDegreesPerRadian * 3600.0,
+        imu.accelerometer.bias_instability / kMicroG_m_s2, imu.gyroscope.range * kDegreesPerRadian,
+        imu.accelerometer.range / kStandardGravity_m_s2, values.backed, values.total);
+}
+
+Json json_of(const ImuDatasheet& sheet) {
+  const ValueCount values = count_values(sheet.entries);
+  return {{"name", sheet.name},
+          {"imu", Json::parse(imu_document(sheet.imu))},
+          {"values", values.total},
+          {"backed", values.backed}};
+}
+
+void print_imu_json(const Json& json) {
+  print_json(json);
+}
+
+/// Prints the IMU presets as a table, or as JSON.
+void list_imus(bool as_json) {
+  Json json = Json::array();
+  if (!as_json) print_imu_heading();
+  for (const std::filesystem::path& file : imu_preset_files()) {
+    const ImuDatasheet sheet = load_imu_datasheet(file);
+    if (as_json) {
+      json.push_back(json_of(sheet));
+    } else {
+      print_row(sheet);
+    }
+  }
+  if (as_json) print_imu_json(json);
+}
+
+/// The file of an IMU preset with this name, in capitals or not.
+std::optional<std::filesystem::path> imu_preset_named(const std::string& name) {
+  for (const std::filesystem::path& file : imu_preset_files()) {
+    if (lower_case(file.stem().string()) == lower_case(name)) return file;
+  }
+  return std::nullopt;
+}
+
+/// Prints an IMU with the sources of its numbers, or as JSON.
+void print_imu(const std::filesystem::path& file, bool as_json) {
+  const ImuDatasheet sheet = load_imu_datasheet(file);
+  if (as_json) return print_imu_json(json_of(sheet));
+  print("{}\n\n", sheet.imu.name);
+  print_imu_heading();
+  print_row(sheet);
+  print("\n");
+  for (const DatasheetEntry& entry : sheet.entries) {
+    print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
+    if (!entry.source.empty()) print("      {}\n", entry.source);
+  }
+  print("\n* without a source in the manufacturer's documents\n");
+}
 
 constexpr const char* kSensorsExamples = R"(Examples:
   glidar sensors

@@ -3,20 +3,132 @@
 #include <apps/glidar/run/recording_sinks.hpp>
 
 #include <apps/glidar/options/option_values.hpp>
-#include <apps/glidar/run/bag_sink.hpp>
-#include <apps/glidar/run/kitti_sink.hpp>
-#include <apps/glidar/run/osi_sink.hpp>
+#include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/packet_sinks.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
+#include <apps/glidar/run/rig_messages.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/osi/osi_trace.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
 
+#include <memory>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace glidar::app {
 namespace {
+
+osi::OsiRig osi_rig(const PreparedScene& prepared, PoseOrigin origin) {
+  osi::OsiRig rig{.scene = prepared.scene, .sensors = {}};
+  for (const ActiveSensor& active : prepared.sensors)
+    rig.sensors.push_back({active.id, active.sensor, active.rig_from_sensor});
+  if (origin == PoseOrigin::motion)
+    rig.motion = {prepared.motion.world_from_rig, prepared.motion.world_from_instance};
+  return rig;
+}
+
+class OsiSink final : public FrameSink {
+ public:
+  OsiSink(const std::string& path, osi::OsiRig rig) : path_(path), trace_(path, std::move(rig)) {}
+
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t /*sensor_index*/) const override {
+    return hit_columns_for(osi::OsiTraceWriter::columns());
+  }
+  void write(const MeasuredFrame& measured) override {
+    trace_.write(measured.sensor_index, measured.frame, *measured.beams);
+  }
+  void finish() override { trace_.finish(); }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {path_}; }
+
+ private:
+  std::string path_;
+  osi::OsiTraceWriter trace_;
+};
+
+/// An OSI trace with the detections of every sensor and the ground truth of all objects, see
+/// docs/osi.md. The scene must outlive it. Throws Error.
+std::unique_ptr<FrameSink> make_osi_sink(const std::string& path, const PreparedScene& prepared,
+                                         PoseOrigin origin) {
+  return std::make_unique<OsiSink>(path, osi_rig(prepared, origin));
+}
+
+std::vector<KittiSensor> kitti_sensors(const PreparedScene& prepared) {
+  std::vector<KittiSensor> sensors;
+  for (const ActiveSensor& active : prepared.sensors)
+    sensors.push_back({active.sensor, active.rig_from_sensor});
+  return sensors;
+}
+
+class KittiSink final : public FrameSink {
+ public:
+  KittiSink(const std::string& path, const RenderFlags& flags, const PreparedScene& prepared,
+            const std::vector<std::string>& read)
+      : path_(output_path(path)),
+        writer_(path_, prepared.scene, kitti_sensors(prepared),
+                {.deskew = flags.output.deskew, .renderer = renderer_name(flags), .inputs = read}) {
+  }
+
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override {
+    return writer_.hit_columns(sensor_index);
+  }
+  void write(const MeasuredFrame& measured) override {
+    writer_.write(measured.sensor_index, measured.frame, *measured.beams);
+  }
+  void finish() override { writer_.finish(); }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {path_}; }
+
+ private:
+  std::filesystem::path path_;
+  KittiWriter writer_;
+};
+
+/// A KITTI folder with the scans and images of all frames, see docs/files/kitti.md. `read`: files
+/// that it must not replace. Flags and scene must outlive it. Throws Error.
+std::unique_ptr<FrameSink> make_kitti_sink(const std::string& path, const RenderFlags& flags,
+                                           const PreparedScene& prepared,
+                                           const std::vector<std::string>& read) {
+  return std::make_unique<KittiSink>(path, flags, prepared, read);
+}
+
+class BagSink final : public FrameSink {
+ public:
+  BagSink(const std::string& path, const RenderFlags& flags, const PreparedScene& prepared,
+          PoseOrigin origin)
+      : path_(path),
+        bag_(bags::create_bag(path)),
+        publisher_(make_rig_publisher(*bag_, flags, prepared, origin)) {}
+
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override {
+    return publisher_->hit_columns(sensor_index);
+  }
+  void write(const MeasuredFrame& measured) override {
+    publisher_->publish(measured.sensor_index, measured.frame, *measured.beams);
+  }
+  void finish() override {
+    publisher_->finish();
+    bag_->finish();
+  }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {path_}; }
+
+ private:
+  std::string path_;
+  std::unique_ptr<bags::BagWriter> bag_;
+  std::unique_ptr<ros::RigPublisher> publisher_;
+};
+
+/// A bag with the topics of docs/bags.md: the clouds and images of every sensor, the samples of
+/// every IMU, the transforms of the rig and its ground truth. Flags and scene must outlive it.
+/// Throws Error.
+std::unique_ptr<FrameSink> make_bag_sink(const std::string& path, const RenderFlags& flags,
+                                         const PreparedScene& prepared, PoseOrigin origin) {
+  return std::make_unique<BagSink>(path, flags, prepared, origin);
+}
 
 /// Throws Error when two recordings have the same name.
 void check_names(const std::vector<std::string>& paths) {

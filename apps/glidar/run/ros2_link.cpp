@@ -2,9 +2,95 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/ros2_link.hpp>
 
-#include <apps/glidar/run/ros2_sink.hpp>
+#include <apps/glidar/options/ros2_options.hpp>
+#include <apps/glidar/run/frame_sink.hpp>
+#include <apps/glidar/run/rig_messages.hpp>
+#include <glidar/core/elapsed_time.hpp>
+#include <glidar/link/dds/message_sink.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace glidar::app {
+namespace {
+
+/// `--ros2`: publishes the messages of all frames as topics of ROS 2.
+class Ros2Sink final : public FrameSink {
+ public:
+  /// All must outlive it. `speed`: how fast the time of the frames passes; 0: it is not related to
+  /// real time. Throws Error.
+  Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2, const RenderFlags& flags,
+           const PreparedScene& prepared, PoseOrigin origin, double speed);
+
+  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override;
+  void write(const MeasuredFrame& measured) override;
+  /// Publishes poses and samples of IMUs at their times.
+  void serve() override;
+  [[nodiscard]] std::chrono::milliseconds serve_interval() const override;
+  void finish() override;
+
+ private:
+  dds::MessageSink topics_;
+  std::unique_ptr<ros::RigPublisher> publisher_;
+  double speed_;
+  std::optional<std::chrono::steady_clock::time_point> last_due_;  ///< of the last frame
+  std::int64_t last_stamp_ns_ = 0;                                 ///< of the last frame
+};
+
+/// What others publish when they give the poses or the time.
+std::vector<std::string> omitted_topics(const Ros2Flags& flags) {
+  if (flags.pose_topic.empty()) return {};
+  if (follows_ros_clock(flags)) return {"/clock"};
+  return {"/tf", "/odom", "/ground_truth/odom", "/clock"};
+}
+
+Ros2Sink::Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2,
+                   const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin,
+                   double speed)
+    : topics_(participant, {.ros_namespace = ros2.ros_namespace, .omitted = omitted_topics(ros2)}),
+      publisher_(make_rig_publisher(topics_, flags, prepared, origin)),
+      speed_(speed) {}
+
+HitColumnMask Ros2Sink::hit_columns(std::size_t sensor_index) const {
+  return publisher_->hit_columns(sensor_index);
+}
+
+void Ros2Sink::write(const MeasuredFrame& measured) {
+  publisher_->publish(measured.sensor_index, measured.frame, *measured.beams);
+  last_due_ = measured.due;
+  last_stamp_ns_ = measured.frame.stamp_ns;
+}
+
+void Ros2Sink::serve() {
+  topics_.report_other_publishers();
+  if (!last_due_ || speed_ <= 0.0) return;
+  const std::chrono::duration<double, std::nano> passed =
+      std::chrono::steady_clock::now() - *last_due_;
+  publisher_->advance(last_stamp_ns_ + std::llround(speed_ * passed.count()));
+}
+
+std::chrono::milliseconds Ros2Sink::serve_interval() const {
+  constexpr std::chrono::milliseconds kPaced{2};  // IMUs have hundreds of samples per second
+  return speed_ > 0.0 ? kPaced : kDefaultServeInterval;
+}
+
+void Ros2Sink::finish() {
+  publisher_->finish();
+  topics_.finish();
+}
+
+}  // namespace
 
 Ros2Link::Ros2Link(const Ros2Flags& flags, link::ErrorLog& errors)
     : flags_(flags), participant_({.id = {}, .interface_name = flags.interface_name}, errors) {}
@@ -25,6 +111,160 @@ std::unique_ptr<PoseSource> Ros2Link::make_source(const Ros2Schedule& schedule, 
   const dds::PoseTopic topic = dds::parse_pose_topic(flags_.pose_topic, flags_.ros_namespace);
   poses_ = std::make_unique<dds::PoseSubscriber>(participant_, topic, queue);
   return std::make_unique<Ros2PoseSource>(*poses_, schedule, prepared, stop);
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kSecond_ns = 1e9;
+
+/// How often a wait checks its time limit.
+constexpr int kPoll_ms = 100;
+
+}  // namespace
+
+bool Ros2Wait::is_done(std::uint64_t frames) {
+  if (stop_.is_requested()) return true;
+  if (frames >= schedule_.frames.frames) {
+    ending_ = "all frames are done";
+  } else if (first_ && seconds_since(*first_) >= schedule_.frames.duration_s) {
+    ending_ = "the duration is over";
+  }
+  return !ending_.empty();
+}
+
+bool Ros2Wait::wait(int descriptor) {
+  if (schedule_.timeout_s && seconds_since(begin_) > *schedule_.timeout_s) {
+    has_timed_out_ = true;
+    ending_ = fmt::format("no pose came for {} s", *schedule_.timeout_s);
+    return false;
+  }
+  std::array<pollfd, 2> entries = {
+      pollfd{.fd = descriptor, .events = POLLIN, .revents = 0},
+      pollfd{.fd = stop_.descriptor(), .events = POLLIN, .revents = 0}};
+  poll(entries.data(), entries.size(), kPoll_ms);
+  return true;
+}
+
+void Ros2Wait::count_first_frame() {
+  if (!first_) first_ = Clock::now();
+}
+
+StampPace::StampPace(double rate_hz)
+    : period_ns_(rate_hz > 0.0 ? std::llround(kSecond_ns / rate_hz) : 0) {}
+
+bool StampPace::is_due(std::int64_t stamp_ns) {
+  const bool is_back = due_ns_ && stamp_ns < last_ns_;
+  last_ns_ = stamp_ns;
+  if (due_ns_ && !is_back && stamp_ns < *due_ns_) return false;
+  const bool is_regular = due_ns_ && !is_back && stamp_ns - *due_ns_ < period_ns_;
+  due_ns_ = (is_regular ? *due_ns_ : stamp_ns) + period_ns_;
+  return true;
+}
+
+Ros2PoseSource::Ros2PoseSource(dds::PoseSubscriber& subscriber, const Ros2Schedule& schedule,
+                               const PreparedScene& prepared, const StopRequest& stop)
+    : subscriber_(subscriber),
+      prepared_(prepared),
+      stop_(stop),
+      wait_(schedule, stop),
+      pace_(schedule.frames.rate_hz) {}
+
+std::optional<FrameRequest> Ros2PoseSource::next() {
+  if (number_ > 0 && request_.sensor_index + 1 < prepared_.sensors.size() &&
+      !stop_.is_requested()) {
+    request_.motion.reset();
+    ++request_.sensor_index;
+    return request_;
+  }
+  const std::optional<TimedPose> pose = wait_for_pose();
+  if (!pose) return std::nullopt;
+  wait_.count_first_frame();
+  Pose world_from_rig = Pose::Identity();
+  world_from_rig.linear() = pose->orientation.toRotationMatrix();
+  world_from_rig.translation() = pose->position_m;
+  request_ = {.number = static_cast<std::uint32_t>(number_),
+              .index = number_++,
+              .due = Clock::now(),
+              .motion = RigMotion{.world_from_rig = ConstantPose{world_from_rig},
+                                  .world_from_instance = prepared_.motion.world_from_instance},
+              .stamp_ns = pose->t_ns};
+  return request_;
+}
+
+std::optional<TimedPose> Ros2PoseSource::wait_for_pose() {
+  wait_.restart();
+  while (!wait_.is_done(number_)) {
+    if (const std::optional<TimedPose> pose = subscriber_.receive()) {
+      wait_.restart();
+      if (pace_.is_due(pose->t_ns)) return pose;
+    } else if (!wait_.wait(subscriber_.descriptor())) {
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+ClockSource::ClockSource(dds::ClockSubscriber& clock, const Ros2Schedule& schedule,
+                         std::span<const ActiveSensor> sensors, const StopRequest& stop)
+    : clock_(clock),
+      sensors_(sensors),
+      stop_(stop),
+      wait_(schedule, stop),
+      numbers_(sensors.size()),
+      indices_(sensors.size()) {}
+
+std::optional<FrameRequest> ClockSource::next() {
+  wait_.restart();
+  while (!wait_.is_done(frames_ / sensors_.size())) {
+    if (const std::optional<std::int64_t> time_ns = clock_.receive()) {
+      wait_.restart();
+      set_time(*time_ns);
+    }
+    if (std::optional<FrameRequest> request = due_frame()) {
+      wait_.count_first_frame();
+      ++frames_;
+      return request;
+    }
+    if (!wait_.wait(clock_.descriptor())) break;
+  }
+  return std::nullopt;
+}
+
+/// A clock that jumps back starts again with frame 0.
+void ClockSource::set_time(std::int64_t time_ns) {
+  if (!time_ns_ || time_ns < *time_ns_) {
+    origin_ns_ = time_ns;
+    numbers_.assign(numbers_.size(), 0);
+  }
+  time_ns_ = time_ns;
+}
+
+std::int64_t ClockSource::start_ns(std::size_t sensor, std::uint32_t number) const {
+  return origin_ns_ + frame_interval(sensors_[sensor].sensor, number).start_ns;
+}
+
+/// The frame that is due first; of each sensor, the newest one that is due.
+std::optional<FrameRequest> ClockSource::due_frame() {
+  if (!time_ns_) return std::nullopt;
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    const double periods =
+        static_cast<double>(*time_ns_ - origin_ns_) / kSecond_ns * sensors_[i].sensor.rate_hz;
+    constexpr double kMaxNumber = 4e9;
+    const auto newest = static_cast<std::uint32_t>(std::clamp(periods, 0.0, kMaxNumber));
+    numbers_[i] = std::max(numbers_[i], newest);
+    if (start_ns(i, numbers_[i]) > *time_ns_) continue;
+    if (!first || start_ns(i, numbers_[i]) < start_ns(*first, numbers_[*first])) first = i;
+  }
+  if (!first) return std::nullopt;
+  const std::uint32_t number = numbers_[*first]++;
+  return FrameRequest{.sensor_index = *first,
+                      .number = number,
+                      .index = indices_[*first]++,
+                      .due = Clock::now(),
+                      .stamp_ns = start_ns(*first, number)};
 }
 
 }  // namespace glidar::app

@@ -3,24 +3,34 @@
 #include <apps/glidar/run/stream_run.hpp>
 
 #include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/advice.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/outputs.hpp>
-#include <apps/glidar/run/peer_wait.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/placement.hpp>
+#include <apps/glidar/run/playback.hpp>
+#include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
-#include <apps/glidar/run/recorded_source.hpp>
 #include <apps/glidar/run/stream_report.hpp>
 #include <apps/glidar/run/stream_sinks.hpp>
 #include <apps/glidar/run/unused_options.hpp>
+#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/sidecar.hpp>
+#include <glidar/link/recording.hpp>
+#include <glidar/woods2016/cloud_publisher.hpp>
+#include <glidar/woods2016/pose_receiver.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <exception>
 #include <limits>
 #include <utility>
@@ -28,6 +38,174 @@
 
 namespace glidar::app {
 namespace {
+
+/// How fast the frames of a recording follow.
+enum class ReplayPace : std::uint8_t {
+  schedule,  ///< at the rate of the schedule
+  stamps,    ///< as the frames were measured, by their stamps
+};
+
+/// The frames of a recording, in its order.
+class RecordedSource final : public PoseSource {
+ public:
+  struct Options {
+    FrameSchedule schedule;
+    ReplayPace pace = ReplayPace::schedule;
+    /// Commands of a viewer, who may also look at the last frame until a stop is requested;
+    /// nullptr: none.
+    Playback* playback = nullptr;
+  };
+  /// All must outlive it.
+  RecordedSource(link::RecordingReader& recording, const Options& options,
+                 const PreparedScene& prepared, const StopRequest& stop);
+  std::optional<FrameRequest> next() override;
+  [[nodiscard]] std::string ending() const override { return ending_; }
+
+ private:
+  std::optional<link::RecordedFrame> read();
+  [[nodiscard]] std::chrono::duration<double> period(std::int64_t t_ns) const;
+  void wait_until_due(std::int64_t t_ns);
+
+  link::RecordingReader& recording_;
+  Options options_;
+  const PreparedScene& prepared_;
+  const StopRequest& stop_;
+  std::optional<std::chrono::steady_clock::time_point> due_;
+  std::int64_t last_ns_ = 0;                 ///< stamp of the last frame
+  std::uint64_t number_ = 0;                 ///< of the next frame
+  std::vector<std::uint64_t> next_indices_;  ///< of each sensor's next frame
+  std::string ending_;
+};
+
+using Clock = std::chrono::steady_clock;
+
+void check(const link::RecordedFrame& frame, std::uint64_t number, const PreparedScene& prepared) {
+  const std::size_t objects = frame.moment.objects.size();
+  const std::size_t instances = prepared.scene.instances.size();
+  const bool fits = frame.sensor < prepared.sensors.size() &&
+                    (!frame.is_placed || objects == 0 || objects == instances);
+  if (fits) return;
+  throw Error(
+      {"recording, frame " + std::to_string(number),
+       "sensor " + std::to_string(frame.sensor) + " and " + std::to_string(objects) + " objects",
+       std::to_string(prepared.sensors.size()) + " sensors and " + std::to_string(instances) +
+           " objects, which the scene has",
+       "replay it with the scene that it was recorded with"});
+}
+
+RecordedSource::RecordedSource(link::RecordingReader& recording, const Options& options,
+                               const PreparedScene& prepared, const StopRequest& stop)
+    : recording_(recording),
+      options_(options),
+      prepared_(prepared),
+      stop_(stop),
+      next_indices_(prepared.sensors.size()) {}
+
+/// The next frame; empty at the end, of which `ending_` states why.
+std::optional<link::RecordedFrame> RecordedSource::read() {
+  if (number_ >= options_.schedule.frames) {
+    ending_ = "all frames are done";
+    return std::nullopt;
+  }
+  std::optional<link::RecordedFrame> frame = recording_.next();
+  if (!frame) ending_ = "the recording is complete";
+  return frame;
+}
+
+std::optional<FrameRequest> RecordedSource::next() {
+  std::optional<link::RecordedFrame> frame = read();
+  if (!frame && options_.playback != nullptr) {
+    while (!stop_.is_requested()) stop_.wait_until(Clock::now() + std::chrono::hours(1));
+  }
+  if (!frame) return std::nullopt;
+  check(*frame, number_, prepared_);
+  if (options_.playback != nullptr && !options_.playback->wait(stop_)) return std::nullopt;
+  wait_until_due(frame->moment.t_ns);
+  if (stop_.is_requested()) return std::nullopt;
+  ++number_;
+  FrameRequest moment{.sensor_index = frame->sensor,
+                      .number = frame->moment.number,
+                      .index = next_indices_[frame->sensor]++,
+                      .due = *due_,
+                      .motion = {},
+                      .stamp_ns = frame->moment.t_ns,
+                      .seed = frame->moment.seed,
+                      .frame_hash = std::move(frame->frame_hash)};
+  if (frame->is_placed) moment.motion = motion_at(frame->moment, prepared_);
+  return moment;
+}
+
+/// From the last frame to this one.
+std::chrono::duration<double> RecordedSource::period(std::int64_t t_ns) const {
+  constexpr double kNanosecond_s = 1e-9;
+  constexpr double kMax_s = 10.0;  // clients may give any time
+  if (options_.pace == ReplayPace::stamps) {
+    const double s = kNanosecond_s * (static_cast<double>(t_ns) - static_cast<double>(last_ns_));
+    return std::chrono::duration<double>(std::clamp(s, 0.0, kMax_s));
+  }
+  const double rate_hz = options_.schedule.rate_hz;
+  return std::chrono::duration<double>(rate_hz > 0.0 ? 1.0 / rate_hz : 0.0);
+}
+
+void RecordedSource::wait_until_due(std::int64_t t_ns) {
+  const Clock::time_point now = Clock::now();
+  const auto since_last = std::chrono::duration_cast<Clock::duration>(period(t_ns));
+  last_ns_ = t_ns;
+  due_ = due_ ? std::max(now, *due_ + since_last) : now;
+  while (Clock::now() < *due_ && !stop_.is_requested()) stop_.wait_until(*due_);
+}
+
+/// The peers of a stream by the protocol of 2016; nullptr: none of this kind.
+struct Peers {
+  woods2016::CloudPublisher* publisher = nullptr;
+  woods2016::PoseReceiver* receiver = nullptr;
+};
+
+enum class PeerWaitResult {
+  complete,  ///< all have shaken hands
+  stopped,   ///< by a signal
+  timed_out  ///< the simulator has not shaken hands within --pose-timeout
+};
+
+/// How often the handshakes of peers are polled.
+constexpr std::chrono::milliseconds kPeerPollInterval{20};
+
+bool are_complete(const Peers& peers, std::uint64_t subscribers) {
+  if (peers.publisher != nullptr) peers.publisher->serve();
+  const bool has_simulator = peers.receiver == nullptr || peers.receiver->is_ready();
+  return has_simulator && (peers.publisher == nullptr || peers.publisher->has(subscribers));
+}
+
+bool lacks_simulator(const Peers& peers, const StreamFlags& flags, double waited_s) {
+  return peers.receiver != nullptr && !peers.receiver->is_ready() && flags.pose_timeout_s &&
+         waited_s > *flags.pose_timeout_s;
+}
+
+/// Prints the number of subscribers when it changes.
+void show_subscribers(const Peers& peers, std::uint64_t expected, std::uint64_t& shown,
+                      Console& console) {
+  const std::uint64_t ready = peers.publisher != nullptr ? peers.publisher->ready() : 0;
+  if (expected == 0 || std::exchange(shown, ready) == ready) return;
+  console.info(ready_text(ready, expected));
+}
+
+/// Waits for the handshakes of the simulator and of --subscribers; the console shows progress.
+PeerWaitResult wait_for_peers(const Peers& peers, const StreamFlags& flags, const StopRequest& stop,
+                              Console& console) {
+  const auto begin = std::chrono::steady_clock::now();
+  bool is_announced = false;
+  std::uint64_t shown = 0;
+  while (!are_complete(peers, flags.subscribers)) {
+    if (stop.is_requested()) return PeerWaitResult::stopped;
+    if (lacks_simulator(peers, flags, seconds_since(begin))) return PeerWaitResult::timed_out;
+    if (!std::exchange(is_announced, true)) console.info(waiting_text(flags));
+    show_subscribers(peers, flags.subscribers, shown, console);
+    link::wait_for({peers.publisher != nullptr ? &peers.publisher->handshake_socket() : nullptr,
+                    peers.receiver != nullptr ? &peers.receiver->handshake_socket() : nullptr},
+                   stop.descriptor(), kPeerPollInterval);
+  }
+  return stop.is_requested() ? PeerWaitResult::stopped : PeerWaitResult::complete;
+}
 
 const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
 
