@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/stereo/census.hpp>
 #include <glidar/stereo/kernel.hpp>
-#include <glidar/stereo/page_memory.hpp>
 #include <glidar/stereo/stereo_match.hpp>
 
 #include <cstddef>
@@ -12,6 +10,45 @@
 #include <vector>
 
 namespace glidar::stereo {
+
+/// Uninitialised memory in large pages where the system has them: half the time of a first match
+/// would otherwise be spent on page faults.
+class PageMemory {
+ public:
+  PageMemory() = default;
+  ~PageMemory();
+  PageMemory(PageMemory&& other) noexcept;
+  PageMemory& operator=(PageMemory&& other) noexcept;
+  PageMemory(const PageMemory&) = delete;
+  PageMemory& operator=(const PageMemory&) = delete;
+
+  /// Space for `count` elements; their values are unspecified afterwards. Throws std::bad_alloc.
+  void reserve(std::size_t count);
+
+  [[nodiscard]] std::int16_t* data() const { return data_; }
+
+ private:
+  void release() noexcept;
+
+  std::int16_t* data_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+/// The census of an image in byte planes, each row plane after plane.
+struct Census {
+  std::size_t planes = 0;
+  std::size_t plane_stride = 0;  ///< bytes between planes
+  std::vector<std::uint8_t> bytes;
+
+  [[nodiscard]] const std::uint8_t* row(std::size_t y) const {
+    return bytes.data() + y * planes * plane_stride;
+  }
+};
+
+/// Pixels beyond the edge of the image equal the nearest one of the image. A mirrored census has
+/// column width - 1 - x in place of x, followed by `padding` unspecified columns.
+Census make_census(const GreyImage& image, StereoCensus kind, bool is_mirrored, std::size_t padding,
+                   const Kernel& kernel);
 
 /// Costs of all pixels and disparities, and sums of path costs minus kSumOffset; each height x
 /// width x lanes.
