@@ -46,7 +46,7 @@ enum class Interpolation : std::uint8_t {
   /// Positions along straight lines, orientations along the shorter arc at a constant rate (slerp:
   /// Shoemake, SIGGRAPH 1985). Velocities jump at the entries.
   linear,
-  /// Cubic splines through all entries, of positions and of rotation vectors (pose_spline.hpp).
+  /// Cubic splines through all entries, of positions and of rotation vectors.
   /// Velocities, rates and their derivatives are continuous, as inertial sensors need.
   spline,
 };

@@ -5,6 +5,7 @@
 #include <glidar/simulate/mirrors.hpp>
 
 #include <cmath>
+#include <variant>
 
 namespace glidar {
 namespace {
@@ -90,6 +91,66 @@ PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
                *depth_camera);
   }
   return prepared;
+}
+
+namespace {
+
+/// The pattern as a camera at the position of the projector sees it, W/sr.
+std::vector<float> view_pattern(const PreparedActiveStereo& prepared) {
+  const PreparedImager& imager = prepared.imager;
+  std::vector<float> rays;
+  rays.reserve(imager.rays.size());
+  for (const Eigen::Vector3d& ray : imager.rays.directions) {
+    rays.push_back(
+        static_cast<float>(intensity_at(prepared.pattern, ray.x() / ray.z(), ray.y() / ray.z())));
+  }
+  std::vector<float> view;
+  ThreadPool one_thread(1);
+  average_rays(rays, imager.setup.sub_rays, imager.weights, imager.size, one_thread, view);
+  return view;
+}
+
+}  // namespace
+
+PreparedActiveStereo prepare_active_stereo(const ActiveStereo& camera, const Sensor& sensor) {
+  PreparedActiveStereo prepared{
+      .camera = camera,
+      .imager = prepare_imager(sensor, {camera.imager, camera.illumination, camera.sub_rays}),
+      .focal_length_px = std::get<Pinhole>(sensor.optics).intrinsics.fx,
+      .pattern = make_intensity_map(camera.projector),
+      .pattern_view = {}};
+  if (camera.reference == ActiveStereo::Reference::pattern) {
+    prepared.pattern_view = view_pattern(prepared);
+  }
+  return prepared;
+}
+
+PreparedStructuredLight prepare_structured_light(const StructuredLightCamera& camera,
+                                                 const Sensor& sensor) {
+  const Pose camera_from_projector = camera.projector_from_camera.inverse();
+  PreparedStructuredLight prepared{
+      .camera = camera,
+      .setup = setup_of(camera, std::get<Pinhole>(sensor.optics)),
+      .imager = prepare_imager(sensor, {camera.imager, camera.illumination, camera.sub_rays}),
+      .projection = PinholeProjection(camera.projector),
+      .projector_m = camera_from_projector.translation(),
+      .white_w_per_sr = white_intensity_w_per_sr(camera.projector, camera.light.power_w),
+      .lines = {}};
+  for (std::size_t i = 0; i < image_count(camera.patterns); ++i) {
+    prepared.lines.push_back(projected_line(camera.patterns, camera.light, i));
+  }
+  return prepared;
+}
+
+std::optional<Eigen::Vector2d> projector_pixel(const PreparedStructuredLight& prepared,
+                                               const Eigen::Vector3d& path) {
+  const PinholeIntrinsics& image = prepared.camera.projector.intrinsics;
+  const auto pixel =
+      prepared.projection.pixel_of(prepared.camera.projector_from_camera.linear() * path);
+  if (!pixel) return {};
+  const bool is_inside = pixel->x() >= -0.5 && pixel->x() <= image.width - 0.5 &&
+                         pixel->y() >= -0.5 && pixel->y() <= image.height - 0.5;
+  return is_inside ? pixel : std::nullopt;
 }
 
 }  // namespace glidar

@@ -5,9 +5,9 @@
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/sensor/lidar/weather_echoes.hpp>
+#include <glidar/sensor/optics/projection.hpp>
 #include <glidar/sensor/sensor.hpp>
-#include <glidar/simulate/prepared_active_stereo.hpp>
-#include <glidar/simulate/prepared_structured_light.hpp>
+#include <glidar/simulate/prepared_imager.hpp>
 #include <glidar/simulate/prepared_tof.hpp>
 
 #include <optional>
@@ -15,6 +15,36 @@
 #include <vector>
 
 namespace glidar {
+
+/// A structured-light camera with everything that is the same for all frames.
+struct PreparedStructuredLight {
+  const StructuredLightCamera& camera;
+  StructuredLight setup;  ///< what decodes its images
+  PreparedImager imager;
+  PinholeProjection projection;           ///< of the projector
+  Eigen::Vector3d projector_m;            ///< origin of the projector in the sensor frame
+  double white_w_per_sr = 0.0;            ///< see white_intensity_w_per_sr()
+  std::vector<std::vector<float>> lines;  ///< of each pattern, see projected_line()
+};
+
+PreparedStructuredLight prepare_structured_light(const StructuredLightCamera& camera,
+                                                 const Sensor& sensor);
+
+/// The pixel of the projector, whole numbers are centres, that lights what is at the end of a path
+/// from it (in the sensor's axes); empty: none does.
+std::optional<Eigen::Vector2d> projector_pixel(const PreparedStructuredLight& prepared,
+                                               const Eigen::Vector3d& path);
+
+/// An active stereo camera with everything that is the same for all frames.
+struct PreparedActiveStereo {
+  const ActiveStereo& camera;
+  PreparedImager imager;
+  double focal_length_px = 0.0;  ///< along x
+  IntensityMap pattern;
+  std::vector<float> pattern_view;  ///< Reference::pattern: the pattern as the second camera
+};
+
+PreparedActiveStereo prepare_active_stereo(const ActiveStereo& camera, const Sensor& sensor);
 
 /// True when a beam of this sensor is more than one ray with one return: it has a footprint,
 /// reports several returns or another than the strongest, has range walk, or meets mirrors or
