@@ -4,20 +4,88 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/bag_file.hpp>
+#include <glidar/io/bags/byte_reader.hpp>
 #include <glidar/io/bags/chunk_codec.hpp>
 #include <glidar/io/bags/chunk_merger.hpp>
-#include <glidar/io/bags/mcap_channels.hpp>
+#include <glidar/io/bags/mcap_records.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace glidar::bags {
 namespace {
+
+/// The head of a record.
+struct McapRecord {
+  mcap::Op op{};
+  std::uint64_t size = 0;  ///< of its content
+};
+
+/// The schemas and channels of a file, each known after its record.
+class McapChannels {
+ public:
+  /// Takes the content of a schema or channel record; ignores others and repetitions. Names and
+  /// topics count in the budget.
+  void add(mcap::Op op, ByteReader& content, InputBudget& budget);
+
+  [[nodiscard]] const std::vector<StoredTopic>& topics() const { return topics_; }
+  /// Index in topics(). Throws Error, at the reader's place, for an unknown channel.
+  [[nodiscard]] std::size_t topic_of(std::uint16_t channel, const ByteReader& reader) const;
+
+ private:
+  void add_channel(ByteReader& content, InputBudget& budget);
+
+  std::map<std::uint16_t, std::string> schemas_;
+  std::map<std::uint16_t, std::size_t> channels_;
+  std::vector<StoredTopic> topics_;
+};
+
+McapRecord read_mcap_head(ByteReader& reader) {
+  const auto op = static_cast<mcap::Op>(reader.number<std::uint8_t>());
+  return {op, reader.number<std::uint64_t>()};
+}
+
+void McapChannels::add(mcap::Op op, ByteReader& content, InputBudget& budget) {
+  if (op == mcap::Op::channel) return add_channel(content, budget);
+  if (op != mcap::Op::schema) return;
+  const auto number = content.number<std::uint16_t>();
+  if (!schemas_.contains(number)) schemas_.emplace(number, content.name(budget));
+}
+
+void McapChannels::add_channel(ByteReader& content, InputBudget& budget) {
+  const auto number = content.number<std::uint16_t>();
+  const auto schema = content.number<std::uint16_t>();
+  if (channels_.contains(number)) return;
+  budget.take(Budget::topics, 1, content.place());
+  StoredTopic topic;
+  topic.name = content.name(budget);
+  const std::string encoding = content.name(budget);
+  const auto type = schemas_.find(schema);
+  if (type != schemas_.end()) {
+    budget.take_name(type->second.size(), content.place());
+    topic.type = type->second;
+  }
+  topic.wire = encoding == "ros1" ? ros::Wire::ros1 : ros::Wire::cdr;
+  topic.is_ros = encoding == "ros1" || encoding == "cdr";
+  channels_.emplace(number, topics_.size());
+  topics_.push_back(std::move(topic));
+}
+
+std::size_t McapChannels::topic_of(std::uint16_t channel, const ByteReader& reader) const {
+  const auto known = channels_.find(channel);
+  if (known == channels_.end())
+    reader.reject(fmt::format("a message of channel {}, which is not described", channel));
+  return known->second;
+}
 
 using McapOp = mcap::Op;
 

@@ -3,20 +3,203 @@
 #include <glidar/io/bags/rosbag2_writer.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/mcap_writer.hpp>
-#include <glidar/io/bags/sqlite_bag_writer.hpp>
-#include <glidar/io/bags/staged_folder.hpp>
+#include <glidar/io/bags/sqlite.hpp>
 #include <glidar/io/bags/written_topics.hpp>
 #include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/files/unfinished_files.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace glidar::bags {
 namespace {
+
+/// A folder that appears under its name only when all its files are complete. Until commit() they
+/// are in a temporary folder beside it, which the destructor removes.
+class StagedFolder {
+ public:
+  /// Throws Error when `path` exists and is not a folder that `is_replaceable` accepts, or no
+  /// folder can be created beside it.
+  StagedFolder(const std::filesystem::path& path,
+               bool (*is_replaceable)(const std::filesystem::path&));
+  ~StagedFolder();
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+
+  /// The path of a new file in the temporary folder, which a signal removes.
+  std::filesystem::path add_file(const std::string& name);
+  /// Gives the folder its name; a folder of this name is replaced and removed. Throws Error.
+  void commit();
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;  ///< empty once committed
+  std::vector<int> slots_;           ///< of the list of unfinished files
+};
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_folder(const fs::path& path, const char* what, int code) {
+  throw Error({path.string(),
+               fmt::format("cannot {}: {}", what, std::generic_category().message(code)), "",
+               code == ENOENT ? "create the folder above it first" : ""});
+}
+
+StagedFolder::StagedFolder(const fs::path& path, bool (*is_replaceable)(const fs::path&))
+    : path_(path) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !(fs::is_directory(path, ignored) && is_replaceable(path))) {
+    throw Error({path.string(), "exists and is no bag", "a new name, or a bag to replace",
+                 "remove it, or write to another path"});
+  }
+  const fs::path folder = fs::absolute(path).parent_path();
+  for (unsigned attempt = 0;; ++attempt) {
+    fs::path name = folder / fmt::format(".glidar-{}-{}.folder.tmp", ::getpid(), attempt);
+    const int slot = list_unfinished(name.native());
+    constexpr mode_t kDefault = 0777;
+    if (::mkdir(name.c_str(), kDefault) == 0) {
+      slots_.push_back(slot);
+      temporary_ = std::move(name);
+      return;
+    }
+    const int code = errno;
+    unlist_unfinished(slot);
+    if (code != EEXIST) fail_folder(path, "create a folder here", code);
+  }
+}
+
+StagedFolder::~StagedFolder() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  for (const int slot : slots_) unlist_unfinished(slot);
+}
+
+fs::path StagedFolder::add_file(const std::string& name) {
+  fs::path file = temporary_ / name;
+  slots_.push_back(list_unfinished(file.native()));
+  return file;
+}
+
+void StagedFolder::commit() {
+  if (::rename(temporary_.c_str(), path_.c_str()) == 0) {
+    temporary_.clear();
+    return;
+  }
+  if (errno != ENOTEMPTY && errno != EEXIST) fail_folder(path_, "rename", errno);
+  if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) != 0)
+    fail_folder(path_, "replace the bag of this name", errno);
+  // The temporary name is now that of the old bag, which the destructor removes.
+}
+
+/// Version of metadata.yaml (ros2/rosbag2, rosbag2_storage/bag_metadata.hpp): the last one that
+/// stores QoS as text, which all readers of versions 7 to 9 accept.
+constexpr int kMetadataVersion = 8;
+
+/// As rosbag2 spells a distribution that it does not know.
+constexpr const char* kRosDistro = "unknown";
+
+/// Writes the SQLite storage of rosbag2, with the tables of schema version 4, directly to `path`.
+class SqliteBagWriter : public BagWriter {
+ public:
+  explicit SqliteBagWriter(const std::filesystem::path& path);
+
+  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
+  std::size_t add_topic(const ros::Topic& topic) override;
+  void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override;
+  void finish() override;
+  /// The content of metadata.yaml, which the database stores too; before finish().
+  void put_metadata(const std::string& yaml);
+
+ private:
+  Database database_;
+  std::optional<Statement> insert_message_;
+  std::size_t topics_ = 0;
+  std::set<const ros::MessageType*> defined_;
+};
+
+/// ros2/rosbag2, rosbag2_storage_sqlite3/src/rosbag2_storage_sqlite3/sqlite_storage.cpp.
+constexpr const char* kTables =
+    "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY,ros_distro TEXT NOT NULL);"
+    "CREATE TABLE metadata(id INTEGER PRIMARY KEY,metadata_version INTEGER NOT NULL,"
+    "metadata TEXT NOT NULL);"
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,"
+    "serialization_format TEXT NOT NULL,offered_qos_profiles TEXT NOT NULL,"
+    "type_description_hash TEXT NOT NULL);"
+    "CREATE TABLE message_definitions(id INTEGER PRIMARY KEY,topic_type TEXT NOT NULL,"
+    "encoding TEXT NOT NULL,encoded_message_definition TEXT NOT NULL,"
+    "type_description_hash TEXT NOT NULL);"
+    "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,"
+    "timestamp INTEGER NOT NULL,data BLOB NOT NULL);"
+    "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
+constexpr int kSchemaVersion = 4;
+
+SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& path) : database_(path) {
+  database_.execute("BEGIN");
+  database_.execute(kTables);
+  Statement version(database_, "INSERT INTO schema VALUES(?,?)");
+  version.bind(1, kSchemaVersion);
+  version.bind(2, std::string_view(kRosDistro));
+  version.step();
+  insert_message_.emplace(database_, "INSERT INTO messages(topic_id,timestamp,data) VALUES(?,?,?)");
+}
+
+std::size_t SqliteBagWriter::add_topic(const ros::Topic& topic) {
+  Statement insert(database_, "INSERT INTO topics VALUES(?,?,?,'cdr',?,?)");
+  insert.bind(1, static_cast<std::int64_t>(topics_ + 1));
+  insert.bind(2, topic.name);
+  insert.bind(3, topic.type->name);
+  insert.bind(4, ros::qos_yaml(topic.qos));
+  insert.bind(5, topic.type->type_hash);
+  insert.step();
+  if (defined_.insert(topic.type).second) {
+    Statement define(database_,
+                     "INSERT INTO message_definitions(topic_type,encoding,"
+                     "encoded_message_definition,type_description_hash) "
+                     "VALUES(?,'ros2msg',?,?)");
+    define.bind(1, topic.type->name);
+    define.bind(2, ros::definition_text(*topic.type, ros::Wire::cdr));
+    define.bind(3, topic.type->type_hash);
+    define.step();
+  }
+  return topics_++;
+}
+
+void SqliteBagWriter::write(std::size_t topic, std::int64_t time_ns,
+                            std::span<const std::byte> message) {
+  insert_message_->bind(1, static_cast<std::int64_t>(topic + 1));
+  insert_message_->bind(2, time_ns);
+  insert_message_->bind(3, message);
+  insert_message_->step();
+}
+
+void SqliteBagWriter::put_metadata(const std::string& yaml) {
+  Statement insert(database_, "INSERT INTO metadata(metadata_version,metadata) VALUES(?,?)");
+  insert.bind(1, kMetadataVersion);
+  insert.bind(2, yaml);
+  insert.step();
+}
+
+void SqliteBagWriter::finish() {
+  database_.execute("COMMIT");
+  insert_message_.reset();
+  database_.close();
+}
 
 namespace fs = std::filesystem;
 

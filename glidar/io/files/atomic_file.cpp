@@ -3,8 +3,8 @@
 #include <glidar/io/files/atomic_file.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/file_sync.hpp>
 #include <glidar/io/files/unfinished_files.hpp>
+#include <glidar/io/files/unique_fd.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -22,6 +23,45 @@
 
 namespace glidar {
 namespace {
+
+/// 0 or an error number. Not repeated after an error other than EINTR: Linux reports a lost write
+/// once, so that the next call would succeed without the data.
+int sync(int descriptor) {
+  while (::fsync(descriptor) != 0) {
+    if (errno != EINTR) return errno;
+  }
+  return 0;
+}
+
+[[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code,
+                       const char* remedy) {
+  const bool is_full = code == ENOSPC || code == EDQUOT;
+  throw Error({path.string(),
+               fmt::format("cannot {}: {}", what, std::generic_category().message(code)), "",
+               is_full ? "make room or write to another folder" : remedy});
+}
+
+/// Waits until the data of an open file is on the disk. `path` appears in errors. Throws Error;
+/// then it is unknown which bytes are on the disk.
+void sync_file(int descriptor, const std::filesystem::path& path) {
+  const int error = sync(descriptor);
+  if (error != 0) {
+    fail(path, "write to the disk (fsync)", error, "check the disk; no part of this file remains");
+  }
+}
+
+/// Waits until the names in the folder of this file are on the disk. Ignores file systems that
+/// cannot sync a folder, such as some network file systems. Throws Error.
+void sync_folder_of(const std::filesystem::path& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  const UniqueFd descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const int error = descriptor ? sync(descriptor.get()) : errno;
+  // POSIX lets a file system reject it (EINVAL); FUSE and network file systems do (ENOTSUP).
+  if (error == 0 || (descriptor && (error == EINVAL || error == ENOTSUP))) return;
+  fail(path, "write its folder to the disk (fsync)", error,
+       "the file is in place and complete, but may not survive power loss; check the disk, or "
+       "omit --durable");
+}
 
 /// A block stays in a core's cache until the system has copied it.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;

@@ -3,16 +3,68 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
 #include <glidar/core/point_cloud.hpp>
+#include <glidar/core/scene.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/osi/ground_truth.hpp>
+#include <glidar/io/osi/protobuf_message.hpp>
+#include <glidar/motion/motion.hpp>
+#include <glidar/sensor/sensor.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace glidar::osi {
+
+/// A sensor whose frames are written.
+struct OsiSensor {
+  std::uint64_t id = 0;
+  const Sensor& sensor;
+  Pose rig_from_sensor = Pose::Identity();
+};
+
+/// The motion of the rig and of the scene's instances.
+struct OsiMotion {
+  Trajectory world_from_rig;
+  std::vector<Trajectory> world_from_instance;
+};
+
+/// What is measured. The scene must outlive its users.
+struct OsiRig {
+  const Scene& scene;
+  std::vector<OsiSensor> sensors;
+  /// Empty: known only at the times of frames, by the frames' poses.
+  std::optional<OsiMotion> motion = {};
+};
+
+/// The id of the rig as the host vehicle; ids of instances have 32 bits.
+inline constexpr std::uint64_t kHostVehicleId = std::uint64_t{1} << 32U;
+
+/// Makes GroundTruth messages (osi_groundtruth.proto) of a rig's frames: the rig as the host
+/// vehicle, and the instances as boxes.
+class GroundTruthMessages {
+ public:
+  /// The rig must outlive it.
+  explicit GroundTruthMessages(const OsiRig& rig);
+
+  /// The objects at a frame's stamp.
+  [[nodiscard]] ProtobufMessage at(const Frame& frame, const Pose& world_from_rig) const;
+
+ private:
+  [[nodiscard]] ProtobufMessage host_vehicle(std::int64_t t_ns, const Pose& world_from_rig) const;
+  [[nodiscard]] bool is_moving_object(std::size_t instance) const;
+  [[nodiscard]] ProtobufMessage moving_object(std::size_t instance, const Frame& frame) const;
+  [[nodiscard]] ProtobufMessage stationary_object(std::size_t instance, const Frame& frame) const;
+  /// The fields that BaseMoving and BaseStationary share.
+  [[nodiscard]] ProtobufMessage base(std::size_t instance, const Pose& world_from_object) const;
+
+  const OsiRig& rig_;
+  std::vector<Eigen::AlignedBox3d> boxes_m_;  ///< of each instance, object frame, scaled
+};
 
 /// True for the names of OSI traces: with the suffix .osi.
 bool is_osi_trace_name(const std::filesystem::path& path);

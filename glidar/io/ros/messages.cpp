@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace glidar::ros {
@@ -27,6 +28,18 @@ Time time_from_ns(std::int64_t t_ns) {
 
 std::int64_t to_ns(const Time& time) {
   return std::int64_t{time.sec} * 1'000'000'000 + time.nanosec;
+}
+
+void Payload::write_to(std::span<std::byte> to) const {
+  if (write_) return write_(to.first(size_));
+  std::copy(bytes_.begin(), bytes_.end(), to.begin());
+}
+
+std::vector<std::byte> Payload::to_vector() const {
+  if (!write_) return bytes_;
+  std::vector<std::byte> bytes(size_);
+  write_(bytes);
+  return bytes;
 }
 
 }  // namespace glidar::ros
