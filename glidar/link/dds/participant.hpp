@@ -3,12 +3,25 @@
 #pragma once
 
 #include <glidar/link/dds/domain.hpp>
-#include <glidar/link/dds/log_sink.hpp>
 #include <glidar/link/error_log.hpp>
 
 #include <cstdint>
 
 namespace glidar::dds {
+
+/// RAII: gives the warnings of Cyclone DDS to a log instead of standard error. Cyclone DDS has one
+/// destination per process: with several objects, each gets all warnings.
+class LogSink {
+ public:
+  /// The log must outlive it.
+  explicit LogSink(link::ErrorLog& log);
+  ~LogSink();
+  LogSink(const LogSink&) = delete;
+  LogSink& operator=(const LogSink&) = delete;
+
+ private:
+  link::ErrorLog& log_;
+};
 
 /// False in builds without Cyclone DDS.
 bool has_dds();

@@ -2,19 +2,308 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/foxglove/server.hpp>
 
-#include <glidar/link/foxglove/acceptor.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/link/foxglove/client_session.hpp>
+#include <glidar/link/foxglove/http_routes.hpp>
 #include <glidar/link/foxglove/hub.hpp>
 #include <glidar/link/foxglove/reply_gate.hpp>
+#include <glidar/link/http_parser.hpp>
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/socket_base.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
 #include <cstring>
+#include <deque>
 #include <exception>
+#include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <variant>
 
 namespace glidar::foxglove {
 namespace {
+
+class HttpSession;
+
+/// Accepts connections. When too many have not sent a request, the oldest one is closed.
+class Acceptor {
+ public:
+  /// Throws Error if it cannot listen at the endpoint.
+  Acceptor(Hub& hub, std::shared_ptr<ReplyGate> gate);
+  void start() { accept(); }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+ private:
+  void accept();
+  void begin(boost::asio::ip::tcp::socket&& socket);
+  void pause();
+  void make_room();
+
+  Hub& hub_;
+  std::shared_ptr<ReplyGate> gate_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer timer_;
+  std::uint16_t port_ = 0;
+  std::deque<std::weak_ptr<HttpSession>> waiting_;  ///< oldest first
+};
+
+/// A new connection: answers one HTTP request, or becomes a ClientSession. Keeps itself alive while
+/// an operation is in progress.
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, std::shared_ptr<ReplyGate> gate);
+  void start();
+  /// Makes room for others.
+  void close();
+  /// Whether its request is not complete yet.
+  [[nodiscard]] bool is_waiting() const { return is_waiting_; }
+
+ private:
+  using Failure = boost::beast::error_code;
+  using Request = link::HttpParser::value_type;
+
+  void on_read(Failure failure);
+  void upgrade(const Request& request);
+  void answer(const Request& request);
+  void explain(const Pick& pick);
+  void finish(const std::optional<std::string>& text);
+  void respond(const HttpReply& reply);
+  void on_written();
+
+  boost::beast::tcp_stream stream_;
+  boost::beast::flat_buffer received_;
+  link::HttpParser parser_;
+  boost::beast::http::response<boost::beast::http::string_body> response_;
+  Hub& hub_;
+  std::shared_ptr<ReplyGate> gate_;
+  bool is_waiting_ = true;
+  bool is_head_ = false;
+};
+
+namespace http = boost::beast::http;
+
+template <class Message>
+std::string_view header(const Message& message, http::field name) {
+  return link::text_view(message[name]);
+}
+
+HttpReply plain_reply(int status, const std::string& text) {
+  return {.status = status, .content_type = "text/plain; charset=utf-8", .body = text + "\n"};
+}
+
+HttpReply json_reply(int status, const char* member, const std::string& text) {
+  return {.status = status, .content_type = "application/json", .body = answer_text(member, text)};
+}
+
+HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub,
+                         std::shared_ptr<ReplyGate> gate)
+    : stream_(std::move(socket)), hub_(hub), gate_(std::move(gate)) {
+  link::apply_limits(hub_.guard().limits(), parser_);
+}
+
+void HttpSession::start() {
+  stream_.expires_after(hub_.options().limits.http.request);
+  http::async_read(
+      stream_, received_, parser_,
+      [self = shared_from_this()](Failure failure, std::size_t) { self->on_read(failure); });
+}
+
+void HttpSession::close() {
+  is_waiting_ = false;
+  stream_.close();
+}
+
+void HttpSession::on_read(Failure failure) {
+  is_waiting_ = false;
+  if (failure == http::error::body_limit || failure == http::error::header_limit) {
+    return respond(plain_reply(413, "the request is too large"));
+  }
+  if (failure) {
+    const bool is_http =
+        failure.category() == http::make_error_code(http::error::bad_method).category();
+    if (is_http && failure != http::error::end_of_stream) {
+      hub_.errors().report("HTTP request", failure.message());
+    }
+    return;
+  }
+  if (boost::beast::websocket::is_upgrade(parser_.get())) {
+    upgrade(parser_.get());
+  } else {
+    answer(parser_.get());
+  }
+}
+
+void HttpSession::upgrade(const Request& request) {
+  const link::HttpHead head = link::head_of(request);
+  if (const auto refusal = hub_.guard().refuse(head)) {
+    const std::string text(refusal->text);
+    hub_.errors().report("Foxglove client", "refused with status " +
+                                                std::to_string(refusal->status) + ", " + text +
+                                                "; origin '" + excerpt(head.origin) + "', host '" +
+                                                excerpt(head.host) + "'");
+    return respond(plain_reply(refusal->status, text));
+  }
+  const std::string_view protocol =
+      choose_subprotocol(header(request, http::field::sec_websocket_protocol));
+  if (protocol.empty()) return respond(plain_reply(400, "the subprotocol is foxglove.sdk.v1"));
+  const auto client = std::make_shared<ClientSession>(std::move(stream_), hub_);
+  if (hub_.join(client)) return client->start(request, protocol);
+  hub_.errors().report("Foxglove client", "refused; there are too many");
+}
+
+void HttpSession::answer(const Request& request) {
+  const ServerOptions& options = hub_.options();
+  is_head_ = request.method() == http::verb::head;
+  const HttpAction action =
+      route({.head = link::head_of(request),
+             .target = link::text_view(request.target()),
+             .content_type = header(request, http::field::content_type),
+             .body = request.body()},
+            hub_.guard(),
+            {.has_playback = bool(options.on_playback), .has_picks = bool(options.on_pick)});
+  if (const auto* reply = std::get_if<HttpReply>(&action)) {
+    respond(*reply);
+  } else if (const auto* command = std::get_if<PlaybackCommand>(&action)) {
+    options.on_playback(*command);
+    respond(json_reply(200, "text", "done"));
+  } else {
+    explain(std::get<Pick>(action));
+  }
+}
+
+void HttpSession::explain(const Pick& pick) {
+  if (hub_.picking.size() >= hub_.options().limits.picks) {
+    return respond(json_reply(503, "error", "other points are being explained"));
+  }
+  stream_.expires_never();
+  const auto self = shared_from_this();
+  hub_.picking.insert(self);  // the reply may outlive the server, and holds no session
+  hub_.options().on_pick(
+      pick,
+      make_pick_reply(gate_, [waiting = weak_from_this()](const std::optional<std::string>& text) {
+        if (const auto session = waiting.lock()) session->finish(text);
+      }));
+}
+
+void HttpSession::finish(const std::optional<std::string>& text) {
+  hub_.picking.erase(shared_from_this());
+  respond(text ? json_reply(200, "text", *text)
+               : json_reply(404, "error", "there is no explanation of this point"));
+}
+
+void HttpSession::respond(const HttpReply& reply) {
+  response_.version(11);
+  response_.result(static_cast<unsigned>(reply.status));
+  response_.keep_alive(false);
+  response_.set(http::field::content_type, reply.content_type);
+  response_.set(http::field::cache_control, "no-store");
+  response_.set(
+      "Content-Security-Policy",
+      boost::beast::string_view(kContentSecurityPolicy.data(), kContentSecurityPolicy.size()));
+  response_.set("X-Content-Type-Options", "nosniff");
+  response_.set("Referrer-Policy", "no-referrer");
+  response_.set("Cross-Origin-Resource-Policy", "same-origin");
+  response_.content_length(reply.body.size());
+  if (!is_head_) response_.body() = reply.body;
+  stream_.expires_after(hub_.options().limits.http.request);
+  http::async_write(stream_, response_,
+                    [self = shared_from_this()](Failure, std::size_t) { self->on_written(); });
+}
+
+void HttpSession::on_written() {
+  Failure ignored;
+  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using ErrorCode = boost::system::error_code;
+
+tcp::endpoint resolve(asio::io_context& io, const link::Endpoint& at) {
+  if (at.host == "*") return {tcp::v4(), at.port};
+  ErrorCode failure;
+  tcp::resolver resolver(io);
+  const auto found = resolver.resolve(at.host, std::to_string(at.port), failure);
+  if (failure || found.empty()) link::fail_at(at, EINVAL, "find the address");
+  return found.begin()->endpoint();
+}
+
+tcp::acceptor listen(asio::io_context& io, const link::Endpoint& at) {
+  const tcp::endpoint endpoint = resolve(io, at);
+  tcp::acceptor acceptor(io);
+  ErrorCode failure;
+  acceptor.open(endpoint.protocol(), failure);
+  if (!failure) acceptor.set_option(tcp::acceptor::reuse_address(true), failure);
+  if (!failure) acceptor.bind(endpoint, failure);
+  if (!failure) acceptor.listen(asio::socket_base::max_listen_connections, failure);
+  if (failure) link::fail_at(at, failure.value(), "listen");
+  return acceptor;
+}
+
+Acceptor::Acceptor(Hub& hub, std::shared_ptr<ReplyGate> gate)
+    : hub_(hub),
+      gate_(std::move(gate)),
+      acceptor_(listen(hub.io(), hub.options().at)),
+      timer_(hub.io()),
+      port_(acceptor_.local_endpoint().port()) {}
+
+void Acceptor::accept() {
+  acceptor_.async_accept([this](ErrorCode failure, tcp::socket socket) {
+    if (failure == asio::error::operation_aborted) return;
+    if (failure) {
+      hub_.errors().report("accepting Foxglove clients", failure.message());
+      return pause();
+    }
+    begin(std::move(socket));
+    accept();
+  });
+}
+
+void Acceptor::begin(tcp::socket&& socket) {
+  hub_.count_connection();
+  ErrorCode ignored;
+  socket.set_option(tcp::no_delay(true), ignored);
+  make_room();
+  const auto session = std::make_shared<HttpSession>(std::move(socket), hub_, gate_);
+  waiting_.push_back(session);
+  session->start();
+}
+
+/// Without file descriptors, accepting fails at once, again and again.
+void Acceptor::pause() {
+  constexpr std::chrono::milliseconds kPause{100};
+  timer_.expires_after(kPause);
+  timer_.async_wait([this](ErrorCode failure) {
+    if (!failure) accept();
+  });
+}
+
+void Acceptor::make_room() {
+  std::erase_if(waiting_, [](const std::weak_ptr<HttpSession>& one) {
+    const auto session = one.lock();
+    return session == nullptr || !session->is_waiting();
+  });
+  while (waiting_.size() >= std::max<std::size_t>(hub_.options().limits.http.connections, 1)) {
+    if (const auto oldest = waiting_.front().lock()) oldest->close();
+    waiting_.pop_front();
+    hub_.errors().report("Foxglove connection", "closed the oldest one without a request");
+  }
+}
 
 link::Payload payload_of(const std::string& text) {
   link::Payload payload{.memory = std::make_shared<std::byte[]>(text.size()),  // NOLINT
