@@ -7,6 +7,7 @@
 #include <glidar/verify/probes.hpp>
 
 #include <cmath>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -44,66 +45,91 @@ ExactPose relative_to_sensor(const ExactPose& sensor, const ExactPose& object) {
           .shift = sensor.rotation.transpose() * (object.shift - sensor.shift)};
 }
 
-/// A moving sensor, a moving target and a static object.
-struct MovingScene {
-  ConstantTwist sensor;
-  ConstantTwist target;
-  Pose world_from_rest;
-  double target_scale = 2.0;
-  double rest_scale = 1.5;
-};
+/// A shape on a screw motion, or at rest.
+struct Body {
+  const Shape& shape;
+  double scale;
+  ConstantTwist motion;
+  bool is_at_rest = false;
 
-MovingScene make_moving_scene() {
-  constexpr std::uint32_t kNumber = 90050;
-  MovingScene moving;
-  moving.sensor = {.pose = make_pose({0.5, -0.25, 0.0}, Eigen::Quaterniond::Identity()),
-                   .angular_rad_s = {0.3, -0.2, 0.5},
-                   .linear_m_s = {1.0, -0.5, 2.0}};
-  moving.target = {.pose = make_pose({0.0, 0.5, 12.0}, random_rotation(probe_uniforms(kNumber, 0))),
-                   .angular_rad_s = {-0.4, 0.7, 0.2},
-                   .linear_m_s = {3.0, -1.0, 0.5}};
-  moving.world_from_rest = make_pose({3.0, 1.5, 9.0}, random_rotation(probe_uniforms(kNumber, 1)));
-  return moving;
-}
-
-/// Where sensor and target are at a beam's firing time.
-struct Places {
-  ExactPose sensor;
-  ExactPose target;
-  ExactPose rest;
-};
-
-Places places_at(const MovingScene& moving, std::uint32_t time_ns) {
-  const Real seconds = (static_cast<Real>(kStamp_ns) + static_cast<Real>(time_ns)) * 1e-9L;
-  return {.sensor = moved(moving.sensor, seconds),
-          .target = moved(moving.target, seconds),
-          .rest = {.rotation = moving.world_from_rest.linear().cast<Real>(),
-                   .shift = moving.world_from_rest.translation().cast<Real>()}};
-}
-
-/// The shapes relative to the sensor at a beam's firing time.
-ExactScene scene_at(const MovingScene& moving, const std::vector<Shape>& shapes,
-                    const Places& places) {
-  return {.shapes = {place_shape(shapes[0], moving.target_scale,
-                                 relative_to_sensor(places.sensor, places.target)),
-                     place_shape(shapes[2], moving.rest_scale,
-                                 relative_to_sensor(places.sensor, places.rest))},
-          .edge_tolerance_m = kEdgeTolerance_m};
-}
-
-/// The scene and motion of a moving sensor and target.
-struct MovingStage {
-  MovingScene moving = make_moving_scene();
-  Scene scene;
-  Motion motion;
-
-  explicit MovingStage(const std::vector<Shape>& shapes) {
-    add_shape(scene, shapes[0].mesh, moving.target_scale, moving.target.pose);
-    add_shape(scene, shapes[2].mesh, moving.rest_scale, moving.world_from_rest);
-    motion = {.world_from_sensor = moving.sensor,
-              .world_from_instance = {moving.target, ConstantPose{moving.world_from_rest}}};
+  [[nodiscard]] ExactPose pose_after(Real seconds) const {
+    if (!is_at_rest) return moved(motion, seconds);
+    return {.rotation = motion.pose.linear().cast<Real>(),
+            .shift = motion.pose.translation().cast<Real>()};
   }
 };
+
+Real seconds_at(std::uint32_t beam_time_ns) {
+  return (static_cast<Real>(kStamp_ns) + static_cast<Real>(beam_time_ns)) * 1e-9L;
+}
+
+/// A moving sensor and bodies, each an instance of a scene.
+struct MovingStage {
+  ConstantTwist sensor = {.pose = make_pose({0.5, -0.25, 0.0}, Eigen::Quaterniond::Identity()),
+                          .angular_rad_s = {0.3, -0.2, 0.5},
+                          .linear_m_s = {1.0, -0.5, 2.0}};
+  std::vector<Body> bodies;
+  Scene scene;
+  Motion motion = {.world_from_sensor = sensor, .world_from_instance = {}};
+
+  explicit MovingStage(std::vector<Body> all) : bodies(std::move(all)) {
+    for (const Body& body : bodies) {
+      add_shape(scene, body.shape.mesh, body.scale, body.motion.pose);
+      if (body.is_at_rest) {
+        motion.world_from_instance.emplace_back(ConstantPose{body.motion.pose});
+      } else {
+        motion.world_from_instance.emplace_back(body.motion);
+      }
+    }
+  }
+
+  /// The shapes relative to the sensor at a beam's firing time.
+  [[nodiscard]] ExactScene scene_at(std::uint32_t time_ns) const {
+    const ExactPose from = moved(sensor, seconds_at(time_ns));
+    ExactScene exact{.shapes = {}, .edge_tolerance_m = kEdgeTolerance_m};
+    for (const Body& body : bodies) {
+      exact.shapes.push_back(place_shape(
+          body.shape, body.scale, relative_to_sensor(from, body.pose_after(seconds_at(time_ns)))));
+    }
+    return exact;
+  }
+};
+
+/// A target that moves, and a body at rest.
+MovingStage target_and_rest(const std::vector<Shape>& shapes) {
+  constexpr std::uint32_t kNumber = 90050;
+  return MovingStage(
+      {{.shape = shapes[0],
+        .scale = 2.0,
+        .motion = {.pose = make_pose({0.0, 0.5, 12.0}, random_rotation(probe_uniforms(kNumber, 0))),
+                   .angular_rad_s = {-0.4, 0.7, 0.2},
+                   .linear_m_s = {3.0, -1.0, 0.5}}},
+       {.shape = shapes[2],
+        .scale = 1.5,
+        .motion = {.pose = make_pose({3.0, 1.5, 9.0}, random_rotation(probe_uniforms(kNumber, 1)))},
+        .is_at_rest = true}});
+}
+
+/// Boxes and tetrahedra of 0.3 to 1.3 m that occlude each other, 4 to 40 m ahead. Of three, two
+/// drive at up to 10 m/s and turn.
+MovingStage traffic(const std::vector<Shape>& shapes) {
+  constexpr std::uint32_t kNumber = 90052;
+  constexpr std::uint32_t kBodies = 96;
+  std::vector<Body> bodies;
+  for (std::uint32_t i = 0; i < kBodies; ++i) {
+    const auto u = probe_uniforms(kNumber, 3 * i);
+    const auto v = probe_uniforms(kNumber, 3 * i + 1);
+    const Eigen::Vector3d place = (4.0 + 36.0 * u[2]) * random_direction(u[0], u[1], 0.5);
+    bodies.push_back(
+        {.shape = shapes[i % 2 == 0 ? 0 : 2],
+         .scale = 0.3 + u[3],
+         .motion = {.pose = make_pose(place, random_rotation(probe_uniforms(kNumber, 3 * i + 2))),
+                    .angular_rad_s = {v[0] - 0.5, 2.0 * v[1], v[2]},
+                    .linear_m_s = 10.0 * random_direction(v[3], v[0], 3.0)},
+         .is_at_rest = i % 3 == 2});
+  }
+  return MovingStage(std::move(bodies));
+}
 
 /// The velocity of a point that is fixed to a body on a screw motion, world axes.
 RealVector velocity_of(const ConstantTwist& twist, const ExactPose& body, const RealVector& point) {
@@ -140,57 +166,53 @@ Sensor moving_sensor() {
 void compare_motion(const MovingStage& stage, const Frame& frame, const Beams& beams, std::size_t i,
                     VerifyResult& result) {
   constexpr double kBound = 1e-12;  // m, rad and m/s: some hundred roundings of double
-  const Places now = places_at(stage.moving, beams.times_ns[i]);
-  const Places start = places_at(stage.moving, 0);
+  const ExactPose sensor = moved(stage.sensor, seconds_at(beams.times_ns[i]));
+  const ExactPose start = moved(stage.sensor, seconds_at(0));
   const RealVector direction = beams.directions[i].cast<Real>();
   const RealVector origin = beams.origins_m[i].cast<Real>();
-  const RealMatrix back = start.sensor.rotation.transpose();
-  const RealVector moved_origin =
-      back * (now.sensor.rotation * origin + now.sensor.shift - start.sensor.shift);
+  const RealMatrix back = start.rotation.transpose();
+  const RealVector moved_origin = back * (sensor.rotation * origin + sensor.shift - start.shift);
   const auto error = [](const RealVector& exact, const Eigen::Vector3d& found) {
     return static_cast<double>((found.cast<Real>() - exact).norm());
   };
-  result.check(error(back * (now.sensor.rotation * direction), frame.deskewed.directions[i]),
-               kBound);
+  result.check(error(back * (sensor.rotation * direction), frame.deskewed.directions[i]), kBound);
   result.check(error(moved_origin, frame.deskewed.origins_m[i]), kBound);
-  result.check(pose_error(frame.beam_poses.world_from_sensor[i], now.sensor), kBound);
+  result.check(pose_error(frame.beam_poses.world_from_sensor[i], sensor), kBound);
   if (frame.ground_truth.instance[i] == kInvalidId) return;
-  const bool is_target = frame.ground_truth.instance[i] == 0;
-  const ExactPose& body = is_target ? now.target : now.rest;
-  result.check(pose_error(frame.beam_poses.world_from_object[i], body), kBound);
-  const RealVector from = now.sensor.rotation * origin + now.sensor.shift;
-  const RealVector along = now.sensor.rotation * direction;
+  const Body& body = stage.bodies[frame.ground_truth.instance[i]];
+  const ExactPose place = body.pose_after(seconds_at(beams.times_ns[i]));
+  result.check(pose_error(frame.beam_poses.world_from_object[i], place), kBound);
+  const RealVector from = sensor.rotation * origin + sensor.shift;
+  const RealVector along = sensor.rotation * direction;
   const RealVector point = from + static_cast<Real>(frame.ground_truth.range_m[i]) * along;
-  RealVector velocity = -velocity_of(stage.moving.sensor, now.sensor, from);
-  if (is_target) velocity += velocity_of(stage.moving.target, now.target, point);
+  RealVector velocity = -velocity_of(stage.sensor, sensor, from);
+  if (!body.is_at_rest) velocity += velocity_of(body.motion, place, point);
   const auto radial_m_s = static_cast<double>(velocity.dot(along));
   result.check(frame.true_radial_velocity_m_s[i] - radial_m_s, kBound);
   result.check(frame.radial_velocity_m_s[i] - radial_m_s, kBound);
   result.check(frame.range_m[i] - frame.ground_truth.range_m[i], kBound);
 }
 
-}  // namespace
-
-VerifyResult moving_sensor_and_target(const VerifySubject& subject,
-                                      const std::vector<Shape>& shapes) {
-  const MovingStage stage(shapes);
-  Beams beams = random_probes(90051, 0.4, 0.2);
+/// Casts with a beam every kStep_ns and compares each with the scene of its firing time.
+VerifyResult cast_stage(const VerifySubject& subject, const MovingStage& stage, Beams beams) {
   for (std::uint32_t i = 0; i < beams.cols; ++i) beams.times_ns.push_back(i * kStep_ns);
-  const std::vector<Pose> poses = {pose_at(stage.moving.target, kStamp_ns),
-                                   stage.moving.world_from_rest};
+  std::vector<Pose> poses;
+  for (const Body& body : stage.bodies) {
+    poses.push_back(body.is_at_rest ? body.motion.pose : pose_at(body.motion, kStamp_ns));
+  }
   const std::unique_ptr<Renderer> renderer = subject.make(stage.scene);
   MovingCastWorkspace memory;
   Hits hits;
   cast_moving({*renderer, stage.scene, stage.motion, kStamp_ns},
               {.beams = beams,
-               .world_from_sensor = pose_at(stage.moving.sensor, kStamp_ns),
+               .world_from_sensor = pose_at(stage.sensor, kStamp_ns),
                .world_from_instance = poses,
                .hit_columns = {.normal = true}},
               memory, hits);
   VerifyResult result;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    compare_beam(scene_at(stage.moving, shapes, places_at(stage.moving, beams.times_ns[i])),
-                 beams.origins_m[i].cast<Real>(), beams.directions[i].cast<Real>(),
+    compare_beam(stage.scene_at(beams.times_ns[i]), beams.origins_m[i].cast<Real>(),
+                 beams.directions[i].cast<Real>(),
                  {.instance = hits.instance[i],
                   .primitive = hits.primitive[i],
                   .range_m = hits.range_m[i],
@@ -200,8 +222,19 @@ VerifyResult moving_sensor_and_target(const VerifySubject& subject,
   return result;
 }
 
+}  // namespace
+
+VerifyResult moving_sensor_and_target(const VerifySubject& subject,
+                                      const std::vector<Shape>& shapes) {
+  return cast_stage(subject, target_and_rest(shapes), random_probes(90051, 0.4, 0.2));
+}
+
+VerifyResult sensor_in_traffic(const VerifySubject& subject, const std::vector<Shape>& shapes) {
+  return cast_stage(subject, traffic(shapes), random_probes(90053, 0.6, 0.2));
+}
+
 VerifyResult measured_motion(const VerifySubject& subject, const std::vector<Shape>& shapes) {
-  const MovingStage stage(shapes);
+  const MovingStage stage = target_and_rest(shapes);
   const std::unique_ptr<Renderer> renderer = subject.make(stage.scene);
   Simulator simulator(stage.scene, moving_sensor(), *renderer);
   Frame frame;
@@ -210,8 +243,8 @@ VerifyResult measured_motion(const VerifySubject& subject, const std::vector<Sha
   const std::shared_ptr<const Beams> beams = simulator.beams();
   VerifyResult result;
   for (std::size_t i = 0; i < beams->size(); ++i) {
-    compare_beam(scene_at(stage.moving, shapes, places_at(stage.moving, beams->times_ns[i])),
-                 beams->origins_m[i].cast<Real>(), beams->directions[i].cast<Real>(),
+    compare_beam(stage.scene_at(beams->times_ns[i]), beams->origins_m[i].cast<Real>(),
+                 beams->directions[i].cast<Real>(),
                  {.instance = frame.ground_truth.instance[i],
                   .primitive = frame.ground_truth.primitive[i],
                   .range_m = frame.ground_truth.range_m[i],

@@ -735,6 +735,8 @@ std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes) {
                    [&](const auto& s) { return scanner_among_bodies(s, shapes); }});
   cases.push_back({"moving sensor and target", shapes.front().name, 10.0, BeamKind::any,
                    [&](const auto& s) { return moving_sensor_and_target(s, shapes); }});
+  cases.push_back({"sensor in traffic", "box, tetrahedron", 40.0, BeamKind::any,
+                   [&](const auto& s) { return sensor_in_traffic(s, shapes); }});
   for (const Shape& shape : shapes) {
     if (!shape.solid) continue;
     cases.push_back({"sensor on a vertex", shape.name, 0.0, BeamKind::pinhole,

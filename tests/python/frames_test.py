@@ -183,8 +183,8 @@ def test_verify_passes_on_this_machine():
     assert all(row.compared_hits > 0 and row.rays > 0 for row in found.rows)
     assert {row.name for row in found.rows} == {
         "one shape at rest", "several instances", "above a planet", "scanner among bodies",
-        "moving sensor and target", "sensor on a vertex", "at vertices and edges", "beside the outline", "several tiles",
-        "1,000 instances", "209,088 triangles", "culled back faces", "lens", "lidar equation", "footprint", "measured motion"}
+        "moving sensor and target", "sensor in traffic", "sensor on a vertex", "at vertices and edges", "beside the outline",
+        "several tiles", "1,000 instances", "209,088 triangles", "culled back faces", "lens", "lidar equation", "footprint", "measured motion"}
     assert all(row.wrong_ids == 0 and row.range_error_ulp <= 1e-3 for row in found.rows if row.passed)
     assert all(row.known_failure for row in found.rows if row.verdict == "known failure")
 
@@ -194,4 +194,5 @@ def test_verify_marks_rows_that_are_not_applicable_to_a_camera_only_renderer():
     assert found.passed, str(found)
     left_out = {row.name for row in found.rows if row.verdict == "not applicable"}
     assert left_out == {
-        "scanner among bodies", "moving sensor and target", "at vertices and edges", "beside the outline", "lidar equation", "footprint", "measured motion"}
+        "scanner among bodies", "moving sensor and target", "sensor in traffic", "at vertices and edges", "beside the outline",
+        "lidar equation", "footprint", "measured motion"}

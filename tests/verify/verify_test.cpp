@@ -57,7 +57,7 @@ TEST_F(SpecialCases, TheRasterPassesCasesWithItsBeamsOrHasAKnownFailure) {
 
 TEST_F(SpecialCases, ShiftedRangesAreDetectedInEach) {
   for (const char* name : {"several instances", "scanner among bodies", "moving sensor and target",
-                           "at vertices and edges"}) {
+                           "sensor in traffic", "at vertices and edges"}) {
     const VerifyResult result = named(name).run(subject("rays", shift_ranges));
     EXPECT_GT(result.range_error_ulp, kRangeBound_ulp) << name;
     EXPECT_FALSE(result.passed()) << name;
@@ -65,7 +65,8 @@ TEST_F(SpecialCases, ShiftedRangesAreDetectedInEach) {
 }
 
 TEST_F(SpecialCases, SwappedIdsAreDetectedInEach) {
-  for (const char* name : {"several instances", "moving sensor and target", "sensor on a vertex"}) {
+  for (const char* name : {"several instances", "moving sensor and target", "sensor in traffic",
+                           "sensor on a vertex"}) {
     EXPECT_GT(named(name).run(subject("rays", swap_triangles)).wrong_ids, 100U) << name;
   }
   const VerifyResult swapped = named("several instances").run(subject("raster", swap_instances));
@@ -74,7 +75,7 @@ TEST_F(SpecialCases, SwappedIdsAreDetectedInEach) {
 
 TEST_F(SpecialCases, ALostHitIsDetectedInEach) {
   for (const char* name : {"several instances", "scanner among bodies", "moving sensor and target",
-                           "at vertices and edges"}) {
+                           "sensor in traffic", "at vertices and edges"}) {
     EXPECT_GT(named(name).run(subject("rays", lose_one_hit)).wrong_misses, 0U) << name;
   }
 }
