@@ -3,6 +3,7 @@
 #include <glidar/io/decoder/decoder_process.hpp>
 
 #include <glidar/io/bags/bag_records.hpp>
+#include <glidar/io/packets/packet_records.hpp>
 
 #include <support/error_text.hpp>
 #include <support/test_folder.hpp>
@@ -33,11 +34,11 @@ class DecoderProcess : public ::testing::Test {
     });
   }
 
-  DecoderRun start(const std::string& body, double time_limit_s = 600.0) {
+  DecoderRun start(const std::string& body, double time_limit_s = 600.0,
+                   DecoderKind kind = kBagDecoder) {
     const std::filesystem::path script = folder_.write("import", "#!/bin/sh\n" + body + "\n");
     std::filesystem::permissions(script, std::filesystem::perms::owner_all);
     ::setenv("GLIDAR_IMPORT_HELPER", script.c_str(), 1);
-    DecoderKind kind = kBagDecoder;
     kind.time_limit_s = time_limit_s;
     return start_decoder(kind, folder_.write("run.mcap", "bag"));
   }
@@ -89,6 +90,26 @@ TEST_F(DecoderProcess, AFloodOfTopicsEndsAtTheBudget) {
   const std::string topic =
       R"(\001\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\012\0\0\0\0\0\0\0\001\0\0\0\0\0\0\0\0\0)";
   EXPECT_THAT(error("while printf '" + topic + "' >&3; do :; done"), HasSubstr("topics"));
+}
+
+TEST_F(DecoderProcess, AFloodOfDatagramsEndsAtTheBudget) {
+  std::string datagrams;
+  constexpr int kBytes = 4000;
+  for (int i = 0; i < 500; ++i) {
+    std::string head(24, '\0');
+    head[0] = static_cast<char>(RecordKind::item);
+    head[16] = static_cast<char>(kBytes % 256);
+    head[17] = static_cast<char>(kBytes / 256);
+    datagrams += head + std::string(kBytes, 'x');
+  }
+  const std::string block = folder_.write("block", datagrams).string();
+  CapturedPackets packets(
+      start("while cat '" + block + "' >&3; do :; done", 600.0, kCaptureDecoder));
+  EXPECT_THAT(error_text([&] {
+                for (UdpPacket packet; packets.next(packet);) {
+                }
+              }),
+              HasSubstr("more datagrams than the capture has bytes"));
 }
 
 TEST_F(DecoderProcess, CrashesAndLimitsAreReported) {
