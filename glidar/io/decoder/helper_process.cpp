@@ -18,13 +18,15 @@ namespace glidar {
 namespace {
 
 /// The environment of the program: the search path of the dynamic loader and, if it is built with
-/// sanitizers, their options. It contains no secrets that a malicious file could read.
+/// sanitizers, their options. It contains no secrets that a malicious file could read. Assimp turns
+/// objects by sines of the C library, so glibc selects those for processors without FMA: a model is
+/// the same on every x86-64 processor.
 std::vector<std::string> helper_environment() {
   std::vector<const char*> names = {"LD_LIBRARY_PATH"};
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   names.insert(names.end(), {"ASAN_OPTIONS", "LSAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"});
 #endif
-  std::vector<std::string> all;
+  std::vector<std::string> all = {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4"};
   for (const char* name : names) {
     const char* value = std::getenv(name);
     if (value != nullptr) all.push_back(std::string(name) + "=" + value);

@@ -120,6 +120,11 @@ TEST_F(DecoderProcess, CrashesAndLimitsAreReported) {
   EXPECT_THAT(error(kTopics), HasSubstr("ended without an answer"));
 }
 
+TEST_F(DecoderProcess, UsesFunctionsOfTheCLibraryThatAreTheSameOnEveryProcessor) {
+  EXPECT_THAT(error(R"([ "$GLIBC_TUNABLES" = glibc.cpu.hwcaps=-FMA,-FMA4 ] && exit 2; exit 3)"),
+              HasSubstr("ended without an answer"));
+}
+
 TEST_F(DecoderProcess, EndsWithItsReader) {
   {
     const auto bag = bags::receive_bag(start(std::string(kTopics) + "\nexec sleep 3600"));
