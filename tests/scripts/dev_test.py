@@ -5,6 +5,7 @@
 programs that record how they were called, so that nothing of the machine changes."""
 
 import os
+import pty
 import shutil
 import subprocess
 import tempfile
@@ -77,6 +78,14 @@ class Dev(unittest.TestCase):
     def user(self, number):
         self.program("id", f"#!/bin/bash\n[[ $* == -u ]] && echo {number}\n")
 
+    def environment(self, path=""):
+        return {
+            "PATH": f"{self.folder / 'bin'}:{path}",
+            "HOME": str(self.folder / "home"),
+            "CALLS": str(self.folder / "calls"),
+            "STATES": str(self.folder / "states"),
+        }
+
     def dev(self, *arguments, path=""):
         """Runs ./dev, by default `format`, with `path` added to PATH; gives its exit status, its output, its errors and the calls it made, in order."""
         (self.folder / "scripts/packages.txt").write_text(self.packages, encoding="utf-8")
@@ -86,12 +95,7 @@ class Dev(unittest.TestCase):
         done = subprocess.run(
             [self.folder / "bin/bash", "dev", *(arguments or ["format"])],
             cwd=self.folder,
-            env={
-                "PATH": f"{self.folder / 'bin'}:{path}",
-                "HOME": str(self.folder / "home"),
-                "CALLS": str(calls),
-                "STATES": str(self.folder / "states"),
-            },
+            env=self.environment(path),
             capture_output=True,
             text=True,
             timeout=TIME_LIMIT_S,
@@ -204,6 +208,35 @@ class Dev(unittest.TestCase):
         self.assertIn(f"""{prefix}/bin is not in PATH; add it, also in ~/.profile:
   export PATH="{prefix}/bin:$PATH"
 """, output)
+
+    def test_a_terminal_shows_the_steps_of_a_build_until_it_ends(self):
+        self.install()  # once, so that the packages are known
+        self.program("ninja", "#!/bin/bash\nexec {pause}<> <(:)\necho '[3/4] Building'\n"
+                              "until [[ -e seen ]]; do read -r -t 0.1 -u $pause; done\nexit 0\n")
+        terminal, end = pty.openpty()
+        with os.fdopen(terminal, "rb", buffering=0) as screen:
+            with subprocess.Popen([self.folder / "bin/bash", "dev", "install"], cwd=self.folder, env=self.environment(),
+                                  stdin=subprocess.DEVNULL, stdout=end, stderr=end) as process:
+                os.close(end)
+                shown = b""
+                while b"building (release): 3/4 steps after " not in shown:
+                    shown += screen.read(1000)
+                (self.folder / "seen").touch()
+                try:
+                    while read := screen.read(1000):
+                        shown += read
+                except OSError:  # the other end is closed
+                    pass
+        self.assertEqual(process.returncode, 0, shown)
+        self.assertIn(b"\r\x1b[Kbuilt (release) in ", shown)
+
+    def test_a_build_that_fails_names_its_log(self):
+        self.program("ninja", "#!/bin/bash\necho '[3/4] Building'\nexit 1\n")
+        self.packages = "present build\n"
+        self.program("cmake", RECORD)
+        status, output, errors, _ = self.dev("install")
+        self.assertEqual((status, output), (1, ""))
+        self.assertEqual(errors, f"dev: build-release failed; all its output is in {self.folder}/build/log/build-release.log\n")
 
     def test_install_takes_a_folder_and_is_silent_where_path_has_it(self):
         prefix = self.folder / "my programs"
