@@ -5,7 +5,7 @@
 #include <glidar/render/common/triangle_blocks.hpp>
 
 // The filter in single precision: it rejects and accepts triangles where its error bounds allow,
-// and bounds their distances. docs/internals/ray-casting-bounds.md derives the bounds. u = 2^-24.
+// and bounds their distances. docs/internals/ray-casting.md derives the bounds. u = 2^-24.
 namespace glidar::rays::GLIDAR_KERNEL {
 
 template <class F>
