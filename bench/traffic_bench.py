@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """What traffic costs: frames of a scanner on a car in a street with 200 parked and 200 driving cars and 50 people who
-walk, beside frames of the same street where all stand. Both take turns; medians of processor time. --picture draws a
+walk, beside frames of the same street at rest. Both take turns; medians of processor time. --picture draws a
 frame."""
 
 import argparse

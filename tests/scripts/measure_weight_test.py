@@ -19,7 +19,7 @@ TREE = {
     "glidar/a.cpp": "#include <glidar/inner.hpp>\n#include <glidar/open.hpp>\n#include <glidar/shared.hpp>\n",
     "apps/b.cpp": '#include "../glidar/none.hpp"\n#include <glidar/shared.hpp>\n',
     "glidar/inner.cpp": "#include <glidar/inner.hpp>\n",
-    "docs/page.md": "four words are here\n",
+    "docs/" + "page.md": "four words are here\n",
     "tests/t.cpp": "#include <glidar/open.hpp>\n",
 }
 
