@@ -287,6 +287,35 @@ def test_objects_hide_from_sensors_by_name_or_number(model):
         wall.visible_to = "left"
 
 
+def test_the_only_sensor_of_a_scene_is_called_sensor(model, program, tmp_path):
+    models = (f"models:\n  - {{model: '{model}', hidden_from: [sensor]}}\n"
+              "  - {model: 'builtin:box', id: 9, pose: {position: [8, 0, 0]}}\n")  # fmt: skip
+    (tmp_path / "with.yaml").write_text(f"{models}sensor: VLP-16\nsensor_pose: {{position: [0, 0, 0.5]}}\n")
+    (tmp_path / "without.yaml").write_text(models)
+    for name, options in {"with": [], "without": ["--sensor", "VLP-16", "--sensor-pose", "0,0,0.5,1,0,0,0"]}.items():
+        program("render", tmp_path / f"{name}.yaml", *options, "--columns", "xyz,instance", "--drop-invalid", "-o", tmp_path / "a.npz")
+        assert set(np.unique(np.load(tmp_path / "a.npz")["instance"])) == {9}
+    scene = glidar.Scene(tmp_path / "with.yaml")
+    assert scene["wall"].hidden_from == ("sensor",)
+    assert set(np.unique(glidar.simulate(scene, columns="all").ground_truth.instance)) == {1, 2**32 - 1}
+    scene["wall"].hidden_from = []
+    scene["wall"].visible_to = ["sensor"]
+    assert scene["wall"].visible_to == ("sensor",)
+
+
+def test_unknown_sensors_are_errors_that_list_the_known_ones(model):
+    rig = glidar.Scene.from_dict({
+        "models": [{"model": "builtin:box"}],
+        "sensors": [{"name": "front", "sensor": "VLP-16"}, {"name": "rear", "sensor": "VLP-16"}]})  # fmt: skip
+    for scene, known in ((rig, "'front', 'rear'"), (glidar.Scene("builtin:box"), "'sensor', its only one")):
+        for arguments in ({"hidden_from": ["left"]}, {"visible_to": ["left"]}, {"parts": {"left": {"visible_to": ["left"]}}}):
+            with pytest.raises(glidar.Error, match=f"no sensor 'left'; allowed: {known}"):
+                scene.add_parts(model, **arguments)
+        assert len(scene) == 1
+    (wall,) = rig.add_parts(model, hidden_from=["rear"])
+    assert wall.hidden_from == ("rear",)
+
+
 def test_negative_scale_mirrors(model):
     scene = glidar.Scene()
     scene.add_parts(model, split="parts", scale=[1.0, -1.0, 1.0])
@@ -298,6 +327,18 @@ def test_negative_scale_mirrors(model):
     single = glidar.Scene()
     box = single.add_model("builtin:box", scale=-2)
     assert box.scale == -2.0
+
+
+def test_the_program_takes_negative_and_different_scales(model, program, tmp_path):
+    """--scale mirrors as `scale` of scene files does."""
+    pose = {"--eye": "-10,3,5", "--target": "5,0,0.5"}
+    arguments = [str(one) for pair in pose.items() for one in pair]
+    for scale in ("-2", "1,-1,1", "1,-2,0.5"):
+        numbers = [float(one) for one in scale.split(",")]
+        (tmp_path / "a.yaml").write_text(json.dumps({"models": [{"model": str(model), "scale": numbers * (3 // len(numbers))}]}))
+        program("render", tmp_path / "a.yaml", *arguments, "-o", tmp_path / "a.pcd")
+        program("render", model, "--scale", scale, *arguments, "-o", tmp_path / "b.pcd")
+        assert (tmp_path / "a.pcd").read_bytes() == (tmp_path / "b.pcd").read_bytes()
 
 
 def test_scenes_with_parts_are_copied_and_pickled(model):
