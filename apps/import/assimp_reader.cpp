@@ -254,8 +254,9 @@ std::vector<Copied> copy_meshes(const aiScene& scene, SourceModel& source) {
 /// The tree with the meshes of its nodes.
 class Tree {
  public:
-  Tree(const aiScene& scene, std::vector<Copied> copied, SourceModel& source)
-      : scene_(scene), copied_(std::move(copied)), source_(source) {}
+  Tree(const aiScene& scene, std::vector<Copied> copied,
+       const std::map<std::string, std::string>& names, SourceModel& source)
+      : scene_(scene), copied_(std::move(copied)), names_(names), source_(source) {}
 
   /// Nodes depth first, parents first.
   void place() {
@@ -288,12 +289,16 @@ class Tree {
 
  private:
   /// Empty: it is no part. The root has the name of the file or of its format, and Assimp adds
-  /// nodes for the steps of a transform of FBX.
+  /// nodes for the steps of a transform of FBX, and names in COLLADA.
   std::string part_name(const aiNode& node) const {
-    const std::string name = node.mName.C_Str();
+    std::string name = node.mName.C_Str();
     if (&node == scene_.mRootNode || name.find("$AssimpFbx$") != std::string::npos) return "";
-    return name.empty() && node.mNumMeshes > 0 ? fmt::format("node_{}", source_.nodes.size())
-                                               : name;
+    if (const auto known = names_.find(name); known != names_.end()) return known->second;
+    if (name.starts_with("$ColladaAutoName$")) name.clear();
+    if (!name.empty() || node.mNumMeshes == 0) return name;
+    const unsigned first = node.mMeshes[0];
+    if (first < scene_.mNumMeshes) name = scene_.mMeshes[first]->mName.C_Str();
+    return name.empty() ? fmt::format("node_{}", source_.nodes.size()) : name;
   }
 
   void place_meshes(const aiNode& node, const Eigen::Matrix4d& model_from_node,
@@ -318,6 +323,7 @@ class Tree {
 
   const aiScene& scene_;
   std::vector<Copied> copied_;  ///< of each mesh
+  const std::map<std::string, std::string>& names_;
   SourceModel& source_;
   std::uint64_t skinned_ = 0;
 };
@@ -361,7 +367,7 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
                              const std::function<void(double)>& progress) {
   const auto own = files.content(model.string());
   SourceModel source;
-  mend_model(model, files, source.notes);
+  const std::map<std::string, std::string> names = mend_model(model, files, source.notes);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
@@ -374,7 +380,7 @@ SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFold
   source.format = importer_name(importer);
   source.is_single_precision = true;
   source.declared = extract_declared_frame(scene, source.format, *own, source.notes);
-  Tree(scene, copy_meshes(scene, source), source).place();
+  Tree(scene, copy_meshes(scene, source), names, source).place();
   copy_materials(scene, source);
   return source;
 }

@@ -47,11 +47,25 @@ std::string as_utf8(const pugi::xml_document& document) {
   return std::move(text).str();
 }
 
-std::string mended_collada(std::string_view text, Notes& notes) {
+using NodeNames = std::map<std::string, std::string>;
+
+void add_names(const pugi::xml_node& root, std::string_view element, const std::string& prefix,
+               NodeNames& names) {
+  root.find_node([&](const pugi::xml_node& node) {
+    if (node.name() != element) return false;
+    const std::string id = node.attribute(node.attribute("id") ? "id" : "sid").value();
+    const std::string name = node.attribute("name").value();
+    if (!id.empty() && !name.empty()) names.try_emplace(prefix + id, name);
+    return false;  // visits all
+  });
+}
+
+std::string mended_collada(std::string_view text, Notes& notes, NodeNames& names) {
   // Assimp does not skip white space before the first number of some lists.
   pugi::xml_document document =
       parsed_xml(text, "its XML", pugi::parse_default | pugi::parse_trim_pcdata);
   mend_collada(document, notes);
+  add_names(document, "node", "", names);
   return as_utf8(document);
 }
 
@@ -145,7 +159,7 @@ void add_pictures(const pugi::xml_node& model, std::set<std::string>& pictures) 
 }
 
 std::string mended_3mf(const ZipArchive& archive, const std::vector<std::string>& names,
-                       Notes& notes) {
+                       Notes& notes, NodeNames& node_names) {
   std::map<std::string, std::string> kept;
   std::set<std::string> pictures;
   for (const std::string& name : names) {
@@ -156,6 +170,7 @@ std::string mended_3mf(const ZipArchive& archive, const std::vector<std::string>
       check_extensions(document.document_element(), notes);
       check_paths(document.document_element());
       add_pictures(document.document_element(), pictures);
+      add_names(document, "object", "Object_", node_names);
       if (is_utf16(content)) content = as_utf8(document);
     }
     kept.emplace(name, std::move(content));
@@ -167,34 +182,37 @@ std::string mended_3mf(const ZipArchive& archive, const std::vector<std::string>
 }
 
 /// Nothing for an archive of another kind.
-std::optional<std::string> mended_archive(std::string_view file, Notes& notes) {
+std::optional<std::string> mended_archive(std::string_view file, Notes& notes,
+                                          NodeNames& node_names) {
   const ZipArchive archive(file);
   const std::vector<std::string> names = archive.names();
   const bool is_3mf = std::any_of(names.begin(), names.end(),
                                   [](const std::string& name) { return name.ends_with(".model"); });
-  if (is_3mf) return mended_3mf(archive, names, notes);
+  if (is_3mf) return mended_3mf(archive, names, notes, node_names);
   const auto collada = document_of_zae(archive, names);
   if (!collada) return std::nullopt;
   std::map<std::string, std::string> files = unpacked(archive, names);
-  files[*collada] = mended_collada(files[*collada], notes);
+  files[*collada] = mended_collada(files[*collada], notes, node_names);
   return make_zip(files);
 }
 
 }  // namespace
 
-void mend_model(const std::filesystem::path& model, ModelFiles& files, Notes& notes) {
+NodeNames mend_model(const std::filesystem::path& model, ModelFiles& files, Notes& notes) {
+  NodeNames names;
   const auto file = files.content(model.string());
-  if (file == nullptr) return;
+  if (file == nullptr) return names;
   const std::string extension = lower_case(model.extension().string());
   const std::string_view head = file->head(kHead);
   if (head.starts_with("PK\x03\x04")) {
-    auto archive = mended_archive(file->whole(), notes);
+    auto archive = mended_archive(file->whole(), notes, names);
     if (archive) files.replace(model.string(), std::move(*archive));
   } else if (is_collada(extension, head)) {
-    files.replace(model.string(), mended_collada(file->whole(), notes));
+    files.replace(model.string(), mended_collada(file->whole(), notes, names));
   } else if (is_utf16(head)) {
     files.replace(model.string(), as_utf8(parsed_xml(file->whole(), "its XML")));
   }
+  return names;
 }
 
 }  // namespace glidar::import

@@ -6,8 +6,8 @@
 #include <import/source_model.hpp>
 
 #include <filesystem>
+#include <map>
 #include <string>
-#include <vector>
 
 namespace glidar::import {
 
@@ -18,6 +18,9 @@ namespace glidar::import {
 ///  - XML in UTF-16.
 /// Notes what is left out. Throws Refusal for what Assimp would silently omit: 3MF with
 /// extensions that it requires, or with parts in files of their own.
-void mend_model(const std::filesystem::path& model, ModelFiles& files, Notes& notes);
+/// Returns the names that nodes of COLLADA and objects of 3MF have in the file, by those that
+/// Assimp makes of their ids.
+std::map<std::string, std::string> mend_model(const std::filesystem::path& model, ModelFiles& files,
+                                              Notes& notes);
 
 }  // namespace glidar::import

@@ -55,32 +55,39 @@ std::string_view FileContent::head(std::size_t end) {
 
 const std::string& FileContent::hash() {
   if (!hash_.empty()) return hash_;
-  ContentHash hash;
-  hash.add(bytes_.data(), bytes_.size());
+  hash_to(bytes_.size());
   // Not beyond the size that importers saw, although the file may have grown.
   std::size_t left = is_at_end_ ? 0 : size_ - bytes_.size();
   std::string piece(std::min(left, kFirstPiece), '\0');
   while (left > 0) {
     const std::size_t got = read_some(piece.data(), std::min(left, piece.size()));
-    hash.add(piece.data(), got);
+    running_hash_.add(piece.data(), got);
     left = is_at_end_ ? 0 : left - got;
   }
   is_at_end_ = true;
-  hash_ = hex(hash.value());
+  hash_ = hex(running_hash_.value());
   return hash_;
+}
+
+void FileContent::hash_to(std::size_t end) {
+  if (end <= hashed_) return;
+  running_hash_.add(bytes_.data() + hashed_, end - hashed_);
+  hashed_ = end;
 }
 
 void FileContent::forget(const char* end) {
   const char* const begin = bytes_.data();
   if (std::less<>()(end, begin) || std::less<>()(begin + bytes_.size(), end)) return;
-  hash();
   // Whole pages, as the system frees them; the buffer begins anywhere.
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  const std::size_t unaligned = page - reinterpret_cast<std::uintptr_t>(begin) % page;
+  if (forgotten_ == 0) forgotten_ = page - reinterpret_cast<std::uintptr_t>(begin) % page;
   const auto read = static_cast<std::size_t>(end - begin);
   next_forgotten_ = end + kFirstPiece;
-  if (read < unaligned + kFirstPiece) return;
-  ::madvise(bytes_.data() + unaligned, (read - unaligned) / page * page, MADV_DONTNEED);
+  if (read < forgotten_ + kFirstPiece) return;
+  hash_to(read);
+  const std::size_t size = (read - forgotten_) / page * page;
+  ::madvise(bytes_.data() + forgotten_, size, MADV_DONTNEED);
+  forgotten_ += size;
 }
 
 ModelFiles::ModelFiles(const ModelFolder& folder) {

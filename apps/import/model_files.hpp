@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/model/model_folder.hpp>
 
@@ -37,21 +38,25 @@ class FileContent {
   /// Hexadecimal hash of the whole file. Bytes that were not read before are hashed but not kept,
   /// and cannot be read afterwards.
   const std::string& hash();
-  /// Frees the memory of the bytes before `end`, of the whole file, in large pieces; they are 0
-  /// afterwards. Nothing if `end` is in another text.
+  /// Frees the memory of the bytes before `end`, of those that were read, in large pieces; they are
+  /// 0 afterwards. Nothing if `end` is in another text.
   void forget_before(const char* end) {
     if (!std::less<>()(end, next_forgotten_)) forget(end);
   }
 
  private:
   std::size_t read_some(char* to, std::size_t size);
+  void hash_to(std::size_t end);
   void forget(const char* end);
 
   UniqueFd file_;
   std::size_t size_;
   std::string bytes_;
+  ContentHash running_hash_;
+  std::size_t hashed_ = 0;                ///< so many bytes are in it
   std::string hash_;                      ///< empty until it is known
   const char* next_forgotten_ = nullptr;  ///< end of the next piece
+  std::size_t forgotten_ = 0;             ///< end of the pages that were freed
   bool is_at_end_ = false;
 };
 

@@ -46,14 +46,12 @@ constexpr std::array<std::string_view, 17> kFreeForm = {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view text, FileContent& file, SourceModel& source)
-      : text_(text, true, true), file_(file), source_(source) {}
+  ObjReader(TextCursor text, SourceModel& source) : text_(text), source_(source) {}
 
   void read() {
     while (text_.find_word()) {
       read_statement(text_.word());
       text_.next_line();
-      file_.forget_before(text_.at());
     }
     check_indices();
     scale_colours(lists_.colours);
@@ -391,7 +389,6 @@ class ObjReader {
   }
 
   TextCursor text_;
-  FileContent& file_;
   SourceModel& source_;
   std::uint64_t line_ = 0;
   FileLists lists_;
@@ -445,7 +442,7 @@ SourceModel read_obj(const ReaderInput& input) {
   SourceModel source;
   source.format = "Wavefront Object";
   std::string storage;
-  ObjReader reader(utf8_text(input.bytes(), storage), input.content(), source);
+  ObjReader reader(input.text(storage, true), source);
   reader.read();
   free_memory(storage);
   input.release();

@@ -16,6 +16,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 namespace glidar::import {
 namespace {
@@ -56,8 +57,8 @@ struct OffCounts {
 
 class OffText {
  public:
-  OffText(OffKind kind, TextCursor text, FileContent& file, SourceModel& source, FileLists& lists)
-      : kind_(kind), text_(text), file_(file), source_(source), lists_(lists) {}
+  OffText(OffKind kind, TextCursor text, SourceModel& source, FileLists& lists)
+      : kind_(kind), text_(text), source_(source), lists_(lists) {}
 
   void read() {
     const OffCounts counts = read_counts();
@@ -96,7 +97,6 @@ class OffText {
 
   /// The numbers of the next line that has some.
   void read_line(const char* what, std::uint64_t number) {
-    file_.forget_before(text_.at());
     if (!text_.find_word()) {
       refuse_line(text_.line(), fmt::format("the file ends before {} {}", what, number));
     }
@@ -141,7 +141,26 @@ class OffText {
     }
   }
 
+  /// A triangle or polygon with nothing after its corners, which most lines state. False for
+  /// others, of which nothing is read.
+  bool read_plain_face() {
+    TextCursor ahead = text_;
+    const std::uint32_t count = ahead.digits().value_or(0);
+    if (count < 3) return false;
+    corners_.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::optional<std::uint32_t> index = ahead.digits();
+      if (!index || *index >= lists_.positions.size()) return false;
+      corners_.push_back(*index);
+    }
+    if (!ahead.is_line_read()) return false;
+    text_ = ahead;
+    lists_.faces.add(corners_);
+    return true;
+  }
+
   void read_face(std::uint64_t number) {
+    if (text_.find_word() && read_plain_face()) return;
     read_line("face", number);
     const double count = numbers_[0];
     if (!(count >= 0.0) || count != std::floor(count) ||
@@ -186,7 +205,6 @@ class OffText {
 
   OffKind kind_;
   TextCursor text_;
-  FileContent& file_;
   SourceModel& source_;
   FileLists& lists_;
   std::vector<double> numbers_;  ///< of the current line
@@ -306,8 +324,7 @@ SourceModel read_off(const ReaderInput& input) {
   source.format = "Object File Format (OFF)";
   source.materials.emplace_back();
   std::string storage;
-  const std::string_view file = utf8_text(input.bytes(), storage);
-  TextCursor text(file, false, true);
+  TextCursor text = input.text(storage, false);
   FileLists lists;
   if (!text.find_word()) refuse_line(1, "the file is empty");
   TextCursor ahead = text;
@@ -320,12 +337,14 @@ SourceModel read_off(const ReaderInput& input) {
   }
   // The word may be missing.
   if (kind.is_header) text = ahead;
-  if (kind.is_header && ahead.word() == "BINARY") {
+  if (kind.is_header && storage.empty() && ahead.word() == "BINARY") {
     ahead.next_line();
-    OffBinary(file, static_cast<std::size_t>(ahead.at() - file.data()), kind, source, lists).read();
+    const char* const begin = ahead.at();
+    const std::string_view file = input.bytes();
+    OffBinary(file, static_cast<std::size_t>(begin - file.data()), kind, source, lists).read();
     source.is_single_precision = true;
   } else {
-    OffText(kind, text, input.content(), source, lists).read();
+    OffText(kind, text, source, lists).read();
   }
   input.release();
   finish_colours(source, lists);

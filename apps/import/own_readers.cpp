@@ -42,6 +42,14 @@ std::string_view ReaderInput::bytes() const {
   return content().whole();
 }
 
+TextCursor ReaderInput::text(std::string& storage, bool continues) const {
+  constexpr std::size_t kMarked = 4;  // bytes of a byte order mark and a character
+  const std::string_view head = content().head(kMarked);
+  const std::string_view text = utf8_text(head, storage);
+  if (!storage.empty()) return {utf8_text(bytes(), storage), continues, true};
+  return {content(), head.size() - text.size(), continues, true};
+}
+
 std::shared_ptr<FileContent> ReaderInput::companion(const std::string& name) const {
   std::string forward = name;
   std::replace(forward.begin(), forward.end(), '\\', '/');

@@ -4,6 +4,7 @@
 
 #include <import/model_files.hpp>
 #include <import/source_model.hpp>
+#include <import/text_cursor.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +24,9 @@ struct ReaderInput {
 
   /// The bytes of the model itself.
   [[nodiscard]] std::string_view bytes() const;
+  /// The words of the model. UTF-16 is converted in `storage`, which must outlive the cursor; other
+  /// texts are read as the cursor goes on.
+  [[nodiscard]] TextCursor text(std::string& storage, bool continues) const;
   /// The file itself, whose read bytes can be forgotten.
   [[nodiscard]] FileContent& content() const { return *files.content(model.string()); }
   /// Frees it.

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/text_cursor.hpp>
 
+#include <import/model_files.hpp>
+
 #include <glidar/core/text.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <array>
 #include <charconv>
 #include <system_error>
+#include <utility>
 
 namespace glidar::import {
 namespace {
+
+constexpr std::size_t kPiece_bytes = (std::size_t{1} << 20U) + 1;  // of a file
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f';
@@ -138,6 +143,46 @@ std::string shown(std::string_view word) {
   return word.size() > kLongest ? text + "..." : text;
 }
 
+TextCursor::TextCursor(FileContent& file, std::size_t begin, bool continues, bool comments)
+    : TextCursor({}, continues, comments) {
+  file_ = &file;
+  at_ = end_ = file.head(kPiece_bytes).substr(begin).data();
+  read_on();
+}
+
+std::size_t TextCursor::left() const {
+  const char* const end = file_ == nullptr ? end_ : file_->head(0).data() + file_->size();
+  return static_cast<std::size_t>(end - at_);
+}
+
+/// Whether the line end belongs to a line that a backslash continues.
+bool TextCursor::is_continued(const char* line_end) const {
+  if (!continues_) return false;
+  while (line_end != at_ && (is_blank(line_end[-1]) || line_end[-1] == '\r')) --line_end;
+  return line_end != at_ && line_end[-1] == '\\';
+}
+
+/// Reads more whole lines of the file. False at its end.
+bool TextCursor::read_on() {
+  if (file_ == nullptr) return false;
+  file_->forget_before(at_);
+  const char* const begin = file_->head(0).data();
+  const auto read = static_cast<std::size_t>(end_ - begin);
+  for (std::size_t more = kPiece_bytes;; more *= 2) {
+    const std::string_view text = file_->head(read + more);
+    const char* last = text.data() + text.size();
+    if (text.size() < read + more) {
+      file_ = nullptr;
+      return last != std::exchange(end_, last);
+    }
+    while (last != end_ && (last[-1] != '\n' || is_continued(last - 1))) --last;
+    if (last != end_) {
+      end_ = last;
+      return true;
+    }
+  }
+}
+
 const char* TextCursor::after_line_end(const char* at) const {
   return at + (*at == '\r' && at + 1 != end_ && at[1] == '\n' ? 2 : 1);
 }
@@ -183,6 +228,26 @@ std::string_view TextCursor::word() {
   return {from, static_cast<std::size_t>(at_ - from)};
 }
 
+std::optional<std::uint32_t> TextCursor::digits() {
+  constexpr std::ptrdiff_t kMostDigits = 9;
+  const char* at = at_;
+  while (at != end_ && is_blank(*at)) ++at;
+  const char* const from = at;
+  std::uint32_t value = 0;
+  for (; at != end_ && at - from < kMostDigits && *at >= '0' && *at <= '9'; ++at) {
+    value = 10 * value + static_cast<std::uint32_t>(*at - '0');
+  }
+  if (at == from || (at != end_ && !is_blank(*at) && !is_line_end(*at))) return std::nullopt;
+  at_ = at;
+  return value;
+}
+
+bool TextCursor::is_line_read() const {
+  const char* at = at_;
+  while (at != end_ && is_blank(*at)) ++at;
+  return at == end_ || is_line_end(*at);
+}
+
 std::string_view TextCursor::rest() {
   const char* const from = at_;
   while (at_ != end_ && !is_line_end(*at_)) ++at_;
@@ -202,9 +267,13 @@ bool TextCursor::next_line() {
 bool TextCursor::find_word() {
   for (;;) {
     skip_blanks();
-    if (at_ == end_) return false;
-    if (!is_line_end(*at_)) return true;
-    next_line();
+    if (at_ == end_) {
+      if (!read_on()) return false;
+    } else if (is_line_end(*at_)) {
+      next_line();
+    } else {
+      return true;
+    }
   }
 }
 

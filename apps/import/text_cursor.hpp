@@ -10,6 +10,8 @@
 
 namespace glidar::import {
 
+class FileContent;
+
 /// The text without a byte order mark. UTF-16 is converted to UTF-8 in `storage`, which must
 /// outlive the result.
 std::string_view utf8_text(std::string_view bytes, std::string& storage);
@@ -27,6 +29,10 @@ std::string shown(std::string_view word);
 /// Reads words of lines. Lines end with LF, CR or CR LF.
 class TextCursor {
  public:
+  /// Of a file, from its byte `begin`; it is read as the cursor goes on, and what is behind the
+  /// cursor is forgotten. Copies must not be behind the one that goes on.
+  TextCursor(FileContent& file, std::size_t begin, bool continues, bool comments);
+
   /// `continues`: a backslash before the end of a line continues it. `comments`: a '#' begins a
   /// comment, also within a word.
   TextCursor(std::string_view text, bool continues, bool comments)
@@ -37,6 +43,10 @@ class TextCursor {
 
   /// The next word of this line; empty at its end.
   std::string_view word();
+  /// The next word of this line if it has 1 to 9 digits only. Nothing is read if it does not.
+  std::optional<std::uint32_t> digits();
+  /// Whether only blanks follow in this line.
+  [[nodiscard]] bool is_line_read() const;
   /// The rest of this line without blanks at its ends, with its comment.
   std::string_view rest();
   /// Goes to the next line, past what is left of this one. False at the end of the text.
@@ -49,17 +59,20 @@ class TextCursor {
 
   [[nodiscard]] std::uint64_t line() const { return line_; }  ///< from 1
   [[nodiscard]] const char* at() const { return at_; }
-  [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+  [[nodiscard]] std::size_t left() const;  ///< bytes of the text, at most
 
  private:
+  bool read_on();
+  [[nodiscard]] bool is_continued(const char* line_end) const;
   void skip_blanks();
   [[nodiscard]] const char* after_line_end(const char* at) const;
   [[nodiscard]] const char* continuation(const char* at) const;
 
   const char* at_;
-  const char* end_;
+  const char* end_;  ///< the start of a line, if the file is not yet read
   bool continues_;
   bool comments_;
+  FileContent* file_ = nullptr;  ///< of which more lines may be read; null: all is read
   std::uint64_t line_ = 1;
 };
 

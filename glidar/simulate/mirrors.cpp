@@ -6,9 +6,14 @@
 
 namespace glidar {
 
-bool has_mirrors(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& material) { return material.mirror > 0.0F; });
+bool has_mirrors(const Scene& scene, std::span<const std::uint8_t> instance_enabled) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (!instance_enabled.empty() && instance_enabled[i] == 0) continue;
+    const std::vector<std::uint32_t>& materials = scene.instances[i].materials;
+    const auto reflects = [&](std::uint32_t m) { return scene.materials[m].mirror > 0.0F; };
+    if (std::any_of(materials.begin(), materials.end(), reflects)) return true;
+  }
+  return false;
 }
 
 const Material& material_hit(const Scene& scene, const Hits& hits, std::size_t beam) {

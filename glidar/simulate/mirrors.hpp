@@ -6,10 +6,13 @@
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
 
+#include <cstdint>
+#include <span>
+
 namespace glidar {
 
-/// True if a material of the scene reflects beams.
-bool has_mirrors(const Scene& scene);
+/// True if a material of an instance reflects beams. Instances as in CastRequest::instance_enabled.
+bool has_mirrors(const Scene& scene, std::span<const std::uint8_t> instance_enabled = {});
 
 /// The material of the surface that a beam hit.
 const Material& material_hit(const Scene& scene, const Hits& hits, std::size_t beam);

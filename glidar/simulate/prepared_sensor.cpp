@@ -24,12 +24,12 @@ std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
                          sensor.receiver.pulse_fwhm_s);
 }
 
-PulseModel pulse_model(const Sensor& sensor, const Scene& scene) {
+PulseModel pulse_model(const Sensor& sensor, bool has_mirrors) {
   PulseModel model;
   model.sub_rays = sensor.footprint ? sample_footprint(*sensor.footprint) : std::vector<SubRay>(1);
   model.weather = weather_of(sensor);
   model.lidar_equation = model.weather ? model.weather->light : *sensor.lidar_equation;
-  model.has_mirrors = has_mirrors(scene);
+  model.has_mirrors = has_mirrors;
   return model;
 }
 
@@ -65,7 +65,7 @@ std::vector<NoiseStep> noise_steps(const Sensor& sensor) {
 
 }  // namespace
 
-bool needs_waveform(const Sensor& sensor, const Scene& scene) {
+bool needs_waveform(const Sensor& sensor, bool has_mirrors) {
   if (sensor.weather) return true;
   if (!sensor.lidar_equation) return false;
   const Receiver& receiver = sensor.receiver;
@@ -73,10 +73,10 @@ bool needs_waveform(const Sensor& sensor, const Scene& scene) {
   const bool reports_strongest =
       receiver.returns.size() == 1 && first.order == Return::Order::strongest && first.rank == 0;
   return sensor.footprint || !reports_strongest || receiver.timing != Receiver::Timing::centroid ||
-         has_mirrors(scene);
+         has_mirrors;
 }
 
-PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
+PreparedSensor prepare_sensor(const Sensor& sensor, bool has_mirrors) {
   check_channel_ranges(sensor);
   check_doppler(sensor);
   if (physical_camera(sensor) != nullptr) check_depth_camera(sensor);
@@ -85,7 +85,7 @@ PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene) {
                           .required_hit_columns = required_hit_columns(sensor),
                           .pulse_model = {},
                           .depth_camera = {}};
-  if (needs_waveform(sensor, scene)) prepared.pulse_model = pulse_model(sensor, scene);
+  if (needs_waveform(sensor, has_mirrors)) prepared.pulse_model = pulse_model(sensor, has_mirrors);
   if (const DepthCamera* depth_camera = physical_camera(sensor)) {
     std::visit([&](const auto& camera) { prepared.depth_camera.emplace(prepare(camera, sensor)); },
                *depth_camera);

@@ -49,14 +49,14 @@ PreparedActiveStereo prepare_active_stereo(const ActiveStereo& camera, const Sen
 /// True when a beam of this sensor is more than one ray with one return: it has a footprint,
 /// reports several returns or another than the strongest, has range walk, or meets mirrors or
 /// weather.
-bool needs_waveform(const Sensor& sensor, const Scene& scene);
+bool needs_waveform(const Sensor& sensor, bool has_mirrors);
 
 /// The footprint and attenuation of a sensor's pulses.
 struct PulseModel {
   std::vector<SubRay> sub_rays;            ///< of each beam; without a footprint a single one
   std::optional<PreparedWeather> weather;  ///< empty: clear air
   LidarEquation lidar_equation;            ///< with the weather's extinction
-  bool has_mirrors = false;                ///< whether the scene has mirrors
+  bool has_mirrors = false;                ///< whether the sensor may see mirrors
 };
 
 /// A depth camera that is simulated from its raw images.
@@ -74,6 +74,6 @@ struct PreparedSensor {
 
 /// Throws Error when the sensor's weather, radial velocities or depth camera need what the sensor
 /// lacks, see check_weather(), check_doppler() and check_depth_camera(). Refers to the sensor.
-PreparedSensor prepare_sensor(const Sensor& sensor, const Scene& scene);
+PreparedSensor prepare_sensor(const Sensor& sensor, bool has_mirrors);
 
 }  // namespace glidar

@@ -3,11 +3,13 @@
 #include <glidar/simulate/simulator.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/object_boxes.hpp>
 #include <glidar/simulate/simulate.hpp>
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,7 +21,9 @@ struct Simulator::State {
   std::shared_ptr<const BeamCache> beam_cache;
   Renderer& renderer;
   PreparedSensor prepared;
-  bool restricts_visibility = false;            ///< some instance is not seen by all sensors
+  bool restricts_visibility = false;  ///< some instance is not seen by all sensors
+  /// For frames whose sensor sees no mirror of the scene; empty: `prepared` is.
+  std::optional<PreparedSensor> prepared_without_mirrors = {};
   std::unique_ptr<Renderer> own_renderer = {};  ///< empty: shared
   ReturnReplacement replace_returns = {};
   std::deque<Workspace> workspaces = {};  ///< of frames that are simulated together
@@ -46,11 +50,17 @@ bool has_hidden_instances(const Scene& scene) {
 
 Simulator::Simulator(const Scene& scene, const std::shared_ptr<const BeamCache>& beam_cache,
                      Renderer& renderer)
-    : state_(std::make_unique<State>(State{.scene = scene,
-                                           .beam_cache = beam_cache,
-                                           .renderer = renderer,
-                                           .prepared = prepare_sensor(beam_cache->sensor(), scene),
-                                           .restricts_visibility = has_hidden_instances(scene)})) {}
+    : state_(std::make_unique<State>(
+          State{.scene = scene,
+                .beam_cache = beam_cache,
+                .renderer = renderer,
+                .prepared = prepare_sensor(beam_cache->sensor(), has_mirrors(scene)),
+                .restricts_visibility = has_hidden_instances(scene)})) {
+  const std::optional<PulseModel>& pulses = state_->prepared.pulse_model;
+  if (state_->restricts_visibility && pulses && pulses->has_mirrors) {
+    state_->prepared_without_mirrors.emplace(prepare_sensor(beam_cache->sensor(), false));
+  }
+}
 
 Simulator::Simulator(const Scene& scene, Sensor sensor, Renderer& renderer)
     : Simulator(scene, std::make_shared<const BeamCache>(std::move(sensor)), renderer) {}
@@ -119,8 +129,9 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
     visible.push_back(
         static_cast<std::uint8_t>(is_visible(state.scene.instances[i], frame.sensor_id)));
   }
+  const bool lacks_mirrors = state.prepared_without_mirrors && !has_mirrors(state.scene, visible);
   return {.scene = state.scene,
-          .prepared = state.prepared,
+          .prepared = lacks_mirrors ? *state.prepared_without_mirrors : state.prepared,
           .renderer = state.renderer,
           .beams = beams,
           .motion = motion,

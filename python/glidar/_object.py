@@ -110,9 +110,10 @@ class SceneObject:
 
     @property
     def visible_to(self) -> tuple[str | int, ...]:
-        """The only sensors that see it: names of sensors of ``scene.rig``, or else sensor_ids; empty: all see it.
+        """The only sensors that see it: names of sensors of ``scene.rig``, "sensor" without a rig, or sensor_ids; empty:
+        all see it.
 
-        A measurement has its sensor_id, by default 0."""
+        A measurement has its sensor_id, by default 0, which is "sensor"."""
         return self._sensors("visible_to")
 
     @visible_to.setter
@@ -128,14 +129,18 @@ class SceneObject:
     def hidden_from(self, sensors: Iterable[str | int]) -> None:
         self._set(hidden_from=self._sensor_ids(sensors, "hidden_from"))
 
+    def _rig_ids(self) -> dict[str, int]:
+        """The sensor_ids of the rig by name; of the only sensor without one."""
+        return {name: number for number, (name, *_) in enumerate(self._scene._core.rig()) if name} or {"sensor": 0}
+
     def _sensors(self, key: str) -> tuple[str | int, ...]:
-        names = {number: name for number, (name, *_) in enumerate(self._scene._core.rig()) if name}
+        names = {number: name for name, number in self._rig_ids().items()}
         return tuple(names.get(number, number) for number in self._info()[key])
 
     def _sensor_ids(self, sensors: Iterable[str | int], where: str) -> list[int]:
         if isinstance(sensors, (str, bytes)) or not isinstance(sensors, Iterable):
             raise Error(where, shown(sensors), "a list of names or sensor_ids")
-        ids = {name: number for number, (name, *_) in enumerate(self._scene._core.rig()) if name}
+        ids = self._rig_ids()
         return [
             ids[one_of(sensor, where, tuple(ids))] if isinstance(sensor, str) else whole(sensor, where, 2**32 - 1)
             for sensor in sensors

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import glidar
+from glidar.nuscenes import NuscenesWriter
 
 # Three squares of 1 m side by side at x = 5, facing the sensor: two of steel, one of glass.
 MODEL = """mtllib a.mtl
@@ -39,11 +40,11 @@ def measured(scene, **options):
     return glidar.simulate(scene, sensor, pose=glidar.pose([0.0, 0.0, 0.5]), columns="all", **options)
 
 
-def expected_labels(frame):
-    """Part of each point that was hit, by its place: ids 1, 2 and 3 from left to right."""
+def expected_labels(frame, split="parts"):
+    """Label of each point that was hit, by its place: ids from 1 from left to right."""
     y = frame.cloud(["true_xyz"])["true_xyz"][..., 1]
     hit = np.isfinite(y)
-    return np.where(y < -0.5, 1, np.where(y < 0.5, 2, 3))[hit], hit
+    return labels_at(y, split)[hit], hit
 
 
 def test_parts_are_listed(model):
@@ -103,11 +104,22 @@ def test_split_labels_points_by_part_and_by_material(model):
     np.testing.assert_array_equal(measured(scene).cloud(["class"])["class"][hit], np.where(expected == 3, 2, 1))
 
 
+@pytest.fixture(scope="module", params=["parts", "materials"])
+def split(request):
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def split_frame(model):
+def split_frame(model, split):
     scene = glidar.Scene()
-    scene.add_parts(model, split="parts")
+    scene.add_parts(model, split=split)
     return measured(scene)
+
+
+def labels_at(y, split):
+    """The label of each point at x = 5, by its place."""
+    part = np.where(y < -0.5, 1, np.where(y < 0.5, 2, 3))
+    return part if split == "parts" else np.where(part == 3, 2, 1)
 
 
 def labels_of_text(path, separator=" ", header="", rows="data"):
@@ -141,6 +153,12 @@ def labels_of_image(path):
     return pixels[pixels != 0]
 
 
+def labels_of_exr(path):
+    (part,) = pytest.importorskip("OpenEXR").File(str(path), separate_channels=True).parts
+    labels = part.channels["instance"].pixels.ravel()
+    return labels[labels != 2**32 - 1]
+
+
 def labels_of_bag(path):
     rosbags = pytest.importorskip("rosbags.highlevel")
     with rosbags.AnyReader([path]) as bag:
@@ -164,6 +182,8 @@ FORMATS = {
     "a.kitti": ({}, lambda path: labels_of_kitti(path / "labels" / "000000.label")),
     "a.las": ({}, labels_of_las),
     "a.instance.png": ({}, labels_of_image),
+    "a.class.png": ({}, labels_of_image),
+    "a.exr": ({"columns": ["xyz", "instance"]}, labels_of_exr),
     "a.mcap": ({"columns": ["xyz", "instance"]}, labels_of_bag),
     "a.bag": ({"columns": ["xyz", "instance"]}, labels_of_bag),
     "a.rosbag2": ({"columns": ["xyz", "instance"]}, labels_of_bag),
@@ -171,11 +191,52 @@ FORMATS = {
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_labels_by_part_are_in_every_format(split_frame, tmp_path, name):
-    expected, _ = expected_labels(split_frame)
+def test_labels_by_part_and_by_material_are_in_every_format(split_frame, split, tmp_path, program, name):
+    if name.endswith(".exr") and "OpenEXR" not in program("--version"):
+        pytest.skip("this build has no OpenEXR; install libopenexr-dev and build again")
+    expected, _ = expected_labels(split_frame, split)
     options, read = FORMATS[name]
     split_frame.save(tmp_path / name, **options)
     np.testing.assert_array_equal(np.bincount(read(tmp_path / name)), np.bincount(expected))
+
+
+@pytest.fixture(scope="module")
+def split_scene(model, split, tmp_path_factory):
+    """A scene file with a LiDAR whose beams meet the wall at x = 5."""
+    path = tmp_path_factory.mktemp("scene") / "scene.yaml"
+    path.write_text(f"models: [{{model: '{model}', split: {split}}}]\n"
+                    "sensors: [{name: lidar, sensor: VLP-16}]\nrig_pose: {position: [0, 0, 0.5]}\n")  # fmt: skip
+    return path
+
+
+def test_labels_by_part_and_by_material_are_in_osi_traces(split_scene, split, program, tmp_path):
+    trace_reader = pytest.importorskip("osi3trace.osi_trace")
+    program("render", split_scene, "--duration", 0.1, "-o", tmp_path / "a.osi")
+    trace = trace_reader.OSITrace(str(tmp_path / "a.osi"), "SensorData")
+    (message,) = list(trace)
+    trace.close()
+    detections = message.feature_data.lidar_sensor[0].detection
+    y = 5.0 * np.tan([one.position.azimuth for one in detections])
+    labels = [one.object_id.value for one in detections]
+    assert len(np.unique(labels)) == (3 if split == "parts" else 2)
+    np.testing.assert_array_equal(labels, labels_at(y, split))
+    objects = message.sensor_view[0].global_ground_truth.stationary_object
+    names = ["wall/left", "wall/middle", "wall/middle/window"] if split == "parts" else ["wall/steel", "wall/glass"]
+    assert [one.source_reference[0].identifier[0] for one in sorted(objects, key=lambda one: one.id.value)] == names
+
+
+def test_labels_by_part_and_by_material_are_in_nuscenes(split_scene, split, tmp_path):
+    classes = NAMES if split == "parts" else ["steel", "glass"]
+    known = ["vehicle.car", "vehicle.truck", "human.pedestrian.adult"]
+    with NuscenesWriter(tmp_path / "data", categories=dict(zip(classes, known, strict=False))) as data:
+        data.add_scene(glidar.Scene(split_scene), duration_s=0.1)
+    names = {one["index"]: one["name"] for one in json.loads((tmp_path / "data/v1.0-mini/category.json").read_text())}
+    (scan,) = (tmp_path / "data/samples/LIDAR_TOP").glob("*.bin")
+    (labels,) = (tmp_path / "data/lidarseg/v1.0-mini").glob("*.bin")
+    x, y = np.fromfile(scan, np.float32).reshape(-1, 5).T[:2]
+    found = [names[index] for index in np.fromfile(labels, np.uint8)]
+    assert found == [known[label - 1] for label in labels_at(5.0 * y / x, split)]
+    assert len(set(found)) == len(classes)
 
 
 def test_the_last_entry_decides_class_id_and_pose(model):
@@ -226,6 +287,35 @@ def test_objects_hide_from_sensors_by_name_or_number(model):
         wall.visible_to = "left"
 
 
+def test_the_only_sensor_of_a_scene_is_called_sensor(model, program, tmp_path):
+    models = (f"models:\n  - {{model: '{model}', hidden_from: [sensor]}}\n"
+              "  - {model: 'builtin:box', id: 9, pose: {position: [8, 0, 0]}}\n")  # fmt: skip
+    (tmp_path / "with.yaml").write_text(f"{models}sensor: VLP-16\nsensor_pose: {{position: [0, 0, 0.5]}}\n")
+    (tmp_path / "without.yaml").write_text(models)
+    for name, options in {"with": [], "without": ["--sensor", "VLP-16", "--sensor-pose", "0,0,0.5,1,0,0,0"]}.items():
+        program("render", tmp_path / f"{name}.yaml", *options, "--columns", "xyz,instance", "--drop-invalid", "-o", tmp_path / "a.npz")
+        assert set(np.unique(np.load(tmp_path / "a.npz")["instance"])) == {9}
+    scene = glidar.Scene(tmp_path / "with.yaml")
+    assert scene["wall"].hidden_from == ("sensor",)
+    assert set(np.unique(glidar.simulate(scene, columns="all").ground_truth.instance)) == {1, 2**32 - 1}
+    scene["wall"].hidden_from = []
+    scene["wall"].visible_to = ["sensor"]
+    assert scene["wall"].visible_to == ("sensor",)
+
+
+def test_unknown_sensors_are_errors_that_list_the_known_ones(model):
+    rig = glidar.Scene.from_dict({
+        "models": [{"model": "builtin:box"}],
+        "sensors": [{"name": "front", "sensor": "VLP-16"}, {"name": "rear", "sensor": "VLP-16"}]})  # fmt: skip
+    for scene, known in ((rig, "'front', 'rear'"), (glidar.Scene("builtin:box"), "'sensor', its only one")):
+        for arguments in ({"hidden_from": ["left"]}, {"visible_to": ["left"]}, {"parts": {"left": {"visible_to": ["left"]}}}):
+            with pytest.raises(glidar.Error, match=f"no sensor 'left'; allowed: {known}"):
+                scene.add_parts(model, **arguments)
+        assert len(scene) == 1
+    (wall,) = rig.add_parts(model, hidden_from=["rear"])
+    assert wall.hidden_from == ("rear",)
+
+
 def test_negative_scale_mirrors(model):
     scene = glidar.Scene()
     scene.add_parts(model, split="parts", scale=[1.0, -1.0, 1.0])
@@ -237,6 +327,18 @@ def test_negative_scale_mirrors(model):
     single = glidar.Scene()
     box = single.add_model("builtin:box", scale=-2)
     assert box.scale == -2.0
+
+
+def test_the_program_takes_negative_and_different_scales(model, program, tmp_path):
+    """--scale mirrors as `scale` of scene files does."""
+    pose = {"--eye": "-10,3,5", "--target": "5,0,0.5"}
+    arguments = [str(one) for pair in pose.items() for one in pair]
+    for scale in ("-2", "1,-1,1", "1,-2,0.5"):
+        numbers = [float(one) for one in scale.split(",")]
+        (tmp_path / "a.yaml").write_text(json.dumps({"models": [{"model": str(model), "scale": numbers * (3 // len(numbers))}]}))
+        program("render", tmp_path / "a.yaml", *arguments, "-o", tmp_path / "a.pcd")
+        program("render", model, "--scale", scale, *arguments, "-o", tmp_path / "b.pcd")
+        assert (tmp_path / "a.pcd").read_bytes() == (tmp_path / "b.pcd").read_bytes()
 
 
 def test_scenes_with_parts_are_copied_and_pickled(model):

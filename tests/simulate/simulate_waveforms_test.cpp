@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/prepared_sensor.hpp>
 #include <simulate/panels.hpp>
 #include <support/simulate.hpp>
@@ -46,14 +47,14 @@ constexpr Return kLast{Return::Order::farthest, 0};
 TEST(NeedsWaveform, IsFalseForBeamsOfASingleRay) {
   Stage stage;
   stage.add_wall(10.0);
-  EXPECT_FALSE(needs_waveform(stage.sensor, stage.scene));
+  EXPECT_FALSE(needs_waveform(stage.sensor, has_mirrors(stage.scene)));
   stage.scene.materials[0].mirror = 0.5F;
-  EXPECT_TRUE(needs_waveform(stage.sensor, stage.scene));
+  EXPECT_TRUE(needs_waveform(stage.sensor, has_mirrors(stage.scene)));
   stage.scene.materials[0].mirror = 0.0F;
   stage.sensor.receiver.returns = {kLast};
-  EXPECT_TRUE(needs_waveform(stage.sensor, stage.scene));
+  EXPECT_TRUE(needs_waveform(stage.sensor, has_mirrors(stage.scene)));
   stage.sensor.lidar_equation.reset();
-  EXPECT_FALSE(needs_waveform(stage.sensor, stage.scene));
+  EXPECT_FALSE(needs_waveform(stage.sensor, has_mirrors(stage.scene)));
 }
 
 TEST(SimulateWaveforms, FootprintWithoutWidthEqualsASingleRay) {

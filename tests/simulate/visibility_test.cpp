@@ -4,7 +4,11 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
+#include <glidar/simulate/explain.hpp>
 #include <glidar/simulate/simulator.hpp>
+#include <simulate/scanner_stage.hpp>
+#include <simulate/stereo_camera.hpp>
+#include <simulate/tof_stage.hpp>
 #include <support/data.hpp>
 #include <support/parameter_name.hpp>
 #include <support/preset.hpp>
@@ -60,6 +64,19 @@ bool sees_robot(const Frame& frame) {
 void expect_equal(const Frame& frame, const Frame& expected) {
   ASSERT_EQ(frame.range_m.size(), expected.range_m.size());
   EXPECT_EQ(frame.status, expected.status);
+  EXPECT_EQ(frame.intensity, expected.intensity);
+  EXPECT_EQ(frame.return_source, expected.return_source);
+  EXPECT_EQ(frame.tof_images.level, expected.tof_images.level);
+  EXPECT_EQ(frame.bounced_share, expected.bounced_share);
+  ASSERT_EQ(frame.raw_images.size(), expected.raw_images.size());
+  for (std::size_t i = 0; i < frame.raw_images.size(); ++i) {
+    EXPECT_EQ(frame.raw_images[i].grey.level, expected.raw_images[i].grey.level) << i;
+  }
+  ASSERT_EQ(frame.boxes.size(), expected.boxes.size());
+  for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
+    EXPECT_EQ(frame.boxes[i].beams, expected.boxes[i].beams) << i;
+    EXPECT_EQ(frame.boxes[i].visible_beams, expected.boxes[i].visible_beams) << i;
+  }
   EXPECT_EQ(frame.ground_truth.instance, expected.ground_truth.instance);
   for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
     const bool is_equal = frame.range_m[i] == expected.range_m[i] ||
@@ -88,6 +105,125 @@ TEST_P(Visibility, AHiddenObjectIsAsIfItWereNotThere) {
 INSTANTIATE_TEST_SUITE_P(Sensors, Visibility,
                          ::testing::Values("VLP-16", "OS1", "Azure-Kinect-NFOV-2x2", "D405"),
                          testing::parameter_name<std::string>);
+
+/// A pulsed sensor whose beams are single rays.
+Sensor single_rays() {
+  Sensor sensor = small_camera();
+  sensor.wavelength_m = 905e-9;
+  sensor.lidar_equation = LidarEquation{};
+  return sensor;
+}
+
+Sensor tof_camera() {
+  testing::TofStage stage({100e6}, 4);
+  stage.camera().bounces = 2;
+  stage.camera().signal_electrons = 1e5;
+  stage.sensor.optics = pinhole_from_fov(24, 16, 1.0);
+  return stage.sensor;
+}
+
+/// A camera with a single imager, which compares its image with a stored one.
+Sensor one_imager() {
+  Sensor sensor = testing::stereo_sensor();
+  testing::stereo_camera(sensor).reference = ActiveStereo::Reference::pattern;
+  return sensor;
+}
+
+struct CameraCase {
+  const char* name;
+  Sensor (*make)();
+};
+
+void PrintTo(const CameraCase& camera, std::ostream* out) {
+  *out << camera.name;
+}
+
+class VisibilityOfCamera : public ::testing::TestWithParam<CameraCase> {
+ protected:
+  static Motion motion_in(const Scene& scene) {
+    const Eigen::Vector3d middle(1.0, 0.0, 1.0);
+    return static_motion(scene, look_at({0.0, 0.0, 0.0}, middle, Eigen::Vector3d::UnitY()));
+  }
+
+  static Frame measure_in(const Scene& scene, std::uint32_t sensor_id) {
+    return measure(scene, GetParam().make(), sensor_id, motion_in(scene));
+  }
+};
+
+TEST_P(VisibilityOfCamera, HasNoImageShadowOrBounceOfAHiddenObject) {
+  const Frame frame = measure_in(with_robot(), kOwn);
+  expect_equal(frame, measure_in(surroundings(), kOwn));
+  EXPECT_TRUE(std::any_of(frame.range_m.begin(), frame.range_m.end(),
+                          [](double range_m) { return range_m > 1.0; }));
+  EXPECT_TRUE(sees_robot(measure_in(with_robot(), kOther)));
+}
+
+TEST_P(VisibilityOfCamera, ExplainsAPointAsWithoutTheHiddenObject) {
+  const Scene scene = with_robot();
+  const Scene without = surroundings();
+  const Frame known = measure_in(without, kOwn);
+  const auto hit = std::find(known.status.begin(), known.status.end(), Status::hit);
+  ASSERT_NE(hit, known.status.end());
+  const auto entry = static_cast<std::size_t>(hit - known.status.begin());
+  const auto trace_in = [entry](const Scene& explained) {
+    Simulator simulator(explained, GetParam().make(), RendererOptions{.threads = 2});
+    Frame frame;
+    frame.sensor_id = kOwn;
+    return explain(simulator, motion_in(explained), entry, frame);
+  };
+  const PointTrace trace = trace_in(scene);
+  EXPECT_EQ(trace.reported.range_m, known.range_m[entry]);
+  EXPECT_EQ(trace.measured.range_m, trace_in(without).measured.range_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, VisibilityOfCamera,
+    ::testing::Values(CameraCase{"structured_light", [] { return testing::ScannerStage().sensor; }},
+                      CameraCase{"stereo", [] { return testing::stereo_sensor(); }},
+                      CameraCase{"one_imager", one_imager},
+                      CameraCase{"time_of_flight", tof_camera}, CameraCase{"pulses", single_rays}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+/// Its large box is a mirror.
+Scene mirrored(Scene scene) {
+  for (const std::uint32_t i : scene.instances[0].materials) {
+    scene.materials[i].mirror = 0.9F;
+    scene.materials[i].diffuse.setZero();
+  }
+  return scene;
+}
+
+std::ptrdiff_t count_ghosts(const Frame& frame) {
+  return std::count(frame.return_source.begin(), frame.return_source.end(), ReturnSource::ghost);
+}
+
+TEST(VisibilityOfMirrors, AMirrorShowsAHiddenObjectToOtherSensorsOnly) {
+  Scene scene = mirrored(with_robot());
+  // below the field of view; beams get there from the lower side of the box
+  scene.instances[2].world_from_object.translation() << 11.0, 0.0, -1.5;
+  scene.instances[2].scale = 4.0;
+  const Scene without = mirrored(surroundings());
+  const Pose pose = look_at({0.0, 0.0, 0.0}, {1.0, 0.0, 1.0}, Eigen::Vector3d::UnitY());
+  const auto measure_in = [&](const Scene& measured, std::uint32_t sensor_id) {
+    return measure(measured, single_rays(), sensor_id, static_motion(measured, pose));
+  };
+  const Frame own = measure_in(scene, kOwn);
+  expect_equal(own, measure_in(without, kOwn));
+  const Frame other = measure_in(scene, kOther);
+  EXPECT_FALSE(sees_robot(other));
+  EXPECT_GT(count_ghosts(other), count_ghosts(own));
+}
+
+TEST(VisibilityOfMirrors, AHiddenMirrorChangesNoBit) {
+  Scene scene = with_robot();
+  for (const std::uint32_t i : scene.instances[2].materials) scene.materials[i].mirror = 0.9F;
+  const Scene without = surroundings();
+  const Pose pose = look_at({0.0, 0.0, 0.0}, {1.0, 0.0, 1.0}, Eigen::Vector3d::UnitY());
+  for (const Sensor& sensor : {single_rays(), testing::preset("VLP-16")}) {
+    expect_equal(measure(scene, sensor, kOwn, static_motion(scene, pose)),
+                 measure(without, sensor, kOwn, static_motion(without, pose)));
+  }
+}
 
 class VisibilityInRenderer : public ::testing::TestWithParam<std::string> {
  protected:

@@ -3,6 +3,7 @@
 #include <apps/glidar/options/option_values.hpp>
 
 #include <glidar/core/axis_angle.hpp>
+#include <glidar/core/scene.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -98,6 +99,19 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
 Eigen::Vector3d parse_vector(const std::string& text) {
   const std::vector<double> n = parse_numbers(text, 3, "x,y,z");
   return {n[0], n[1], n[2]};
+}
+
+Eigen::Vector3d parse_scale(const std::string& text) {
+  constexpr const char* kAllowed =
+      "a number from 1e-15 to 1e15 or its negative, which mirrors, or three of them as x,y,z";
+  std::vector<double> factors;
+  for (const std::string& part : parse_list(text)) {
+    factors.push_back(number(-kMaxScale, kMaxScale, kAllowed)(part));
+    require_number(std::abs(factors.back()) >= kMinScale, "", factors.back(), kAllowed);
+  }
+  if (factors.size() == 1) factors.resize(3, factors[0]);
+  if (factors.size() != 3) refuse_value(text, kAllowed);
+  return {factors[0], factors[1], factors[2]};
 }
 
 Eigen::Vector3d parse_position(const std::string& text) {

@@ -94,6 +94,9 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
 /// "x,y,z".
 Eigen::Vector3d parse_vector(const std::string& text);
 
+/// "s" or "x,y,z", from kMinScale to kMaxScale without their sign.
+Eigen::Vector3d parse_scale(const std::string& text);
+
 /// "x,y,z" in metres, up to kMaxCoordinate_m.
 Eigen::Vector3d parse_position(const std::string& text);
 

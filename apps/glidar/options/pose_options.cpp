@@ -5,7 +5,6 @@
 #include <apps/glidar/options/help_text.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
-#include <glidar/core/scene.hpp>
 
 namespace glidar::app {
 
@@ -21,8 +20,9 @@ void add_pose_options(CLI::App& command, PoseFlags& flags) {
             "Position in the world, m, and attitude of the sensor", flags.world_from_sensor,
             parse_pose);
   OptionGroup(command, "Model")
-      .add("--scale", "S", "Scale of the model, after --unit [1]", flags.scale,
-           number(kMinScale, kMaxScale, "a number above 0, from 1e-15 to 1e15"));
+      .add("--scale", "S | X,Y,Z",
+           "Scale of the model along its own axes, after --unit; negative factors mirror [1]",
+           flags.scale, parse_scale);
   require_option(command, {"--target"}, "--eye");
   forbid_together(command, {"--sensor-pose"}, {"--eye", "--target"});
 }

@@ -18,7 +18,7 @@ struct PoseFlags {
   std::optional<Eigen::Quaterniond> model_q = {};   ///< by --model-q or --model-r
   std::optional<Eigen::Quaterniond> camera_q = {};  ///< by --camera-q or --camera-r
   std::optional<double> camera_z_m = {};
-  std::optional<double> scale = {};
+  std::optional<Eigen::Vector3d> scale = {};
 };
 
 void add_pose_options(CLI::App& command, PoseFlags& flags);

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/placement.hpp>
 
+#include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
+#include <glidar/io/model/model.hpp>
 #include <glidar/sensor/lidar_placement.hpp>
 #include <glidar/sensor/view_placement.hpp>
 
@@ -115,7 +117,11 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
              "these options move a single model; write poses and scales into the scene file"});
   }
   Instance& instance = scene.instances[0];
-  if (flags.scale) instance.scale *= *flags.scale;
+  if (flags.scale) {
+    with_option_name("--scale", [&] {
+      set_scale(scene, 0, scale_of(scene, instance).cwiseProduct(*flags.scale));
+    });
+  }
   if (!flags.model_q) return;
   if (!instance.world_from_object.isApprox(Pose::Identity())) {
     throw Error({.where = "--model-q, --model-r",

@@ -22,6 +22,9 @@
 namespace glidar {
 namespace {
 
+/// Name of a sensor that is not part of a rig.
+constexpr const char* kOnlySensor = "sensor";
+
 /// Instances that agree in these share one mesh.
 using LoadKey = std::pair<std::string, ModelOptions>;
 
@@ -157,26 +160,31 @@ ClassPlaces places_of(const std::vector<std::string>& names) {
 [[noreturn]] void reject_sensor(const std::string& name, const std::vector<std::string>& known,
                                 const std::string& where) {
   std::string listed;
-  for (const std::string& one : known) {
-    if (!one.empty()) listed += (listed.empty() ? "'" : ", '") + one + "'";
-  }
-  if (listed.empty()) {
-    throw Error({where, "the scene has no sensor '" + excerpt(name) + "'",
-                 "names of sensors of the rig", "list the sensors in 'sensors', with names"});
-  }
+  for (const std::string& one : known) listed += (listed.empty() ? "'" : ", '") + one + "'";
   const std::string nearest = closest_match(name, known);
-  throw Error({where, "the rig has no sensor '" + excerpt(name) + "'", listed,
-               nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
+  const std::string remedy = nearest.empty() ? "" : "did you mean '" + nearest + "'?";
+  const bool is_rig = known.size() > 1 || known.front() != kOnlySensor;
+  throw Error(
+      {where,
+       (is_rig ? "the rig has no sensor '" : "the scene has no sensor '") + excerpt(name) + "'",
+       listed + (is_rig ? "" : ", its only one"),
+       is_rig || !remedy.empty() ? remedy : "list several in 'sensors', with names"});
 }
 
-/// Ids of sensors by their names.
+/// The names of sensors by their ids.
+std::vector<std::string> sensor_names(const std::vector<RigSensor>& rig) {
+  std::vector<std::string> names;
+  for (const RigSensor& sensor : rig) names.push_back(sensor.name);
+  if (rig.empty() || (rig.size() == 1 && names[0].empty())) names = {kOnlySensor};
+  return names;
+}
+
 std::vector<std::uint32_t> ids_of(const SensorNames& sensors, const std::vector<RigSensor>& rig) {
-  std::vector<std::string> known;
-  for (const RigSensor& sensor : rig) known.push_back(sensor.name);
+  const std::vector<std::string> known = sensor_names(rig);
   std::vector<std::uint32_t> ids;
   for (const std::string& name : sensors.names) {
     const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end() || name.empty()) reject_sensor(name, known, sensors.where);
+    if (found == known.end()) reject_sensor(name, known, sensors.where);
     ids.push_back(static_cast<std::uint32_t>(found - known.begin()));
   }
   return ids;

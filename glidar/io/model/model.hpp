@@ -44,7 +44,7 @@ struct ModelFrame {
 
 /// A node, group or object of the file with a name, or the file itself. Users call it a part.
 struct ModelNode {
-  std::string name;          ///< its own; parts_of() has the unique path
+  std::string name;          ///< its own; part_names() has the unique path
   std::uint32_t parent = 0;  ///< index of an earlier node
   /// Its position and orientation, without scale: x and y axis of the node, z right-handed.
   Pose model_from_node = Pose::Identity();

@@ -31,7 +31,7 @@ std::string base_name(const std::string& path) {
 }
 
 bool is_absolute(const std::string& path) {
-  return path.front() == '/' || (path.size() > 1 && path[1] == ':');
+  return path.starts_with('/') || (path.size() > 1 && path[1] == ':');
 }
 
 /// The name without padding and scheme, with slashes.
@@ -135,6 +135,10 @@ TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
   if (has_scheme(trimmed(name, kPadding))) return {name, "", "network addresses are not followed"};
   if (name.find("://") != std::string::npos && !name.starts_with("file://")) {
     result.reason = "not found; name the folder of its package with --texture-folder";
+  } else if (is_absolute(tidied(name))) {
+    result.reason =
+        "not found; name a folder above it with --texture-folder, or copy it into the "
+        "model's folder";
   }
   const std::vector<std::string> wanted = spellings(name);
   const auto take = [&](const fs::path& path) {

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/output_frame.hpp>
+#include <glidar/io/model/model.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 #include <glidar/sensor/optics/spinning.hpp>
 #include <support/error_text.hpp>
@@ -128,8 +129,17 @@ TEST(PoseOptions, FlagsOverrideTheSceneFileWhichOverridesFraming) {
 
 TEST(PoseOptions, ScaleIsThatOfTheInstance) {
   Scene scene = one_triangle();
-  pose_model({.scale = 2.5}, scene);
+  pose_model({.scale = Eigen::Vector3d::Constant(2.5)}, scene);
   EXPECT_EQ(scene.instances[0].scale, 2.5);
+}
+
+TEST(PoseOptions, ScaleHasThreeFactorsAndMirrors) {
+  Scene scene = one_triangle();
+  scene.instances[0].scale = 2.0;
+  pose_model({.scale = Eigen::Vector3d(1.0, -2.0, 0.5)}, scene);
+  EXPECT_EQ(scale_of(scene, scene.instances[0]), Eigen::Vector3d(2.0, -4.0, 1.0));
+  EXPECT_THAT(error_text([&] { pose_model({.scale = Eigen::Vector3d(1.0, 1e15, 1.0)}, scene); }),
+              ::testing::StartsWith("--scale, scale: 2, -4e+15, 1"));
 }
 
 void expect_sensor_error(const PoseFlags& flags, const std::string& text) {
@@ -153,7 +163,7 @@ TEST(PoseOptions, ModelOptionsAreRefusedForScenesOfSeveralObjects) {
   Scene scene = one_triangle();
   scene.instances.push_back(scene.instances[0]);
   EXPECT_THROW(pose_model({.model_q = Eigen::Quaterniond::Identity()}, scene), Error);
-  EXPECT_THROW(pose_model({.scale = 2.0}, scene), Error);
+  EXPECT_THROW(pose_model({.scale = Eigen::Vector3d::Constant(2.0)}, scene), Error);
   EXPECT_NO_THROW(pose_model({}, scene));
 }
 

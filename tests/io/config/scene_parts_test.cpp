@@ -345,6 +345,21 @@ sensors: [{name: front, sensor: VLP-16}, {name: rear, sensor: VLP-16}]
   EXPECT_FALSE(sees(1, "a/body/wheel"));
 }
 
+TEST(SceneParts, TheOnlySensorOfASceneIsCalledSensor) {
+  const std::string models = "models: [{model: a, hidden_from: [sensor]}, {model: b, id: 9}]\n";
+  for (const std::string sensor : {"", "sensor: VLP-16\n"}) {
+    const Scene scene = build(models + sensor).scene;
+    EXPECT_FALSE(is_visible(instance_of(scene, "a"), 0));
+    EXPECT_TRUE(is_visible(instance_of(scene, "a"), 1));
+    EXPECT_TRUE(is_visible(instance_of(scene, "b"), 0));
+    EXPECT_THAT(error_of_scene("models: [{model: a, visible_to: [lidar]}]\n" + sensor),
+                HasSubstr("the scene has no sensor 'lidar'; allowed: 'sensor', its only one; list "
+                          "several in 'sensors', with names"));
+  }
+  EXPECT_THAT(error_of_scene(models + "sensors: [{name: front, sensor: VLP-16}]\n"),
+              HasSubstr("the rig has no sensor 'sensor'; allowed: 'front'"));
+}
+
 TEST(SceneParts, AnIdIsThatOfOneObject) {
   EXPECT_THAT(error_of_scene("models: [{model: a, parts: {body: {id: 20}, '*': {class: x}}}]\n"),
               HasSubstr("models[0].parts.body.id: later entries select all of it; allowed: an id "

@@ -160,6 +160,50 @@ TEST(ImportLimits, GrowWithTheFile) {
   EXPECT_EQ(default_memory_limit(100 * kMiB), 4000 * kMiB);
 }
 
+/// A grid of 2 side^2 triangles whose corners name a v, a vt and a vn.
+void write_grid(const fs::path& path, std::uint32_t side) {
+  std::ofstream obj(path);
+  const auto for_vertices = [side](const auto& write) {
+    for (std::uint32_t y = 0; y <= side; ++y) {
+      for (std::uint32_t x = 0; x <= side; ++x) write(x * 1.0 / side, y * 1.0 / side);
+    }
+  };
+  for_vertices([&](double x, double y) { obj << "v " << x << ' ' << y << ' ' << x * y << '\n'; });
+  for_vertices([&](double x, double y) { obj << "vt " << x << ' ' << y << '\n'; });
+  for_vertices([&](double x, double y) { obj << "vn " << x << ' ' << y << ' ' << 1 - x << '\n'; });
+  const auto corner = [&obj](std::uint32_t i) { obj << ' ' << i << '/' << i << '/' << i; };
+  const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    obj << 'f';
+    for (const std::uint32_t i : {a, b, c}) corner(i);
+    obj << '\n';
+  };
+  for (std::uint32_t y = 0; y < side; ++y) {
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const std::uint32_t i = y * (side + 1) + x + 1;
+      triangle(i, i + 1, i + side + 2);
+      triangle(i, i + side + 2, i + side + 1);
+    }
+  }
+}
+
+TEST(ImportMemory, OfAnObjWithUvsAndNormalsIsAtMostFourTimesThatOfItsMesh) {
+  GLIDAR_SKIP_SANITIZED();
+  constexpr std::uint64_t kSide = 700;
+  constexpr std::uint64_t kMesh_bytes =
+      (kSide + 1) * (kSide + 1) * (12 + 12 + 8) + 2 * kSide * kSide * 12;
+  const TestFolder temp;
+  write_grid(temp / "a.obj", kSide);
+  rusage own{};  // the system counts it for the processes that this one starts
+  ::getrusage(RUSAGE_SELF, &own);
+  ASSERT_LT(static_cast<std::uint64_t>(own.ru_maxrss) * 1024, 3 * kMesh_bytes) << "run it alone";
+  const ImportRequest request{temp / "a.obj", 0.785, kTimeLimit_s, 0};
+  const ImportRun run = run_import(request, {});
+  EXPECT_LE(run.peak_memory_bytes, 4 * kMesh_bytes);
+  const Mesh mesh = take_model(run, request).model.mesh;
+  EXPECT_EQ(mesh.positions_m.size(), (kSide + 1) * (kSide + 1));
+  EXPECT_EQ(mesh.uvs[0].size(), mesh.positions_m.size());
+}
+
 TEST(ImportLimits, ConcurrentImportsDoNotMix) {
   const TestFolder temp;
   std::vector<std::thread> threads;

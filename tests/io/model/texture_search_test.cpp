@@ -166,6 +166,19 @@ TEST_F(TextureFolders, NothingOutsideOfThemIsFound) {
   EXPECT_THAT(find("model://NAME/b.png").reason, ::testing::HasSubstr("--texture-folder"));
 }
 
+TEST_F(TextureFolders, AreNamedAsTheRemedyForAbsoluteNames) {
+  for (const char* name : {"/home/somebody/wood.png", "C:\\art\\wood.png", "d:/art/wood.png",
+                           "\\\\server\\art\\wood.png", "file:///C:/art/wood.png"}) {
+    EXPECT_EQ(
+        find(name).reason,
+        "not found; name a folder above it with --texture-folder, or copy it into the model's "
+        "folder")
+        << name;
+  }
+  EXPECT_EQ(find("wood.png").reason, "not found");
+  EXPECT_NE(find("").reason, "");
+}
+
 TEST(TextureSearch, FoldersAndDevicesAreNotAcceptedAsTextures) {
   const TestFolder temp;
   fs::create_directory(temp.path() / "a.png");
