@@ -19,7 +19,7 @@ GROUPS = ("ouster-velodyne", "spinning", "solid-state", "lines", "cameras", "spa
 SPACE = {"flash-128", "flash-256", "woods2016-256", "Hayabusa-LIDAR", "Hayabusa2-LIDAR", "MOLA"}
 OUSTER_VELODYNE = ("Ouster", "Velodyne")
 MARKED = re.compile(r"(<!-- presets: (\S+) -->\n).*?(<!-- end of presets -->)", re.DOTALL)
-COLUMNS = ("name", "sensor", "rows x cols", "view, degrees", "rate, Hz", "range, m", "detection range", "modes", "documented")
+COLUMNS = ("name", "sensor", "rows x cols", "view, degrees", "rate, Hz", "range, m", "detection range")
 
 
 def presets(program):
@@ -60,8 +60,7 @@ def row(cells):
 def cells_of(preset):
     across, upright = preset["view_deg"]
     return (preset["name"], preset["sensor"], f"{preset['rows']} x {preset['cols']}", f"{across:.1f} x {upright:.1f}",
-            f"{preset['rate_hz']:g}", range_text(preset), detection_text(preset), str(len(preset["modes"]) or 1),
-            f"{preset['backed']} of {preset['values']}")
+            f"{preset['rate_hz']:g}", range_text(preset), detection_text(preset))
 
 
 def table(all_presets, group):
