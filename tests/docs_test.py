@@ -59,7 +59,7 @@ class Pages(unittest.TestCase):
         self.run_page("docs/structured-light.md")
 
     def test_troubleshooting(self):
-        self.run_page("docs/troubleshooting.md", ("5555", str(free_ports())))
+        self.run_page("docs/troubleshooting.md")
 
     def test_figures_of_the_paper(self):
         try_opengl = ["glidar", "render", "builtin:box", "--renderer", "opengl", "-o", "-", "--format", "npy"]
