@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws docs/images/presets/GROUP.png: the beam patterns of the sensor presets, one picture for each page of
-docs/presets/.
+"""Draws docs/images/presets/GROUP.png: the beam patterns of the sensor presets, one picture for each group of docs/sensors.md.
 
 usage: plot_presets.py GLIDAR [ROOT], by a Python that has glidar and Matplotlib. GLIDAR is the program.
 The names of the presets are in the picture's text chunk "Description", by which a test finds pictures that are out of date.

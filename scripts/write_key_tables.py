@@ -5,7 +5,8 @@
 
 usage: write_key_tables.py GLIDAR [ROOT]; GLIDAR is the program, ROOT the folder of the sources.
 A table is between the lines `<!-- keys: PATH -->` and `<!-- end of keys -->`. PATH is the kind of schema and
-keys from there on, for example `sensor lidar_equation`; an alternative of a type is named as `optics=pinhole`.
+keys from there on, for example `sensor lidar_equation`; an alternative of a type is named as `optics=pinhole`. `-KEY` at
+the end leaves out the keys of the map KEY, which another table has; `*` those of all maps.
 """
 
 import json
@@ -74,13 +75,23 @@ def allowed_of(schema):
     return {"object": "a map", "boolean": "`true`, `false`"}.get(str(schema["type"]), "a text")
 
 
+def short_allowed(schema):
+    """Without what the column of the unit and the default state: "0 to 1" for "a number from 0 to 1"."""
+    text = re.sub(r"\ba (?:finite )?(map|path|text|list|number|whole number)\b", r"\1", allowed_of(schema))
+    number = re.fullmatch(r"(whole number|[\w/]+) (from|above) (.+)", text)
+    if not number:
+        return text
+    limits = number[3] if number[2] == "from" and " to " in number[3] else f"{number[2]} {number[3]}"
+    return limits + (", whole" if number[1] == "whole number" else "")
+
+
 def rows_of(schema, prefix=""):
     """Key, unit, default, allowed values, meaning; nested maps follow their key."""
     for key, value in schema["properties"].items():
         if "const" in value:
             continue
         yield (f"`{prefix}{key}`", value.get("x-unit", ""), default_of(key, value, schema.get("required", [])),
-               allowed_of(value), value["description"])
+               short_allowed(value), value["description"])
         items = value.get("items")
         if isinstance(items, dict) and "properties" in items:
             yield from rows_of(items, f"{prefix}{key}[].")
@@ -97,12 +108,12 @@ def key_table(schema):
     return lines + [row(cells) for cells in rows_of(schema)]
 
 
-def top_level(schema):
-    """The keys of a map without those of the maps inside."""
-    def is_inside(name, part):
-        return name == "properties" or (name == "items" and "properties" in part)
+def without_keys_inside(schema, maps):
+    """The keys of a map without those of these maps inside."""
+    def is_left_out(key, name, part):
+        return key in maps and (name == "properties" or (name == "items" and "properties" in part))
 
-    return {**schema, "properties": {key: {name: part for name, part in value.items() if not is_inside(name, part)}
+    return {**schema, "properties": {key: {name: part for name, part in value.items() if not is_left_out(key, name, part)}
                                      for key, value in schema["properties"].items()}}
 
 
@@ -123,14 +134,14 @@ def type_table(schema):
 
 
 def table(schemas, path):
-    kind, *steps = path.split()
-    is_top = bool(steps) and steps[-1] == "*"
-    schema = find(schemas(kind), steps[:-1] if is_top else steps)
+    kind, *words = path.split()
+    steps = [word for word in words if word[0] not in "-*"]
+    schema = find(schemas(kind), steps)
     if isinstance(schema.get("additionalProperties"), dict):
         schema = find(schema["additionalProperties"], steps)
     if "oneOf" in schema:
         return type_table(schema)
-    return key_table(top_level(schema) if is_top else schema)
+    return key_table(without_keys_inside(schema, schema["properties"] if "*" in words else {word[1:] for word in words}))
 
 
 def written(text, schemas):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of sensor presets in docs/presets/ from the list that the program prints.
+"""Writes the table of sensor presets in docs/sensors.md from the list that the program prints.
 
 usage: write_preset_table.py GLIDAR [ROOT]; GLIDAR is the program, ROOT the folder of the sources.
-A table is between the lines `<!-- presets: GROUP -->` and `<!-- end of presets -->`. scripts/plot_presets.py draws the
+The table is between the lines `<!-- presets -->` and `<!-- end of presets -->`. scripts/plot_presets.py draws the
 beam patterns of a group.
 """
 
@@ -14,12 +14,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-GROUPS = ("ouster-velodyne", "spinning", "solid-state", "lines", "cameras", "space")
+PAGE = "docs/sensors.md"
+GROUPS = {"ouster-velodyne": "spinning", "spinning": "spinning, other makers", "solid-state": "solid state, terrestrial",
+          "lines": "one line: 2D, airborne", "cameras": "depth cameras", "space": "space"}
+# Makers of sensors whose title begins with another word.
+MAKERS = {"Azure": "Microsoft", "Intel": "Intel RealSense", "Stereo": "Stereolabs", "Hayabusa": "JAXA", "Hayabusa2": "JAXA",
+          "Mars": "NASA", "Flash": "generic", "Woods": "generic"}
 # The optics of these do not show that they are for space.
 SPACE = {"flash-128", "flash-256", "woods2016-256", "Hayabusa-LIDAR", "Hayabusa2-LIDAR", "MOLA"}
 OUSTER_VELODYNE = ("Ouster", "Velodyne")
-MARKED = re.compile(r"(<!-- presets: (\S+) -->\n).*?(<!-- end of presets -->)", re.DOTALL)
-COLUMNS = ("name", "sensor", "rows x cols", "view, degrees", "rate, Hz", "range, m", "detection range", "modes", "documented")
+MARKED = re.compile(r"(<!-- presets -->\n).*?(<!-- end of presets -->)", re.DOTALL)
 
 
 def presets(program):
@@ -40,51 +44,34 @@ def group_of(preset):
     return "solid-state"
 
 
-def range_text(preset):
-    near = f"{preset['near_m']:g}"
-    return f"from {near}" if preset["far_m"] is None else f"{near} to {preset['far_m']:g}"
+def names_text(some_presets):
+    """Names of presets by their makers: "A: a1, a2; B: b1"."""
+    makers = {}
+    for preset in some_presets:
+        word = preset["sensor"].split()[0]
+        makers.setdefault(MAKERS.get(word, word), []).append(preset["name"])
+    return "; ".join(f"{maker}: {', '.join(names)}" for maker, names in sorted(makers.items()))
 
 
-def detection_text(preset):
-    detection = preset["detection"]
-    if not detection:
-        return "-"
-    star = "" if detection["documented"] else "\\*"
-    return f"{detection['range_m']:g} at {100 * detection['reflectance']:g} %{star}"
-
-
-def row(cells):
-    return "| " + " | ".join(cells) + " |"
-
-
-def cells_of(preset):
-    across, upright = preset["view_deg"]
-    return (preset["name"], preset["sensor"], f"{preset['rows']} x {preset['cols']}", f"{across:.1f} x {upright:.1f}",
-            f"{preset['rate_hz']:g}", range_text(preset), detection_text(preset), str(len(preset["modes"]) or 1),
-            f"{preset['backed']} of {preset['values']}")
-
-
-def table(all_presets, group):
-    lines = [row(COLUMNS), "|---" * len(COLUMNS) + "|"]
-    return lines + [row(cells_of(preset)) for preset in all_presets if group_of(preset) == group]
+def table(all_presets):
+    lines = ["| kind | presets |", "|---|---|"]
+    for group, title in GROUPS.items():
+        lines.append(f"| {title} | {names_text(preset for preset in all_presets if group_of(preset) == group)} |")
+    return lines
 
 
 def written(text, all_presets):
-    """The text with the tables as they are now."""
-    def replaced(match):
-        return match[1] + "\n".join(table(all_presets, match[2])) + "\n" + match[3]
-    return MARKED.sub(replaced, text)
+    """The text with the table as it is now."""
+    return MARKED.sub(lambda match: match[1] + "\n".join(table(all_presets)) + "\n" + match[2], text)
 
 
 def main():
-    root = Path(sys.argv[2] if len(sys.argv) > 2 else ".")
-    all_presets = presets(sys.argv[1])
-    for page in sorted(root.glob("docs/presets/*.md")):
-        old = page.read_text(encoding="utf-8")
-        new = written(old, all_presets)
-        if new != old:
-            page.write_text(new, encoding="utf-8")
-            print("wrote", page)
+    page = Path(sys.argv[2] if len(sys.argv) > 2 else ".") / PAGE
+    old = page.read_text(encoding="utf-8")
+    new = written(old, presets(sys.argv[1]))
+    if new != old:
+        page.write_text(new, encoding="utf-8")
+        print("wrote", page)
 
 
 if __name__ == "__main__":

@@ -55,17 +55,11 @@ class Pages(unittest.TestCase):
     def test_depth_filters(self):
         self.run_page("docs/depth-filters.md")
 
-    def test_depth_alignment(self):
-        self.run_page("docs/depth-alignment.md")
-
     def test_structured_light(self):
         self.run_page("docs/structured-light.md")
 
     def test_troubleshooting(self):
-        self.run_page("docs/troubleshooting.md", ("5555", str(free_ports())))
-
-    def test_troubleshooting_of_models(self):
-        self.run_page("docs/troubleshooting-models.md")
+        self.run_page("docs/troubleshooting.md")
 
     def test_figures_of_the_paper(self):
         try_opengl = ["glidar", "render", "builtin:box", "--renderer", "opengl", "-o", "-", "--format", "npy"]

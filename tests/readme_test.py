@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What README.md and docs/files/pictures.md show works: marked shell blocks and the commands of pictures run, the C++
+"""What README.md and docs/files/images.md show works: marked shell blocks and the commands of pictures run, the C++
 is that of examples/render.cpp."""
 
 import os
@@ -25,7 +25,7 @@ class Readme(unittest.TestCase):
 
     def test_the_commands_of_pictures_run(self):
         first = re.search(r"`(glidar render examples/street\.yaml .*?)`", README)[1]
-        pictures = (ROOT / "docs/files/pictures.md").read_text(encoding="utf-8")
+        pictures = (ROOT / "docs/files/images.md").read_text(encoding="utf-8").split("\n## Pictures\n")[1]
         self.run_blocks([first, re.search(r"```sh\n(.*?)```", pictures, re.DOTALL)[1]])
 
     def run_blocks(self, blocks):

@@ -145,7 +145,7 @@ class AlignedDepth:
 
 
 class DepthAligner:
-    """Moves depth images to the pixels of a colour camera (docs/depth-alignment.md), as rs.align of librealsense does.
+    """Moves depth images to the pixels of a colour camera (docs/depth-filters.md), as rs.align of librealsense does.
 
     Args:
         cameras: a file with both cameras and their poses, or a dict with its keys: ``depth`` and ``colour`` with the

@@ -1,14 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pages of docs/presets/ have every preset once, as the program lists it, and pictures of all of them."""
+"""docs/sensors.md has every preset once, as the program lists it, and pictures of all of them."""
 
 import importlib.util
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = sorted((ROOT / "docs/presets").glob("*.md"))
-MAX_WORDS = 1500
 REMEDY = "run scripts/write_preset_table.py GLIDAR"
 
 
@@ -38,21 +36,20 @@ class PresetTables(unittest.TestCase):
         cls.script = load_script()
         cls.presets = cls.script.presets("glidar")
 
-    def test_the_tables_are_up_to_date(self):
-        for page in PAGES:
-            text = page.read_text(encoding="utf-8")
-            self.assertEqual(text, self.script.written(text, self.presets), f"{page}: {REMEDY}")
+    def test_the_table_is_up_to_date(self):
+        text = (ROOT / self.script.PAGE).read_text(encoding="utf-8")
+        self.assertEqual(len(self.script.MARKED.findall(text)), 1)
+        self.assertEqual(text, self.script.written(text, self.presets), REMEDY)
 
-    def test_every_preset_has_one_row(self):
-        rows = [line.split()[1] for page in PAGES for line in page.read_text(encoding="utf-8").splitlines()
-                if line.startswith("| ") and not line.startswith("| name ")]
-        self.assertEqual(sorted(rows), sorted(preset["name"] for preset in self.presets))
+    def test_the_table_has_every_preset_once(self):
+        names = [name for line in self.script.table(self.presets)[2:] for part in line.split(" | ")[1].rstrip(" |").split("; ")
+                 for name in part.split(": ")[1].split(", ")]
+        self.assertEqual(sorted(names), sorted(preset["name"] for preset in self.presets))
 
-    def test_every_group_has_a_page_with_its_table(self):
-        self.assertEqual([page.stem for page in PAGES], sorted(self.script.GROUPS))
-        for page in PAGES:
-            self.assertEqual(self.script.MARKED.findall(page.read_text(encoding="utf-8"))[0][0],
-                             f"<!-- presets: {page.stem} -->\n")
+    def test_the_page_shows_the_picture_of_every_group(self):
+        text = (ROOT / self.script.PAGE).read_text(encoding="utf-8")
+        for group in self.script.GROUPS:
+            self.assertIn(f"(images/presets/{group}.png)", text)
 
     def test_the_pictures_show_the_presets_of_their_page(self):
         for group in self.script.GROUPS:
@@ -60,17 +57,10 @@ class PresetTables(unittest.TestCase):
             picture = ROOT / f"docs/images/presets/{group}.png"
             self.assertEqual(text_of(picture, "Description").split(), names, f"{picture}: run scripts/plot_presets.py GLIDAR")
 
-    def test_pages_are_short(self):
-        for page in PAGES:
-            self.assertLessEqual(len(page.read_text(encoding="utf-8").split()), MAX_WORDS, f"{page}: split its group")
-
     def test_a_table_that_differs_is_written_again(self):
-        old = "a\n<!-- presets: lines -->\nold\n<!-- end of presets -->\nb\n"
-        preset = {"name": "X", "sensor": "Maker X", "kind": "line_scan", "rows": 1, "cols": 9, "view_deg": [270.0, 0.0],
-                  "rate_hz": 15.0, "near_m": 0.05, "far_m": None, "modes": ["a", "b"], "backed": 3, "values": 4,
-                  "detection": {"range_m": 5.0, "reflectance": 0.05, "documented": False}}
-        new = self.script.written(old, [preset])
-        self.assertIn("| X | Maker X | 1 x 9 | 270.0 x 0.0 | 15 | from 0.05 | 5 at 5 %\\* | 2 | 3 of 4 |", new)
+        preset = {"name": "X", "sensor": "Maker X", "kind": "line_scan", "rows": 1}
+        new = self.script.written("a\n<!-- presets -->\nold\n<!-- end of presets -->\nb\n", [preset])
+        self.assertIn("| one line: 2D, airborne | Maker: X |", new)
         self.assertNotIn("old", new)
 
 

@@ -45,7 +45,7 @@ class Schema(unittest.TestCase):
         script = load_script()
         old = "a\n<!-- keys: sensor limits -->\nold\n<!-- end of keys -->\nb\n"
         new = script.written(old, self.schemas)
-        self.assertIn("| `near_m` | m | 0 | a finite number from 0 | shortest reported distance |", new)
+        self.assertIn("| `near_m` | m | 0 | from 0 | shortest reported distance |", new)
         self.assertNotIn("old", new)
 
     def test_every_preset_refers_to_the_schema(self):

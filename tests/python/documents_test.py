@@ -28,7 +28,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/python.md", "docs/python/pickle.md"])
+@pytest.mark.parametrize("name", ["README.md", "docs/python.md", "docs/python/reference.md"])
 def test_python_code_of_a_page_runs(name, folder):
     found = blocks(name)
     assert found

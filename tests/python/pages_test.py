@@ -14,9 +14,9 @@ from doc_blocks import ROOT, link_inputs, run_page
 import glidar
 
 NAME = "tests/python/pages_test.py"
-PAGES = ["docs/tutorial/3-data-set.md", "docs/cookbook.md", "docs/boxes.md", "docs/doppler.md", "docs/stereo.md",
-         "docs/time-of-flight.md", "docs/depth-filters.md", "docs/depth-alignment.md", "docs/structured-light.md",
-         "docs/files/kitti.md", "docs/files/nuscenes.md", "docs/files/parts.md"]
+PAGES = ["docs/tutorial/3-data-set.md", "docs/tutorial/5-survey.md", "docs/cookbook.md", "docs/boxes.md", "docs/doppler.md",
+         "docs/stereo.md", "docs/time-of-flight.md", "docs/depth-filters.md", "docs/structured-light.md", "docs/files/kitti.md",
+         "docs/files/nuscenes.md", "docs/files/parts.md"]
 
 
 @pytest.mark.parametrize("page", PAGES)

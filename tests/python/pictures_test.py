@@ -72,7 +72,7 @@ def test_images_use_the_common_colour_scale():
 
 @pytest.mark.parametrize("from_zero", [False, True])
 def test_the_colour_scale_follows_the_percentiles(from_zero):
-    """By NumPy's percentiles with the rule of docs/files/pictures.md."""
+    """By NumPy's percentiles with the rule of docs/files/images.md."""
     generator = np.random.default_rng(5)
     for values in (generator.normal(10.0, 1.0, 777), generator.lognormal(0.0, 3.0, 5000), np.full(200, 3.0)):
         low = np.percentile(values, 1, method="lower")

@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// The two cameras of a YAML file (docs/depth-alignment.md). Throws Error with the place in the
+/// The two cameras of a YAML file (docs/depth-filters.md). Throws Error with the place in the
 /// file.
 DepthAlignment load_depth_alignment(const std::filesystem::path& path);
 
