@@ -80,6 +80,11 @@ void check(const CastRequest& request, const Scene& scene) {
           "a target outside of the scene", "instances of the scene");
   require(request.targets.empty() || !beams.pinhole, "targets for the pixels of a pinhole",
           "targets for beams without such a grid");
+  const FootprintLayout& footprints = request.footprints;
+  require(footprints.beams > 0 && beams.size() % footprints.beams == 0,
+          "footprints that do not divide the beams", "a divisor of the number of beams");
+  require(footprints.slope >= 0.0 && footprints.radius_m >= 0.0, "a footprint without a size",
+          "a slope and a radius of at least 0");
   require(is_within_reach(request.world_from_sensor.translation()), "the sensor is out of reach",
           "up to 1e15 m from the world's origin", "move the world's origin nearer to it");
   check_poses(request, scene);

@@ -28,6 +28,15 @@ struct InstanceRange {
   bool operator==(const InstanceRange&) const = default;
 };
 
+/// Beams that run close together: each footprint has so many consecutive ones.
+struct FootprintLayout {
+  std::uint32_t beams = 1;  ///< a divisor of their number
+  /// Upper bounds of the distances of their directions, and of their origins, from those of the
+  /// footprint's first beam.
+  double slope = 0.0;
+  double radius_m = 0.0;
+};
+
 /// One cast: beams from a pose into the scene.
 struct CastRequest {
   const Beams& beams;
@@ -41,6 +50,9 @@ struct CastRequest {
   /// One per beam: all that it may hit, enabled or not; empty: every enabled instance. Fastest if
   /// beams with equal targets follow each other.
   std::span<const InstanceRange> targets = {};
+  /// Set if all beams are sub-rays of footprints: a renderer may then search those of each at once.
+  /// The hits do not depend on it.
+  FootprintLayout footprints = {};
   /// Called in runs, once for every beam, when its hits are known, by the thread that found them,
   /// so that they are still in its cache. Empty: not called.
   FunctionRef<void(BeamRange)> on_tile_done = {};

@@ -118,6 +118,7 @@ void cast_static(const MovingCast& cast, const ProgressCallback& progress, Hits&
                             .hit_columns = request.hit_columns,
                             .cull_back_faces = request.cull_back_faces,
                             .instance_enabled = memory.instance_enabled,
+                            .footprints = request.footprints,
                             .progress = progress},
                            hits);
   cast.parallel_for(hits.instance.size(), kMovedBeamsPerTask,

@@ -35,6 +35,19 @@ void cast_mirrored(const Simulation& s) {
   cast(s, cast_request(s, beams, kSignalFields), memory.mirrored_hits);
 }
 
+/// The bounds include the rounding of directions, whose lengths differ from 1 by up to 1e-6.
+FootprintLayout layout_of(const std::vector<SubRay>& rays) {
+  FootprintLayout layout{.beams = static_cast<std::uint32_t>(rays.size())};
+  for (const SubRay& ray : rays) {
+    layout.slope = std::max(layout.slope, ray.slope.norm());
+    layout.radius_m = std::max(layout.radius_m, ray.offset_m.norm());
+  }
+  constexpr double kMargin = 1e-5;
+  layout.slope += kMargin * layout.slope + 1e-12;
+  layout.radius_m += kMargin * layout.radius_m;
+  return layout;
+}
+
 /// Casts the sub-rays of a block of pulses.
 void cast_block(const Simulation& s, BeamRange block) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
@@ -48,6 +61,7 @@ void cast_block(const Simulation& s, BeamRange block) {
     return static_cast<double>(pulse) / static_cast<double>(s.fired->firings());
   };
   CastRequest request = cast_request(s, memory.beams, hit_columns);
+  request.footprints = layout_of(model.sub_rays);
   request.progress = subrange(s.progress, fraction(block.begin), fraction(block.end));
   cast(s, request, memory.hits);
   memory.mirrored_from.clear();

@@ -17,12 +17,6 @@ namespace {
 
 static_assert(kLanes == kPacketSize);
 
-void set_rays(const Lanes3<double>& origin, const Lanes3<double>& direction, RayPacket& packet) {
-  static_assert(sizeof(packet.exact_origin) == sizeof(origin));
-  std::memcpy(packet.exact_origin, &origin, sizeof(origin));
-  std::memcpy(packet.exact_direction, &direction, sizeof(direction));
-}
-
 /// Per lane, bits of which some are set unless the direction is finite and the origin within range.
 GLIDAR_SIMD void find_defects(const BeamBlock& beams, Lanes<std::uint64_t>& defects) {
   const Lanes3<double>& d = beams.direction;
@@ -71,10 +65,7 @@ class InstanceTrace {
   /// Sets the rays of these lanes, at least one. `reach_m`: of the instance's group.
   void start(std::uint32_t instance, double reach_m, const BeamBlock& beams, std::uint32_t lanes) {
     const InstanceView& view = cast_.resolver.view(instance);
-    Lanes3<double> origin;
-    Lanes3<double> direction;
-    rays_in(view, beams, origin, direction);
-    set_rays(origin, direction, packet);
+    set_rays(view, beams, packet);
     hit_filter_.instance = instance;
     packet.tie_reach = reach_m / view.scale;
     const bool filters_hits = cast_.request.cull_back_faces || cast_.resolver.is_masked(instance);
@@ -84,6 +75,13 @@ class InstanceTrace {
   }
 
   void trace() { kernel_.trace(tree().view(), packet); }
+
+  /// Tests only the triangles of some leaves.
+  void test(std::span<const LeafRef> leaves, std::uint32_t lanes) {
+    for (const LeafRef& leaf : leaves) {
+      kernel_.test_leaf(tree().view(), leaf.cluster, packet, lanes);
+    }
+  }
 
   [[nodiscard]] std::uint32_t primitive(unsigned lane) const {
     return primitive_of(tree().blocks.data(), packet, lane);
@@ -115,13 +113,8 @@ class SceneTrace {
 
   /// Casts them through all instances.
   void trace(std::uint32_t lanes) {
-    Lanes3<double> origin;
-    Lanes3<double> direction;
-    // The trees' frame is treated as that of an instance.
-    rays_in({cast_.trees.tree_from_sensor(), cast_.trees.sensor_in_tree(), 1.0}, beams_, origin,
-            direction);
     RayPacket packet;
-    set_rays(origin, direction, packet);
+    set_rays(tree_view(cast_.trees), beams_, packet);
     for (const InstanceGroup& group : cast_.trees.groups()) {
       group_ = &group;
       reach_m_ = group.reach_m;
@@ -144,7 +137,30 @@ class SceneTrace {
     }
   }
 
+  /// Casts them to the triangles of these leaves only, which are sorted.
+  void trace(std::span<const LeafRef> leaves, std::uint32_t lanes) {
+    reach_m_ = cast_.trees.max_reach_m();
+    while (!leaves.empty()) {
+      const std::uint32_t instance = leaves.front().instance;
+      const auto is_other = [&](const LeafRef& leaf) { return leaf.instance != instance; };
+      const auto end = std::find_if(leaves.begin(), leaves.end(), is_other);
+      const auto count = static_cast<std::size_t>(end - leaves.begin());
+      visit(instance, lanes, leaves.first(count));
+      leaves = leaves.subspan(count);
+    }
+  }
+
   [[nodiscard]] const PrimitiveRef& found(unsigned lane) const { return nearest_[lane].primitive; }
+
+  /// The lanes whose hits, with all that ties with them, are up to a distance; where that is
+  /// infinite, also the lanes without a hit.
+  [[nodiscard]] std::uint32_t ending_by(const Lanes<double>& end_m, std::uint32_t lanes) const {
+    std::uint32_t ending = 0;
+    for_lanes(lanes, [&](unsigned i) {
+      ending |= static_cast<std::uint32_t>(nearest_[i].high_m <= end_m[i]) << i;
+    });
+    return ending;
+  }
 
   /// The lanes for which some distances tie.
   [[nodiscard]] std::uint32_t tied() const { return tied_; }
@@ -164,27 +180,26 @@ class SceneTrace {
     });
   }
 
-  /// An upper bound of a distance in a packet of the trees' frame.
-  static float bound_in(const RayPacket& outer, unsigned lane, double distance_m) {
-    return well_above(distance_m - outer.shift[lane] + 0x1p-50 * distance_m);
-  }
-
   void visit_leaf(std::uint32_t leaf, RayPacket& outer, std::uint32_t lanes) {
     for_lanes(visit(group_->boxes.index_in(leaf), lanes),
               [&](unsigned i) { outer.high[i] = bound_in(outer, i, nearest_[i].high_m); });
   }
 
-  /// Returns the lanes that hit the instance.
-  std::uint32_t visit(std::uint32_t instance, std::uint32_t lanes) {
+  /// Returns the lanes that hit the instance. `leaves`: of the instance, empty: all.
+  std::uint32_t visit(std::uint32_t instance, std::uint32_t lanes,
+                      std::span<const LeafRef> leaves = {}) {
     const double scale = cast_.resolver.view(instance).scale;
     RayPacket& p = inner_.packet;
     inner_.start(instance, reach_m_, beams_, lanes);
     for_lanes(lanes, [&](unsigned i) {
       if (nearest_[i].primitive.instance == kInvalidId) return;
-      const double end = nearest_[i].high_m / scale;
-      p.high[i] = well_above(end - p.shift[i] + 0x1p-50 * end);
+      p.high[i] = bound_in(p, i, nearest_[i].high_m / scale);
     });
-    inner_.trace();
+    if (leaves.empty()) {
+      inner_.trace();
+    } else {
+      inner_.test(leaves, lanes);
+    }
     tied_ |= p.tied;
     std::uint32_t hit = 0;
     for_lanes(lanes, [&](unsigned i) {
@@ -249,6 +264,16 @@ class BlockTrace {
     finish(trace, lanes);
   }
 
+  /// Returns the lanes that are decided by `end_m`, and sets these.
+  std::uint32_t trace_leaves(std::span<const LeafRef> leaves, const Lanes<double>& end_m,
+                             std::uint32_t lanes) {
+    SceneTrace trace(cast_, kernel_, beams_, block_);
+    trace.trace(leaves, lanes);
+    const std::uint32_t decided = trace.ending_by(end_m, lanes);
+    finish(trace, decided);
+    return decided;
+  }
+
   /// Casts every lane through its beam's target; lanes with equal targets together.
   void trace_targets(std::uint32_t lanes) {
     while (lanes != 0) {
@@ -295,6 +320,23 @@ class BlockTrace {
 
 }  // namespace
 
+void set_rays(const InstanceView& view, const BeamBlock& beams, RayPacket& packet) {
+  Lanes3<double> origin;
+  Lanes3<double> direction;
+  rays_in(view, beams, origin, direction);
+  static_assert(sizeof(packet.exact_origin) == sizeof(origin));
+  std::memcpy(packet.exact_origin, &origin, sizeof(origin));
+  std::memcpy(packet.exact_direction, &direction, sizeof(direction));
+}
+
+InstanceView tree_view(const SceneTrees& trees) {
+  return {trees.tree_from_sensor(), trees.sensor_in_tree(), 1.0};
+}
+
+float bound_in(const RayPacket& packet, unsigned lane, double distance) {
+  return well_above(distance - packet.shift[lane] + 0x1p-50 * distance);
+}
+
 void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   const std::uint32_t lanes = block.mask & usable_lanes(beams);
   block.mask = 0;
@@ -308,6 +350,13 @@ void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   } else if (!instances.empty()) {
     trace.trace_all(lanes);
   }
+}
+
+std::uint32_t BeamSearch::find_among(std::span<const LeafRef> leaves, const Lanes<double>& end_m,
+                                     const BeamBlock& beams, HitBlock& block) const {
+  const std::uint32_t lanes = block.mask;
+  block.mask = 0;
+  return BlockTrace(cast_, kernel_, beams, block).trace_leaves(leaves, end_m, lanes);
 }
 
 PrimitiveRef BeamSearch::find(std::size_t beam) const {

@@ -5,12 +5,15 @@
 // them, for an arbitrary instruction set.
 #include <glidar/render/rays/kernel.hpp>
 
+// The vectors come before the inner loops.
 #include <glidar/render/rays/kernel_simd.hpp>
-#include <glidar/render/rays/tree_traversal.hpp>
+
+#include <glidar/render/rays/cone_trace.hpp>
 
 namespace glidar::rays::GLIDAR_KERNEL {
 
 extern const Kernel kKernel;
-const Kernel kKernel = {GLIDAR_KERNEL_NAME, start, test_leaf, trace, trace_single, visit_leaves};
+const Kernel kKernel = {GLIDAR_KERNEL_NAME, start,        test_leaf,   trace,
+                        trace_single,       visit_leaves, trace_cones, visit_cone_leaves};
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/rays/ray_packet.hpp>
+#include <glidar/render/rays/cones.hpp>
 #include <glidar/render/rays/ray_tree.hpp>
 
 namespace glidar::rays {
@@ -28,6 +28,12 @@ struct Kernel {
   /// Calls visit() for the leaves that rays of a started packet enter before packet.high, in about
   /// the order of distance. The tree needs no clusters and blocks.
   void (*visit_leaves)(const TreeView& tree, RayPacket& packet, VisitLeaf visit, void* context);
+  /// Adds the hits of all active cones to `cones`. The packet was started with a sphere so much
+  /// larger that no ray of a cone is in the mesh's sphere before its shift.
+  void (*trace_cones)(const TreeView& tree, RayPacket& packet, Cones& cones);
+  /// As visit_leaves(), for the leaves that rays of cones may enter.
+  void (*visit_cone_leaves)(const TreeView& tree, RayPacket& packet, Cones& cones, VisitLeaf visit,
+                            void* context);
 };
 
 }  // namespace glidar::rays

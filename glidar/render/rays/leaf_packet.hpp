@@ -140,25 +140,37 @@ GLIDAR_INLINE void test_spread_triangle(const TreeView& tree, RayPacket& p, std:
   }
 }
 
-/// Tests rays with separate origins with the triangles of a cluster. The setup about the
-/// middle of the origins rejects for all rays: moved by the spread, an edge function changes by at
-/// most 1.8 spread (s1 + s2), and det by spread s1 s2.
-inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
-                        std::uint32_t lanes, const LocalOrigin& origin) {
-  const float scaled = scaled_reach(origin.reach);
-  const auto spread = static_cast<float>(p.spread);
-  const Float8 edge_margin =
-      Float8::all(-(2.0F + 1.81F * spread / scaled));  // bounds.edge > scaled (s1 + s2)
-  const Float8 det_margin = Float8::all(spread * (1.01F / (10.0F * 0x1p-24F)));
-  const DirectionBox box(p);
-  for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
-    const std::uint32_t block = cluster.first_block + b;
-    const BlockSetup s = set_up(tree.blocks[block], cluster, origin.at, scaled);
+/// The rays of a packet with separate origins. The setup about the middle of the origins rejects
+/// triangles for all rays: moved by the spread, an edge function changes by at most
+/// 1.8 spread (s1 + s2), and det by spread s1 s2.
+struct PacketBounds {
+  DirectionBox box;
+  Float8 edge_margin;
+  Float8 det_margin;
+
+  GLIDAR_INLINE PacketBounds(const RayPacket& p, float spread, float scaled)
+      : box(p),
+        edge_margin(
+            Float8::all(-(2.0F + 1.81F * spread / scaled))),  // bounds.edge > scaled (s1 + s2)
+        det_margin(Float8::all(spread * (1.01F / (10.0F * 0x1p-24F)))) {}
+
+  [[nodiscard]] GLIDAR_INLINE Mask8 are_outside(const BlockSetup& s) const {
     const Float8 bound = edge_function_bound(box, flip_sign(s.q1, s.det), flip_sign(s.q2, s.det),
                                              flip_sign(s.n, s.det));
     const Mask8 faces = magnitude(s.det) > multiply_add(s.bounds.den, det_margin, s.bounds.det);
-    const Mask8 outside = bound < s.bounds.edge * edge_margin;
-    const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
+    return (bound < s.bounds.edge * edge_margin) & faces;
+  }
+};
+
+/// Tests rays with separate origins with the triangles of a cluster.
+inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
+                        std::uint32_t lanes, const LocalOrigin& origin) {
+  const float scaled = scaled_reach(origin.reach);
+  const PacketBounds bounds(p, static_cast<float>(p.spread), scaled);
+  for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
+    const std::uint32_t block = cluster.first_block + b;
+    const BlockSetup s = set_up(tree.blocks[block], cluster, origin.at, scaled);
+    const std::uint32_t left = ~bits(bounds.are_outside(s)) & present(cluster, b);
     if (left == 0) continue;
     BlockRows<LaneFloat, 19> rows;
     rows.set(0, s.q1);

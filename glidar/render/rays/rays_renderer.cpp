@@ -6,6 +6,7 @@
 #include <glidar/math/simd.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/plane_points.hpp>
+#include <glidar/render/rays/footprint_search.hpp>
 #include <glidar/render/rays/tiles.hpp>
 #include <glidar/render/resolver.hpp>
 
@@ -25,6 +26,7 @@ struct Job {
   const HitColumnMask& hit_columns;
   const Resolver& resolver;
   const rays::BeamSearch& search;
+  bool is_searched;  ///< the hits have instances and primitives
   Hits& hits;
 };
 
@@ -108,6 +110,15 @@ void prepare_hits(const Job& job, bool is_run, HitBlock& block) {
   });
 }
 
+/// Takes what was found before.
+void take_found(const Hits& hits, HitBlock& block) {
+  for_lanes(block.mask, [&](unsigned lane) {
+    block.instance[lane] = hits.instance[block.beam[lane]];
+    block.primitive[lane] = hits.primitive[block.beam[lane]];
+    if (block.instance[lane] == kInvalidId) block.mask &= ~(1U << lane);
+  });
+}
+
 /// Collects and traces the beams of tile i.
 void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_t end,
            HitBatch& batch) {
@@ -121,7 +132,11 @@ void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_
     gather_beams(job.beams, tile, batch);
     if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
   }
-  job.search.find(batch.beams, batch.block);
+  if (job.is_searched) {
+    take_found(job.hits, batch.block);
+  } else {
+    job.search.find(batch.beams, batch.block);
+  }
   prepare_hits(job, tiling.has_runs(), batch.block);
 }
 
@@ -176,6 +191,7 @@ class RaysRenderer final : public Renderer {
     resolver.use_stored_planes(request.hit_columns, base_->thread_pool);
     base_->search.prepare(request);
     find_plane_points(request.beams, points_);
+    const rays::FootprintSearch footprints(base_->search.beams());
     const Job job{
         .beams = request.beams,
         .points = points_,
@@ -183,13 +199,24 @@ class RaysRenderer final : public Renderer {
         .hit_columns = request.hit_columns,
         .resolver = resolver,
         .search = base_->search.beams(),
+        .is_searched = footprints.is_useful(),
         .hits = hits};
     const rays::Tiling tiling(request.beams);
     ProgressCounter count(request.progress, tiling.size());
+    // Footprints are in one row. kLanes of them fill as many tiles as each has sub-rays.
+    const std::size_t footprint = job.is_searched ? request.footprints.beams : 1;
+    const std::size_t grain = std::max<std::size_t>(1, kTilesPerTask / footprint);
     thread_pool().parallel_for(
-        tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+        (tiling.size() + footprint - 1) / footprint, grain,
+        [&](std::size_t begin, std::size_t end) {
+          begin *= footprint;
+          end = std::min(end * footprint, tiling.size());
           while (begin < end) {
-            const std::size_t run_end = tiling.end_of_run(begin, end, kTilesPerTask);
+            const std::size_t run_end = tiling.end_of_run(begin, end, grain * footprint);
+            if (job.is_searched)
+              footprints.find({begin * kLanes / footprint,
+                               std::min(run_end * kLanes, request.beams.size()) / footprint},
+                              hits);
             cast_tiles(job, tiling, begin, run_end);
             if (request.on_tile_done) tiling.for_beam_rows(begin, run_end, request.on_tile_done);
             count.add(run_end - begin);

@@ -85,6 +85,9 @@ GLIDAR_INLINE Float8 min(Float8 a, Float8 b) {
 GLIDAR_INLINE Float8 max(Float8 a, Float8 b) {
   return {_mm256_max_ps(a.v, b.v)};
 }
+GLIDAR_INLINE Float8 square_root(Float8 a) {
+  return {_mm256_sqrt_ps(a.v)};
+}
 GLIDAR_INLINE Float8 magnitude(Float8 a) {
   return {_mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v)};
 }

@@ -74,6 +74,9 @@ GLIDAR_INLINE Float16 min(Float16 a, Float16 b) {
 GLIDAR_INLINE Float16 max(Float16 a, Float16 b) {
   return {_mm512_max_ps(a.v, b.v)};
 }
+GLIDAR_INLINE Float16 square_root(Float16 a) {
+  return {_mm512_sqrt_ps(a.v)};
+}
 GLIDAR_INLINE Float16 magnitude(Float16 a) {
   return {_mm512_abs_ps(a.v)};
 }

@@ -105,6 +105,14 @@ GLIDAR_INLINE Float8 max(Float8 a, Float8 b) {
   return select(a > b, a, b);
 }
 
+GLIDAR_INLINE Quad square_root(Quad a) {
+  return Quad{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]),
+              __builtin_sqrtf(a[3])};
+}
+GLIDAR_INLINE Float8 square_root(Float8 a) {
+  return {square_root(a.low), square_root(a.high)};
+}
+
 GLIDAR_INLINE float min_of(Float8 a) {
   const Quad x = a.low < a.high ? a.low : a.high;
   const float p = x[0] < x[1] ? x[0] : x[1];

@@ -80,6 +80,23 @@ GLIDAR_INLINE float reciprocal(float component) {
   return 1.0F / (size < kMinComponent ? kMinComponent : component);
 }
 
+/// Single rays need no wider boxes.
+struct NoWidth {
+  struct None {};
+  template <class F>
+  [[nodiscard]] GLIDAR_INLINE None of(const F (&)[3], const F (&)[3]) const {
+    return {};
+  }
+};
+template <class F>
+GLIDAR_INLINE F operator+(F a, NoWidth::None) {
+  return a;
+}
+template <class F>
+GLIDAR_INLINE F operator-(F a, NoWidth::None) {
+  return a;
+}
+
 /// One ray and the boxes of eight children.
 struct RaySlabs {
   Float8 near_origin[3];
@@ -99,15 +116,22 @@ struct RaySlabs {
     }
   }
 
-  /// Bits of the children that the ray enters before `end`, and where.
-  GLIDAR_INLINE std::uint32_t entered(const TreeNode& node, float end, float (&near)[8]) const {
+  /// Bits of the children whose boxes, wider by `width`, the ray enters before `end`, and where.
+  template <class Width>
+  GLIDAR_INLINE std::uint32_t entered(const TreeNode& node, const Width& width, float end,
+                                      float (&near)[8]) const {
+    const Float8 low[3] = {Float8::load(node.low[0]), Float8::load(node.low[1]),
+                           Float8::load(node.low[2])};
+    const Float8 high[3] = {Float8::load(node.high[0]), Float8::load(node.high[1]),
+                            Float8::load(node.high[2])};
+    const auto wider = width.of(low, high);
     Float8 first = Float8::all(0.0F);
     Float8 last = Float8::all(end);
     for (unsigned axis = 0; axis < 3; ++axis) {
-      const float* near_bound = is_negative[axis] ? node.high[axis] : node.low[axis];
-      const float* far_bound = is_negative[axis] ? node.low[axis] : node.high[axis];
-      first = max((Float8::load(near_bound) - near_origin[axis]) * inverse[axis], first);
-      last = min((Float8::load(far_bound) - far_origin[axis]) * inverse[axis], last);
+      const Float8 near_bound = is_negative[axis] ? high[axis] + wider : low[axis] - wider;
+      const Float8 far_bound = is_negative[axis] ? low[axis] - wider : high[axis] + wider;
+      first = max((near_bound - near_origin[axis]) * inverse[axis], first);
+      last = min((far_bound - far_origin[axis]) * inverse[axis], last);
     }
     store(near, first);
     return bits(first <= last * Float8::all(kSlabMargin));
@@ -117,6 +141,7 @@ struct RaySlabs {
 /// Tests leaves of triangles.
 struct TriangleLeaves {
   const TreeView& tree;
+  NoWidth width = {};
 
   GLIDAR_INLINE void operator()(std::uint32_t leaf, RayPacket& p, std::uint32_t lanes) const {
     test_leaf(tree, leaf, p, lanes);
@@ -127,6 +152,7 @@ struct TriangleLeaves {
 struct VisitedLeaves {
   VisitLeaf visit;
   void* context;
+  NoWidth width = {};
 
   GLIDAR_INLINE void operator()(std::uint32_t leaf, RayPacket& p, std::uint32_t lanes) const {
     visit(context, leaf, p, lanes);
@@ -149,7 +175,8 @@ void trace_below(const TreeView& tree, RayPacket& p, const Leaves& leaves, unsig
       continue;
     }
     const auto index = static_cast<std::uint32_t>(child);
-    const std::uint32_t entered = slabs.entered(tree.nodes[index], p.high[lane], near);
+    const std::uint32_t entered =
+        slabs.entered(tree.nodes[index], leaves.width, p.high[lane], near);
     if (entered != 0) stack.push(tree, index, entered, near);
   }
 }
@@ -218,19 +245,25 @@ struct PacketSlabs {
     }
   }
 
-  /// Bits of the rays that enter a child's box before their nearest hit.
+  /// Bits of the rays that enter a child's box, wider by `width`, before their nearest hit.
+  template <class Width>
   [[nodiscard]] GLIDAR_INLINE std::uint32_t entering(const TreeNode& node, unsigned child,
-                                                     const RayPacket& p) const {
+                                                     const Width& width, const RayPacket& p) const {
+    const LaneFloat low[3] = {LaneFloat::all(node.low[0][child]),
+                              LaneFloat::all(node.low[1][child]),
+                              LaneFloat::all(node.low[2][child])};
+    const LaneFloat high[3] = {LaneFloat::all(node.high[0][child]),
+                               LaneFloat::all(node.high[1][child]),
+                               LaneFloat::all(node.high[2][child])};
+    const auto wider = width.of(low, high);
     std::uint32_t entering = 0;
     for (unsigned i = 0; i < kPacketSize; i += LaneFloat::kWidth) {
       LaneFloat first = LaneFloat::all(0.0F);
       LaneFloat last = LaneFloat::load(p.high + i);
       for (unsigned axis = 0; axis < 3; ++axis) {
         const LaneFloat r = LaneFloat::load(inverse[axis] + i);
-        const LaneFloat x =
-            (LaneFloat::all(node.low[axis][child]) - LaneFloat::load(p.origin_high[axis] + i)) * r;
-        const LaneFloat y =
-            (LaneFloat::all(node.high[axis][child]) - LaneFloat::load(p.origin_low[axis] + i)) * r;
+        const LaneFloat x = (low[axis] - wider - LaneFloat::load(p.origin_high[axis] + i)) * r;
+        const LaneFloat y = (high[axis] + wider - LaneFloat::load(p.origin_low[axis] + i)) * r;
         first = max(min(x, y), first);
         last = min(max(x, y), last);
       }
@@ -273,7 +306,7 @@ void traverse(const TreeView& tree, RayPacket& p, const Leaves& leaves) {
     const std::uint32_t box = box_of(stack.visit[stack.size]);
     const std::int32_t child = child_of(stack.visit[stack.size]);
     std::uint32_t rays = p.active;
-    if (box != kNoBox) rays = slabs.entering(tree.nodes[box / 8], box % 8, p);
+    if (box != kNoBox) rays = slabs.entering(tree.nodes[box / 8], box % 8, leaves.width, p);
     if (rays == 0) continue;
     if (finish(tree, p, leaves, child, rays)) {
       end = farthest(p);
