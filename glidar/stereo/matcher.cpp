@@ -22,6 +22,20 @@
 #include <vector>
 
 namespace glidar::stereo {
+
+// Of kernel.cpp, which is compiled for each instruction set.
+namespace baseline {
+extern const Kernel kKernel;
+}
+#ifdef __x86_64__
+namespace avx2 {
+extern const Kernel kKernel;
+}
+namespace avx512 {
+extern const Kernel kKernel;
+}
+#endif
+
 namespace {
 
 /// Sums over the window of each pixel, of 2 radius + 1 rows and columns, as far as it is inside the
@@ -291,7 +305,7 @@ std::size_t progress_rows(const CostVolume& volume) {
 }
 
 /// Computes the costs of all pixels and their sums over all paths: first the costs, the paths along
-/// rows and those from the row above, then the paths from the row below. With `keeps_sums`, the
+/// rows and those from the row above, then the paths from the row below. With `keeps_costs`, the
 /// sums are in the volume afterwards.
 void sum_paths(const CostSource& source, const StereoRun& run, CostVolume& volume,
                RowSumsFunction on_row, ProgressCounter& progress) {
@@ -300,20 +314,6 @@ void sum_paths(const CostSource& source, const StereoRun& run, CostVolume& volum
 }
 
 /// The inner loops for an instruction set, which the processor must have.
-const Kernel& kernel_for(InstructionSet set);
-
-namespace baseline {
-extern const Kernel kKernel;
-}
-#ifdef __x86_64__
-namespace avx2 {
-extern const Kernel kKernel;
-}
-namespace avx512 {
-extern const Kernel kKernel;
-}
-#endif
-
 const Kernel& kernel_for(InstructionSet set) {
 #ifdef __x86_64__
   if (set == InstructionSet::avx512) return avx512::kKernel;

@@ -255,6 +255,7 @@ std::optional<std::string> hash_of_file(const std::filesystem::path& path) {
   return hash ? std::optional(hex(*hash)) : std::nullopt;
 }
 
+/// What pickling and comparing scenes need.
 void bind_scene_state(nb::module_& module) {
   module.def(
       "copy_scene", [](const SceneHandle& scene) { return SceneHandle(scene); }, nb::arg("scene"));
@@ -670,6 +671,7 @@ void bind_scene(nb::module_& module) {
   module.def("load_scene", load, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
              nb::sig("def load_scene(path: str, options: dict[str, typing.Any], "
                      "log: object | None) -> Scene"));
+  bind_scene_state(module);
 }
 
 }  // namespace glidar::python

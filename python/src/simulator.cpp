@@ -270,6 +270,7 @@ void require_hits_of(const Scene& scene, const Measured& measured) {
   }
 }
 
+/// What pickling and comparing frames need.
 void bind_frame_state(nb::module_& module) {
   module.def("frame_state", frame_state, nb::arg("frame"),
              nb::sig("def frame_state(frame: Frame) -> dict[str, typing.Any]"));
@@ -472,6 +473,7 @@ void bind_simulator(nb::module_& module) {
   module.def("attach_scene", attach_scene, nb::arg("frame"), nb::arg("scene"), nb::arg("renderer"));
   module.def("make_simulator", make_simulator, nb::arg("scene"), nb::arg("sensor"),
              nb::arg("renderer"), nb::arg("threads"));
+  bind_frame_state(module);
 }
 
 }  // namespace glidar::python
