@@ -25,34 +25,12 @@
 #include <map>
 #include <new>
 #include <regex>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace glidar::app {
 namespace {
-
-/// A subcommand and what adds it to the program.
-struct Subcommand {
-  std::string name;
-  /// Gets the program and the arguments of the whole command line.
-  std::function<Command(CLI::App& program, const std::vector<std::string>& arguments)> add;
-};
-
-/// Prints the message as an error; returns the exit code of invalid input.
-int report_error(const std::string& message);
-
-constexpr const char* kExamples = R"(Examples:
-  glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
-  glidar view builtin:asteroid
-  glidar stream builtin:asteroid --object-rate 0,0.5,0 --port 5555
-  glidar explain asteroid.pcd --index 30000
-  glidar info builtin:torus
-  glidar sensors
-  glidar verify
-More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
-sensors, schema, filter, align, stereo, structured-light, tof and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -149,6 +127,12 @@ std::string first_extra(const CLI::App& program) {
   return extras.empty() ? "" : extras.front();
 }
 
+/// Prints the message as an error; returns the exit code of invalid input.
+int report_error(const std::string& message) {
+  print(stderr, "glidar: error: {}\n", message);
+  return kBadInput;
+}
+
 int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** argv) {
   try {
     program.parse(argc, argv);
@@ -178,9 +162,9 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
 }
 
 /// The version, and the optional parts of this build.
-std::string version_text(bool has_viewer) {
+std::string version_text() {
   std::vector<std::string> parts;
-  if (has_viewer) parts.emplace_back("window");
+  if (has_viewer()) parts.emplace_back("window");
   if (foxglove::has_foxglove_server()) parts.emplace_back("Foxglove server");
   if (control::has_tcp_services()) parts.emplace_back("sensor control (HTTP, PTC)");
   if (dds::has_dds()) parts.emplace_back("ROS 2 (DDS)");
@@ -189,28 +173,12 @@ std::string version_text(bool has_viewer) {
   return fmt::format("glidar {}\noptional parts: {}", version(), fmt::join(parts, ", "));
 }
 
-int report_error(const std::string& message) {
-  print(stderr, "glidar: error: {}\n", message);
-  return kBadInput;
-}
-
-/// Parses the command line and runs the chosen subcommand; returns the exit code. `has_viewer`:
-/// --version lists the window.
-int run_program(std::span<const Subcommand> subcommands, bool has_viewer, int argc, char** argv) {
-  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
-                   "glidar");
-  use_help_layout(program);
-  program.set_version_flag("--version", version_text(has_viewer),
-                           "Print the version and the optional parts");
-  program.require_subcommand(1);
-  program.footer(kExamples);
-  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-  Commands commands;
-  for (const Subcommand& subcommand : subcommands) {
-    commands.emplace_back(subcommand.name, subcommand.add(program, arguments));
-  }
-  return parse_and_run(program, commands, argc, argv);
-}
+/// A subcommand and what adds it to the program.
+struct Subcommand {
+  std::string name;
+  /// Gets the program and the arguments of the whole command line.
+  std::function<Command(CLI::App& program, const std::vector<std::string>& arguments)> add;
+};
 
 /// A subcommand that needs no arguments of the whole command line.
 Subcommand subcommand(const char* name, Command (*add)(CLI::App&)) {
@@ -236,14 +204,40 @@ std::vector<Subcommand> all_subcommands() {
           subcommand("verify", add_verify)};
 }
 
+constexpr const char* kExamples = R"(Examples:
+  glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
+  glidar view builtin:asteroid
+  glidar stream builtin:asteroid --object-rate 0,0.5,0 --port 5555
+  glidar explain asteroid.pcd --index 30000
+  glidar info builtin:torus
+  glidar sensors
+  glidar verify
+More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
+sensors, schema, filter, align, stereo, structured-light, tof and verify)";
+
+/// Parses the command line and runs the chosen subcommand; returns the exit code.
+int run_program(int argc, char** argv) {
+  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
+                   "glidar");
+  use_help_layout(program);
+  program.set_version_flag("--version", version_text(), "Print the version and the optional parts");
+  program.require_subcommand(1);
+  program.footer(kExamples);
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  Commands commands;
+  for (const Subcommand& one : all_subcommands()) {
+    commands.emplace_back(one.name, one.add(program, arguments));
+  }
+  return parse_and_run(program, commands, argc, argv);
+}
+
 }  // namespace
 }  // namespace glidar::app
 
 int main(int argc, char** argv) {
   try {
     glidar::app::end_cleanly_on_interrupt();
-    const int status = glidar::app::run_program(glidar::app::all_subcommands(),
-                                                glidar::app::has_viewer(), argc, argv);
+    const int status = glidar::app::run_program(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       return glidar::app::report_error("standard output could not be written; is the disk full?");
     }

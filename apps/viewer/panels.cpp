@@ -21,8 +21,8 @@ namespace glidar::app {
 namespace {
 
 /// A row of the list; empty: all objects. `scrolled_to`: the last row that was scrolled to.
-void show_row(Viewer& viewer, const std::string& name, std::optional<std::size_t> object,
-              int& scrolled_to) {
+void show_object_row(Viewer& viewer, const std::string& name, std::optional<std::size_t> object,
+                     int& scrolled_to) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   const bool is_selected = viewer.selection().object() == object;
@@ -36,23 +36,24 @@ void show_row(Viewer& viewer, const std::string& name, std::optional<std::size_t
   if (!ImGui::IsItemVisible()) ImGui::SetScrollHereY();
 }
 
-void show_rows(Viewer& viewer) {
+void show_object_rows(Viewer& viewer) {
   const Scene& scene = viewer.snapshot()->prepared->scene;
   int& scrolled_to = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("scrolled to"), 0);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     ImGui::PushID(static_cast<int>(i));
-    show_row(viewer, instance.name, i, scrolled_to);
+    show_object_row(viewer, instance.name, i, scrolled_to);
     ImGui::TableNextColumn();
     text(std::to_string(instance.id));
     ImGui::TableNextColumn();
     text(scene.class_names.at(instance.class_id));
     ImGui::PopID();
   }
-  if (scene.instances.size() > 1) show_row(viewer, "(all objects)", std::nullopt, scrolled_to);
+  if (scene.instances.size() > 1)
+    show_object_row(viewer, "(all objects)", std::nullopt, scrolled_to);
 }
 
-void show_list(Viewer& viewer) {
+void show_object_list(Viewer& viewer) {
   constexpr std::size_t kMaxRows = 7;  // more rows scroll
   const std::size_t count = viewer.snapshot()->prepared->scene.instances.size();
   const std::size_t rows = std::min(kMaxRows, count > 1 ? count + 2 : count + 1);
@@ -65,7 +66,7 @@ void show_list(Viewer& viewer) {
   ImGui::TableSetupColumn("id", ImGuiTableColumnFlags_WidthStretch, 1.0F);
   ImGui::TableSetupColumn("class", ImGuiTableColumnFlags_WidthStretch, 2.5F);
   ImGui::TableHeadersRow();
-  show_rows(viewer);
+  show_object_rows(viewer);
   ImGui::EndTable();
 }
 
@@ -73,7 +74,7 @@ void show_list(Viewer& viewer) {
 void show_objects(Viewer& viewer) {
   const Snapshot* snapshot = viewer.snapshot();
   if (snapshot == nullptr) return;
-  show_list(viewer);
+  show_object_list(viewer);
   if (ImGui::Button("Frame object (f)")) viewer.frame_selected();
   ImGui::SameLine();
   bool keeps_in_view = viewer.keeps_in_view();

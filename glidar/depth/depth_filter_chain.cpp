@@ -5,20 +5,303 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/depth/depth_filter.hpp>
-#include <glidar/depth/filter_image.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
-#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
-namespace glidar::depth {
+namespace glidar {
+namespace {
+
+using Depths = std::vector<std::uint16_t>;
+using Disparities = std::vector<float>;
+
+/// An image between two filters: depths in units, or disparities in 1/32 px; 0: none.
+struct FilterImage {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::variant<Depths, Disparities> values;
+  float focal_length_px = 0.0F;
+};
+
+constexpr std::size_t kMaxMedianSide = 3;
+constexpr std::size_t kMaxSide = 8;
+
+/// The depths of a block, without holes.
+struct Block {
+  std::array<std::uint16_t, kMaxSide * kMaxSide> depth;
+  std::size_t count = 0;
+};
+
+Block collect_block(const std::uint16_t* corner, std::size_t side, std::size_t stride) {
+  Block block;
+  for (std::size_t y = 0; y < side; ++y) {
+    for (std::size_t x = 0; x < side; ++x) {
+      const std::uint16_t depth = corner[y * stride + x];
+      if (depth != 0) block.depth[block.count++] = depth;
+    }
+  }
+  return block;
+}
+
+/// Of an even number, the lower one of the two in the middle.
+std::uint16_t median(Block& block) {
+  const auto middle = block.depth.begin() + static_cast<std::ptrdiff_t>((block.count - 1) / 2);
+  std::nth_element(block.depth.begin(), middle,
+                   block.depth.begin() + static_cast<std::ptrdiff_t>(block.count));
+  return *middle;
+}
+
+std::uint16_t mean(const Block& block) {
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < block.count; ++i) sum += block.depth[i];
+  return static_cast<std::uint16_t>(sum / block.count);
+}
+
+std::size_t multiple_of_4(std::size_t size) {
+  return (size + 3) / 4 * 4;
+}
+
+/// Of an image of depths.
+void apply(const DecimationFilter& filter, FilterImage& image) {
+  const std::size_t side = filter.magnitude;
+  const auto& depth = std::get<Depths>(image.values);
+  const std::size_t columns = image.width / side;
+  const std::size_t rows = image.height / side;
+  if (columns == 0 || rows == 0) {
+    throw Error({"depth filter decimation",
+                 "the image has " + std::to_string(image.width) + "x" +
+                     std::to_string(image.height) + " pixels, less than one block",
+                 "at least " + std::to_string(side) + " rows and columns",
+                 "use a smaller magnitude"});
+  }
+  const std::size_t width = multiple_of_4(columns);
+  std::vector<std::uint16_t> decimated(width * multiple_of_4(rows), 0);
+  for (std::size_t y = 0; y < rows; ++y) {
+    for (std::size_t x = 0; x < columns; ++x) {
+      Block block = collect_block(depth.data() + (y * image.width + x) * side, side, image.width);
+      if (block.count == 0) continue;
+      decimated[y * width + x] = side <= kMaxMedianSide ? median(block) : mean(block);
+    }
+  }
+  image.width = width;
+  image.height = multiple_of_4(rows);
+  image.focal_length_px /= static_cast<float>(side);
+  image.values = std::move(decimated);
+}
+
+/// Removes depths outside the interval.
+void apply(const ThresholdFilter& filter, double unit_m, FilterImage& image) {
+  const auto unit = static_cast<float>(unit_m);
+  const auto min_m = static_cast<float>(filter.min_m);
+  const auto max_m = static_cast<float>(filter.max_m);
+  for (std::uint16_t& depth : std::get<Depths>(image.values)) {
+    const float depth_m = unit * static_cast<float>(depth);
+    if (!(depth_m >= min_m && depth_m <= max_m)) depth = 0;
+  }
+}
+
+constexpr float kStepsPerPixel = 32.0F;
+constexpr float kDepthEnd = 65536.0F;  ///< above 16 bits
+
+/// f b 32 / unit: the product of a depth in units and its disparity in 1/32 px.
+/// In the units and order of librealsense: the baseline is in millimetres there.
+float disparity_factor(double baseline_m, float focal_length_px, double unit_m) {
+  const float baseline_mm = static_cast<float>(baseline_m * 1000.0);
+  const float baseline = baseline_mm * 0.001F;
+  return baseline * focal_length_px * kStepsPerPixel / static_cast<float>(unit_m);
+}
+
+void to_disparity(float factor, FilterImage& image) {
+  const auto& depth = std::get<Depths>(image.values);
+  std::vector<float> disparity(depth.size(), 0.0F);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] != 0) disparity[i] = factor / static_cast<float>(depth[i]);
+  }
+  image.values = std::move(disparity);
+}
+
+/// Rounded; 0 beyond 16 bits.
+void to_depth(float factor, FilterImage& image) {
+  const auto& disparity = std::get<Disparities>(image.values);
+  std::vector<std::uint16_t> depth(disparity.size(), 0);
+  for (std::size_t i = 0; i < disparity.size(); ++i) {
+    if (!std::isnormal(disparity[i])) continue;
+    const float units = factor / disparity[i] + 0.5F;
+    if (units < kDepthEnd) depth[i] = static_cast<std::uint16_t>(units);
+  }
+  image.values = std::move(depth);
+}
+
+/// From this many pixels on, a hole along a row is not filled. Unlimited is 255 in librealsense.
+std::size_t hole_limit(HoleWidth width) {
+  if (width == HoleWidth::none) return 0;
+  if (width == HoleWidth::unlimited) return 255;
+  return std::size_t{1} << static_cast<unsigned>(width);
+}
+
+struct Smoothing {
+  float alpha;
+  float rest;  ///< 1 - alpha
+  float delta;
+  std::size_t hole_limit;
+};
+
+/// The moving average along a line of disparities.
+struct DisparityAverage {
+  float last = 0.0F;  ///< the value before, as it came in
+  float average = 0.0F;
+};
+
+float smooth_disparity(const Smoothing& smoothing, float value, DisparityAverage& line) {
+  const float last = std::exchange(line.last, value);
+  if (!(value > 0.0F)) return value;
+  const float step = last - value;
+  const bool continues = last > 0.0F && step < smoothing.delta && step > -smoothing.delta;
+  line.average = continues ? value * smoothing.alpha + line.average * smoothing.rest : value;
+  return line.average;
+}
+
+void smooth_rows(const Smoothing& smoothing, std::size_t width, std::vector<float>& values) {
+  for (std::size_t row = 0; row < values.size(); row += width) {
+    DisparityAverage forwards;
+    for (std::size_t x = 0; x < width; ++x) {
+      values[row + x] = smooth_disparity(smoothing, values[row + x], forwards);
+    }
+    DisparityAverage backwards;
+    for (std::size_t x = width; x-- > 0;) {
+      values[row + x] = smooth_disparity(smoothing, values[row + x], backwards);
+    }
+  }
+}
+
+void smooth_columns(const Smoothing& smoothing, std::size_t width, std::vector<float>& values) {
+  std::vector<DisparityAverage> down(width);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = smooth_disparity(smoothing, values[i], down[i % width]);
+  }
+  std::vector<DisparityAverage> up(width);
+  for (std::size_t row = values.size(); row > 0;) {
+    row -= width;
+    for (std::size_t x = 0; x < width; ++x) {
+      values[row + x] = smooth_disparity(smoothing, values[row + x], up[x]);
+    }
+  }
+}
+
+/// Copies `neighbour` into a hole that is not wider than the limit; `run` counts its pixels.
+void fill_pixel(std::size_t limit, float neighbour, std::size_t& run, float& value) {
+  if (value != 0.0F) {
+    run = 0;
+  } else if (++run < limit) {
+    value = neighbour;
+  }
+}
+
+/// Fills from the left, then from the right. As in librealsense, the right neighbour of the last
+/// pixel of a row is the first one of the next row, and the first pixel is not filled.
+void fill_rows(std::size_t limit, std::size_t width, std::vector<float>& values) {
+  for (std::size_t row = 0; row < values.size(); row += width) {
+    std::size_t run = 0;
+    for (std::size_t i = row + 1; i < row + width; ++i) {
+      fill_pixel(limit, values[i - 1], run, values[i]);
+    }
+    run = 0;
+    for (std::size_t i = row + width - 1; i > row; --i) {
+      const float neighbour = i + 1 < values.size() ? values[i + 1] : 0.0F;
+      fill_pixel(limit, neighbour, run, values[i]);
+    }
+  }
+}
+
+void smooth(const SpatialFilter& filter, const Smoothing& smoothing, std::size_t width,
+            std::vector<float>& values) {
+  for (std::uint32_t pass = 0; pass < filter.magnitude; ++pass) {
+    smooth_rows(smoothing, width, values);
+    smooth_columns(smoothing, width, values);
+  }
+  if (smoothing.hole_limit > 0) fill_rows(smoothing.hole_limit, width, values);
+}
+
+std::uint16_t mix_depths(const Smoothing& smoothing, std::uint16_t value, std::uint16_t last) {
+  const float mixed =
+      static_cast<float>(value) * smoothing.alpha + static_cast<float>(last) * smoothing.rest;
+  return static_cast<std::uint16_t>(std::floor(mixed + 0.5F));
+}
+
+float step_between(std::uint16_t a, std::uint16_t b) {
+  return static_cast<float>(std::abs(int{a} - int{b}));
+}
+
+/// Mixes `value` with the pixel before it in the row, or fills it. Values of less than `least` are
+/// holes. Returns the new value.
+std::uint16_t smooth_row_depth(const Smoothing& smoothing, std::uint16_t least, std::uint16_t last,
+                               std::uint16_t value, std::size_t& run) {
+  if (last == 0) return value;
+  if (value >= least) {
+    run = 0;
+    if (step_between(value, last) > smoothing.delta) return value;
+    return mix_depths(smoothing, value, last);
+  }
+  return smoothing.hole_limit > 0 && ++run < smoothing.hole_limit ? last : value;
+}
+
+/// As in librealsense, the last column is not changed forwards, and depths of 1 are holes
+/// backwards.
+void smooth_rows(const Smoothing& smoothing, std::size_t width, Depths& values) {
+  for (std::size_t row = 0; row < values.size(); row += width) {
+    std::size_t run = 0;
+    for (std::size_t i = row + 1; i + 1 < row + width; ++i) {
+      values[i] = smooth_row_depth(smoothing, 1, values[i - 1], values[i], run);
+    }
+    run = 0;
+    for (std::size_t i = row + width - 1; i-- > row;) {
+      values[i] = smooth_row_depth(smoothing, 2, values[i + 1], values[i], run);
+    }
+  }
+}
+
+/// As in librealsense, holes take part downwards if the depth beside them is below delta.
+void smooth_columns(const Smoothing& smoothing, std::size_t width, Depths& values) {
+  for (std::size_t i = width; i < values.size(); ++i) {
+    const std::uint16_t above = values[i - width];
+    if (step_between(above, values[i]) < smoothing.delta) {
+      values[i] = mix_depths(smoothing, values[i], above);
+    }
+  }
+  for (std::size_t i = values.size() - width; i-- > 0;) {
+    const std::uint16_t below = values[i + width];
+    if (values[i] == 0 || below == 0) continue;
+    if (step_between(below, values[i]) < smoothing.delta) {
+      values[i] = mix_depths(smoothing, values[i], below);
+    }
+  }
+}
+
+void smooth(const SpatialFilter& filter, const Smoothing& smoothing, std::size_t width,
+            Depths& values) {
+  for (std::uint32_t pass = 0; pass < filter.magnitude; ++pass) {
+    smooth_rows(smoothing, width, values);
+    smooth_columns(smoothing, width, values);
+  }
+}
+
+/// Disparities are smoothed in single precision. Of depths, which are rounded after each step,
+/// holes are filled in the same passes.
+void apply(const SpatialFilter& filter, FilterImage& image) {
+  const auto alpha = static_cast<float>(filter.alpha);
+  const Smoothing smoothing = {alpha, 1.0F - alpha, static_cast<float>(filter.delta),
+                               hole_limit(filter.hole_filling)};
+  std::visit([&](auto& values) { smooth(filter, smoothing, image.width, values); }, image.values);
+}
 
 /// The frames before.
 struct TemporalState {
@@ -28,8 +311,6 @@ struct TemporalState {
   std::vector<std::uint8_t> history;
   unsigned frame = 0;  ///< of the cycle
 };
-
-namespace {
 
 constexpr unsigned kCycle = 8;
 
@@ -152,294 +433,6 @@ void apply(const HoleFillingFilter& filter, FilterImage& image) {
   std::visit([&](auto& values) { fill(filter.source, image, values); }, image.values);
 }
 
-constexpr std::size_t kMaxMedianSide = 3;
-constexpr std::size_t kMaxSide = 8;
-
-/// The depths of a block, without holes.
-struct Block {
-  std::array<std::uint16_t, kMaxSide * kMaxSide> depth;
-  std::size_t count = 0;
-};
-
-Block collect_block(const std::uint16_t* corner, std::size_t side, std::size_t stride) {
-  Block block;
-  for (std::size_t y = 0; y < side; ++y) {
-    for (std::size_t x = 0; x < side; ++x) {
-      const std::uint16_t depth = corner[y * stride + x];
-      if (depth != 0) block.depth[block.count++] = depth;
-    }
-  }
-  return block;
-}
-
-/// Of an even number, the lower one of the two in the middle.
-std::uint16_t median(Block& block) {
-  const auto middle = block.depth.begin() + static_cast<std::ptrdiff_t>((block.count - 1) / 2);
-  std::nth_element(block.depth.begin(), middle,
-                   block.depth.begin() + static_cast<std::ptrdiff_t>(block.count));
-  return *middle;
-}
-
-std::uint16_t mean(const Block& block) {
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < block.count; ++i) sum += block.depth[i];
-  return static_cast<std::uint16_t>(sum / block.count);
-}
-
-std::size_t multiple_of_4(std::size_t size) {
-  return (size + 3) / 4 * 4;
-}
-
-/// Of an image of depths.
-void apply(const DecimationFilter& filter, FilterImage& image) {
-  const std::size_t side = filter.magnitude;
-  const auto& depth = std::get<std::vector<std::uint16_t>>(image.values);
-  const std::size_t columns = image.width / side;
-  const std::size_t rows = image.height / side;
-  if (columns == 0 || rows == 0) {
-    throw Error({"depth filter decimation",
-                 "the image has " + std::to_string(image.width) + "x" +
-                     std::to_string(image.height) + " pixels, less than one block",
-                 "at least " + std::to_string(side) + " rows and columns",
-                 "use a smaller magnitude"});
-  }
-  const std::size_t width = multiple_of_4(columns);
-  std::vector<std::uint16_t> decimated(width * multiple_of_4(rows), 0);
-  for (std::size_t y = 0; y < rows; ++y) {
-    for (std::size_t x = 0; x < columns; ++x) {
-      Block block = collect_block(depth.data() + (y * image.width + x) * side, side, image.width);
-      if (block.count == 0) continue;
-      decimated[y * width + x] = side <= kMaxMedianSide ? median(block) : mean(block);
-    }
-  }
-  image.width = width;
-  image.height = multiple_of_4(rows);
-  image.focal_length_px /= static_cast<float>(side);
-  image.values = std::move(decimated);
-}
-
-constexpr float kStepsPerPixel = 32.0F;
-constexpr float kDepthEnd = 65536.0F;  ///< above 16 bits
-
-/// f b 32 / unit: the product of a depth in units and its disparity in 1/32 px.
-/// In the units and order of librealsense: the baseline is in millimetres there.
-float disparity_factor(double baseline_m, float focal_length_px, double unit_m) {
-  const float baseline_mm = static_cast<float>(baseline_m * 1000.0);
-  const float baseline = baseline_mm * 0.001F;
-  return baseline * focal_length_px * kStepsPerPixel / static_cast<float>(unit_m);
-}
-
-void to_disparity(float factor, FilterImage& image) {
-  const auto& depth = std::get<std::vector<std::uint16_t>>(image.values);
-  std::vector<float> disparity(depth.size(), 0.0F);
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (depth[i] != 0) disparity[i] = factor / static_cast<float>(depth[i]);
-  }
-  image.values = std::move(disparity);
-}
-
-/// Rounded; 0 beyond 16 bits.
-void to_depth(float factor, FilterImage& image) {
-  const auto& disparity = std::get<std::vector<float>>(image.values);
-  std::vector<std::uint16_t> depth(disparity.size(), 0);
-  for (std::size_t i = 0; i < disparity.size(); ++i) {
-    if (!std::isnormal(disparity[i])) continue;
-    const float units = factor / disparity[i] + 0.5F;
-    if (units < kDepthEnd) depth[i] = static_cast<std::uint16_t>(units);
-  }
-  image.values = std::move(depth);
-}
-
-/// Removes depths outside the interval.
-void apply(const ThresholdFilter& filter, double unit_m, FilterImage& image) {
-  const auto unit = static_cast<float>(unit_m);
-  const auto min_m = static_cast<float>(filter.min_m);
-  const auto max_m = static_cast<float>(filter.max_m);
-  for (std::uint16_t& depth : std::get<std::vector<std::uint16_t>>(image.values)) {
-    const float depth_m = unit * static_cast<float>(depth);
-    if (!(depth_m >= min_m && depth_m <= max_m)) depth = 0;
-  }
-}
-
-/// From this many pixels on, a hole along a row is not filled. Unlimited is 255 in librealsense.
-std::size_t hole_limit(HoleWidth width) {
-  if (width == HoleWidth::none) return 0;
-  if (width == HoleWidth::unlimited) return 255;
-  return std::size_t{1} << static_cast<unsigned>(width);
-}
-
-struct Smoothing {
-  float alpha;
-  float rest;  ///< 1 - alpha
-  float delta;
-  std::size_t hole_limit;
-};
-
-/// The moving average along a line of disparities.
-struct DisparityAverage {
-  float last = 0.0F;  ///< the value before, as it came in
-  float average = 0.0F;
-};
-
-float smooth_disparity(const Smoothing& smoothing, float value, DisparityAverage& line) {
-  const float last = std::exchange(line.last, value);
-  if (!(value > 0.0F)) return value;
-  const float step = last - value;
-  const bool continues = last > 0.0F && step < smoothing.delta && step > -smoothing.delta;
-  line.average = continues ? value * smoothing.alpha + line.average * smoothing.rest : value;
-  return line.average;
-}
-
-void smooth_rows(const Smoothing& smoothing, std::size_t width, std::vector<float>& values) {
-  for (std::size_t row = 0; row < values.size(); row += width) {
-    DisparityAverage forwards;
-    for (std::size_t x = 0; x < width; ++x) {
-      values[row + x] = smooth_disparity(smoothing, values[row + x], forwards);
-    }
-    DisparityAverage backwards;
-    for (std::size_t x = width; x-- > 0;) {
-      values[row + x] = smooth_disparity(smoothing, values[row + x], backwards);
-    }
-  }
-}
-
-void smooth_columns(const Smoothing& smoothing, std::size_t width, std::vector<float>& values) {
-  std::vector<DisparityAverage> down(width);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = smooth_disparity(smoothing, values[i], down[i % width]);
-  }
-  std::vector<DisparityAverage> up(width);
-  for (std::size_t row = values.size(); row > 0;) {
-    row -= width;
-    for (std::size_t x = 0; x < width; ++x) {
-      values[row + x] = smooth_disparity(smoothing, values[row + x], up[x]);
-    }
-  }
-}
-
-/// Copies `neighbour` into a hole that is not wider than the limit; `run` counts its pixels.
-void fill_pixel(std::size_t limit, float neighbour, std::size_t& run, float& value) {
-  if (value != 0.0F) {
-    run = 0;
-  } else if (++run < limit) {
-    value = neighbour;
-  }
-}
-
-/// Fills from the left, then from the right. As in librealsense, the right neighbour of the last
-/// pixel of a row is the first one of the next row, and the first pixel is not filled.
-void fill_rows(std::size_t limit, std::size_t width, std::vector<float>& values) {
-  for (std::size_t row = 0; row < values.size(); row += width) {
-    std::size_t run = 0;
-    for (std::size_t i = row + 1; i < row + width; ++i) {
-      fill_pixel(limit, values[i - 1], run, values[i]);
-    }
-    run = 0;
-    for (std::size_t i = row + width - 1; i > row; --i) {
-      const float neighbour = i + 1 < values.size() ? values[i + 1] : 0.0F;
-      fill_pixel(limit, neighbour, run, values[i]);
-    }
-  }
-}
-
-void smooth(const SpatialFilter& filter, const Smoothing& smoothing, std::size_t width,
-            std::vector<float>& values) {
-  for (std::uint32_t pass = 0; pass < filter.magnitude; ++pass) {
-    smooth_rows(smoothing, width, values);
-    smooth_columns(smoothing, width, values);
-  }
-  if (smoothing.hole_limit > 0) fill_rows(smoothing.hole_limit, width, values);
-}
-
-using Depths = std::vector<std::uint16_t>;
-
-std::uint16_t mix_depths(const Smoothing& smoothing, std::uint16_t value, std::uint16_t last) {
-  const float mixed =
-      static_cast<float>(value) * smoothing.alpha + static_cast<float>(last) * smoothing.rest;
-  return static_cast<std::uint16_t>(std::floor(mixed + 0.5F));
-}
-
-float step_between(std::uint16_t a, std::uint16_t b) {
-  return static_cast<float>(std::abs(int{a} - int{b}));
-}
-
-/// Mixes `value` with the pixel before it in the row, or fills it. Values of less than `least` are
-/// holes. Returns the new value.
-std::uint16_t smooth_row_depth(const Smoothing& smoothing, std::uint16_t least, std::uint16_t last,
-                               std::uint16_t value, std::size_t& run) {
-  if (last == 0) return value;
-  if (value >= least) {
-    run = 0;
-    if (step_between(value, last) > smoothing.delta) return value;
-    return mix_depths(smoothing, value, last);
-  }
-  return smoothing.hole_limit > 0 && ++run < smoothing.hole_limit ? last : value;
-}
-
-/// As in librealsense, the last column is not changed forwards, and depths of 1 are holes
-/// backwards.
-void smooth_rows(const Smoothing& smoothing, std::size_t width, Depths& values) {
-  for (std::size_t row = 0; row < values.size(); row += width) {
-    std::size_t run = 0;
-    for (std::size_t i = row + 1; i + 1 < row + width; ++i) {
-      values[i] = smooth_row_depth(smoothing, 1, values[i - 1], values[i], run);
-    }
-    run = 0;
-    for (std::size_t i = row + width - 1; i-- > row;) {
-      values[i] = smooth_row_depth(smoothing, 2, values[i + 1], values[i], run);
-    }
-  }
-}
-
-/// As in librealsense, holes take part downwards if the depth beside them is below delta.
-void smooth_columns(const Smoothing& smoothing, std::size_t width, Depths& values) {
-  for (std::size_t i = width; i < values.size(); ++i) {
-    const std::uint16_t above = values[i - width];
-    if (step_between(above, values[i]) < smoothing.delta) {
-      values[i] = mix_depths(smoothing, values[i], above);
-    }
-  }
-  for (std::size_t i = values.size() - width; i-- > 0;) {
-    const std::uint16_t below = values[i + width];
-    if (values[i] == 0 || below == 0) continue;
-    if (step_between(below, values[i]) < smoothing.delta) {
-      values[i] = mix_depths(smoothing, values[i], below);
-    }
-  }
-}
-
-void smooth(const SpatialFilter& filter, const Smoothing& smoothing, std::size_t width,
-            Depths& values) {
-  for (std::uint32_t pass = 0; pass < filter.magnitude; ++pass) {
-    smooth_rows(smoothing, width, values);
-    smooth_columns(smoothing, width, values);
-  }
-}
-
-/// Disparities are smoothed in single precision. Of depths, which are rounded after each step,
-/// holes are filled in the same passes.
-void apply(const SpatialFilter& filter, FilterImage& image) {
-  const auto alpha = static_cast<float>(filter.alpha);
-  const Smoothing smoothing = {alpha, 1.0F - alpha, static_cast<float>(filter.delta),
-                               hole_limit(filter.hole_filling)};
-  std::visit([&](auto& values) { smooth(filter, smoothing, image.width, values); }, image.values);
-}
-
-}  // namespace
-}  // namespace glidar::depth
-
-namespace glidar {
-
-struct DepthFilterChain::State {
-  std::vector<DepthFilter> filters;
-  DepthFilterCamera camera;
-  std::uint32_t width = 0;                     ///< of the image before
-  std::uint32_t height = 0;                    ///< of it
-  std::vector<depth::TemporalState> temporal;  ///< for each filter, used by temporal ones
-};
-
-namespace {
-
 void require_camera(std::span<const DepthFilter> filters, const DepthFilterCamera& camera) {
   require_number(accepts(kAboveZero, camera.unit_m), "camera of depth filters, unit_m",
                  camera.unit_m, kAboveZero.allowed);
@@ -466,25 +459,31 @@ void require_depths(const DepthImage& image) {
 /// Applies one filter; `factor` is that of the last conversion to disparities.
 struct ApplyFilter {
   const DepthFilterCamera& camera;
-  depth::TemporalState& temporal;
-  depth::FilterImage& image;
+  TemporalState& temporal;
+  FilterImage& image;
   float& factor;
 
-  void operator()(const DecimationFilter& filter) const { depth::apply(filter, image); }
-  void operator()(const ThresholdFilter& filter) const {
-    depth::apply(filter, camera.unit_m, image);
-  }
+  void operator()(const DecimationFilter& filter) const { apply(filter, image); }
+  void operator()(const ThresholdFilter& filter) const { apply(filter, camera.unit_m, image); }
   void operator()(const ToDisparity& filter) const {
-    factor = depth::disparity_factor(filter.baseline_m, image.focal_length_px, camera.unit_m);
-    depth::to_disparity(factor, image);
+    factor = disparity_factor(filter.baseline_m, image.focal_length_px, camera.unit_m);
+    to_disparity(factor, image);
   }
-  void operator()(const ToDepth& /*filter*/) const { depth::to_depth(factor, image); }
-  void operator()(const SpatialFilter& filter) const { depth::apply(filter, image); }
-  void operator()(const TemporalFilter& filter) const { depth::apply(filter, image, temporal); }
-  void operator()(const HoleFillingFilter& filter) const { depth::apply(filter, image); }
+  void operator()(const ToDepth& /*filter*/) const { to_depth(factor, image); }
+  void operator()(const SpatialFilter& filter) const { apply(filter, image); }
+  void operator()(const TemporalFilter& filter) const { apply(filter, image, temporal); }
+  void operator()(const HoleFillingFilter& filter) const { apply(filter, image); }
 };
 
 }  // namespace
+
+struct DepthFilterChain::State {
+  std::vector<DepthFilter> filters;
+  DepthFilterCamera camera;
+  std::uint32_t width = 0;              ///< of the image before
+  std::uint32_t height = 0;             ///< of it
+  std::vector<TemporalState> temporal;  ///< for each filter, used by temporal ones
+};
 
 void describe(DepthFilterCamera& camera, FieldVisitor& visitor) {
   visitor.number({"focal_length_px",
@@ -516,15 +515,15 @@ DepthImage DepthFilterChain::apply(const DepthImage& image) {
   if (image.width != state_->width || image.height != state_->height) reset();
   state_->width = image.width;
   state_->height = image.height;
-  depth::FilterImage values = {image.width, image.height, image.depth,
-                               static_cast<float>(state_->camera.focal_length_px)};
+  FilterImage values = {image.width, image.height, image.depth,
+                        static_cast<float>(state_->camera.focal_length_px)};
   float factor = 0.0F;
   for (std::size_t i = 0; i < state_->filters.size(); ++i) {
     std::visit(ApplyFilter{state_->camera, state_->temporal[i], values, factor},
                state_->filters[i]);
   }
   return {static_cast<std::uint32_t>(values.width), static_cast<std::uint32_t>(values.height),
-          std::get<std::vector<std::uint16_t>>(std::move(values.values))};
+          std::get<Depths>(std::move(values.values))};
 }
 
 DepthFilterCamera filtered_camera(std::span<const DepthFilter> filters, DepthFilterCamera camera) {

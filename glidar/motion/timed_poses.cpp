@@ -232,6 +232,23 @@ Cubic rotation_after(std::span<const TimedPose> poses, const std::vector<Vector3
   return make_cubic(turn, rates[before], end_slope(RotationVector(turn.change), rates[before + 1]));
 }
 
+void to_pose(const TimedPose& timed, Pose& pose) {
+  pose.linear() = timed.orientation.toRotationMatrix();
+  pose.translation() = timed.position_m;
+  pose.makeAffine();
+}
+
+[[noreturn]] void fail(std::size_t entry, const TimedPoseError& error) {
+  throw Error({"timed poses, entry " + std::to_string(entry + 1), error.found, error.allowed});
+}
+
+void check(const std::vector<TimedPose>& poses) {
+  if (poses.empty()) throw Error({"timed poses", "there is none", "at least one pose"});
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (const auto error = find_error(i == 0 ? nullptr : &poses[i - 1], poses[i])) fail(i, *error);
+  }
+}
+
 }  // namespace
 
 PoseSpline::PoseSpline(std::span<const TimedPose> poses) {
@@ -270,23 +287,6 @@ KinematicState PoseSpline::state_at(std::span<const TimedPose> poses, std::size_
   state.angular_acceleration_rad_s2 =
       rotation.angular_velocity(vector.curvature(since_s)) + rotation.jacobian_rate(slope);
   return state;
-}
-
-void to_pose(const TimedPose& timed, Pose& pose) {
-  pose.linear() = timed.orientation.toRotationMatrix();
-  pose.translation() = timed.position_m;
-  pose.makeAffine();
-}
-
-[[noreturn]] void fail(std::size_t entry, const TimedPoseError& error) {
-  throw Error({"timed poses, entry " + std::to_string(entry + 1), error.found, error.allowed});
-}
-
-void check(const std::vector<TimedPose>& poses) {
-  if (poses.empty()) throw Error({"timed poses", "there is none", "at least one pose"});
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (const auto error = find_error(i == 0 ? nullptr : &poses[i - 1], poses[i])) fail(i, *error);
-  }
 }
 
 std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPose& next) {

@@ -10,6 +10,21 @@
 namespace glidar {
 namespace {
 
+/// The pattern as a camera at the position of the projector sees it, W/sr.
+std::vector<float> view_pattern(const PreparedActiveStereo& prepared) {
+  const PreparedImager& imager = prepared.imager;
+  std::vector<float> rays;
+  rays.reserve(imager.rays.size());
+  for (const Eigen::Vector3d& ray : imager.rays.directions) {
+    rays.push_back(
+        static_cast<float>(intensity_at(prepared.pattern, ray.x() / ray.z(), ray.y() / ray.z())));
+  }
+  std::vector<float> view;
+  ThreadPool one_thread(1);
+  average_rays(rays, imager.setup.sub_rays, imager.weights, imager.size, one_thread, view);
+  return view;
+}
+
 /// The weather for this sensor's beams; without a footprint they are those of BeamShape.
 std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
   if (!sensor.weather) return {};
@@ -65,53 +80,6 @@ std::vector<NoiseStep> noise_steps(const Sensor& sensor) {
 
 }  // namespace
 
-bool needs_waveform(const Sensor& sensor, bool has_mirrors) {
-  if (sensor.weather) return true;
-  if (!sensor.lidar_equation) return false;
-  const Receiver& receiver = sensor.receiver;
-  const Return& first = receiver.returns[0];
-  const bool reports_strongest =
-      receiver.returns.size() == 1 && first.order == Return::Order::strongest && first.rank == 0;
-  return sensor.footprint || !reports_strongest || receiver.timing != Receiver::Timing::centroid ||
-         has_mirrors;
-}
-
-PreparedSensor prepare_sensor(const Sensor& sensor, bool has_mirrors) {
-  check_channel_ranges(sensor);
-  check_doppler(sensor);
-  if (physical_camera(sensor) != nullptr) check_depth_camera(sensor);
-  PreparedSensor prepared{.sensor = sensor,
-                          .noise = plan_noise(noise_steps(sensor), 1.0 / sensor.rate_hz),
-                          .required_hit_columns = required_hit_columns(sensor),
-                          .pulse_model = {},
-                          .depth_camera = {}};
-  if (needs_waveform(sensor, has_mirrors)) prepared.pulse_model = pulse_model(sensor, has_mirrors);
-  if (const DepthCamera* depth_camera = physical_camera(sensor)) {
-    std::visit([&](const auto& camera) { prepared.depth_camera.emplace(prepare(camera, sensor)); },
-               *depth_camera);
-  }
-  return prepared;
-}
-
-namespace {
-
-/// The pattern as a camera at the position of the projector sees it, W/sr.
-std::vector<float> view_pattern(const PreparedActiveStereo& prepared) {
-  const PreparedImager& imager = prepared.imager;
-  std::vector<float> rays;
-  rays.reserve(imager.rays.size());
-  for (const Eigen::Vector3d& ray : imager.rays.directions) {
-    rays.push_back(
-        static_cast<float>(intensity_at(prepared.pattern, ray.x() / ray.z(), ray.y() / ray.z())));
-  }
-  std::vector<float> view;
-  ThreadPool one_thread(1);
-  average_rays(rays, imager.setup.sub_rays, imager.weights, imager.size, one_thread, view);
-  return view;
-}
-
-}  // namespace
-
 PreparedActiveStereo prepare_active_stereo(const ActiveStereo& camera, const Sensor& sensor) {
   PreparedActiveStereo prepared{
       .camera = camera,
@@ -151,6 +119,34 @@ std::optional<Eigen::Vector2d> projector_pixel(const PreparedStructuredLight& pr
   const bool is_inside = pixel->x() >= -0.5 && pixel->x() <= image.width - 0.5 &&
                          pixel->y() >= -0.5 && pixel->y() <= image.height - 0.5;
   return is_inside ? pixel : std::nullopt;
+}
+
+bool needs_waveform(const Sensor& sensor, bool has_mirrors) {
+  if (sensor.weather) return true;
+  if (!sensor.lidar_equation) return false;
+  const Receiver& receiver = sensor.receiver;
+  const Return& first = receiver.returns[0];
+  const bool reports_strongest =
+      receiver.returns.size() == 1 && first.order == Return::Order::strongest && first.rank == 0;
+  return sensor.footprint || !reports_strongest || receiver.timing != Receiver::Timing::centroid ||
+         has_mirrors;
+}
+
+PreparedSensor prepare_sensor(const Sensor& sensor, bool has_mirrors) {
+  check_channel_ranges(sensor);
+  check_doppler(sensor);
+  if (physical_camera(sensor) != nullptr) check_depth_camera(sensor);
+  PreparedSensor prepared{.sensor = sensor,
+                          .noise = plan_noise(noise_steps(sensor), 1.0 / sensor.rate_hz),
+                          .required_hit_columns = required_hit_columns(sensor),
+                          .pulse_model = {},
+                          .depth_camera = {}};
+  if (needs_waveform(sensor, has_mirrors)) prepared.pulse_model = pulse_model(sensor, has_mirrors);
+  if (const DepthCamera* depth_camera = physical_camera(sensor)) {
+    std::visit([&](const auto& camera) { prepared.depth_camera.emplace(prepare(camera, sensor)); },
+               *depth_camera);
+  }
+  return prepared;
 }
 
 }  // namespace glidar

@@ -22,6 +22,20 @@
 #include <vector>
 
 namespace glidar::stereo {
+
+// Of kernel.cpp, which is compiled for each instruction set.
+namespace baseline {
+extern const Kernel kKernel;
+}
+#ifdef __x86_64__
+namespace avx2 {
+extern const Kernel kKernel;
+}
+namespace avx512 {
+extern const Kernel kKernel;
+}
+#endif
+
 namespace {
 
 /// Sums over the window of each pixel, of 2 radius + 1 rows and columns, as far as it is inside the
@@ -291,7 +305,7 @@ std::size_t progress_rows(const CostVolume& volume) {
 }
 
 /// Computes the costs of all pixels and their sums over all paths: first the costs, the paths along
-/// rows and those from the row above, then the paths from the row below. With `keeps_sums`, the
+/// rows and those from the row above, then the paths from the row below. With `keeps_costs`, the
 /// sums are in the volume afterwards.
 void sum_paths(const CostSource& source, const StereoRun& run, CostVolume& volume,
                RowSumsFunction on_row, ProgressCounter& progress) {
@@ -300,20 +314,6 @@ void sum_paths(const CostSource& source, const StereoRun& run, CostVolume& volum
 }
 
 /// The inner loops for an instruction set, which the processor must have.
-const Kernel& kernel_for(InstructionSet set);
-
-namespace baseline {
-extern const Kernel kKernel;
-}
-#ifdef __x86_64__
-namespace avx2 {
-extern const Kernel kKernel;
-}
-namespace avx512 {
-extern const Kernel kKernel;
-}
-#endif
-
 const Kernel& kernel_for(InstructionSet set) {
 #ifdef __x86_64__
   if (set == InstructionSet::avx512) return avx512::kKernel;
@@ -461,56 +461,6 @@ void add_window(const GreyImage& image, const StereoOptions& options, std::uint3
 
 }  // namespace
 
-StereoMatch match_pair(const GreyImage& left, const GreyImage& right, const StereoOptions& options,
-                       const StereoRun& run, CostVolume& volume) {
-  require_pair(left, right, options);
-  const InstructionSet set = run.instruction_set.empty()
-                                 ? select_instruction_set()
-                                 : find_instruction_set(run.instruction_set);
-  resize_volume(left, options.disparities, volume);
-  StereoMatch match = empty_match(left, options);
-  const CostSource source(left, right, options, kernel_for(set));
-  const WindowSums windows =
-      sum_windows(left, window_radius_px(options), saturation_level(left, options), run.pool);
-  const std::size_t threads = run.pool == nullptr ? 1 : run.pool->threads();
-  WinnerRows rows(source, volume, windows, threads, match);
-  const auto on_row = [&](std::size_t worker, std::size_t y, const std::int16_t* sums) {
-    rows.finish(worker, y, sums);
-  };
-  ProgressCounter progress(run.progress, progress_rows(volume));
-  sum_paths(source, run, volume, RowSumsFunction(on_row), progress);
-  progress.finish();
-  return match;
-}
-
-PixelEvidence gather_evidence(const CostVolume& volume, const StereoMatch& match,
-                              const GreyImage& left, const StereoOptions& options,
-                              std::size_t pixel) {
-  const auto x = static_cast<std::uint32_t>(pixel % volume.width);
-  const auto y = static_cast<std::uint32_t>(pixel / volume.width);
-  const std::int16_t* const sums = volume.sum.data() + pixel * volume.lanes;
-  const auto count = static_cast<std::ptrdiff_t>(volume.disparities);
-  const auto winner = static_cast<std::uint32_t>(std::min_element(sums, sums + count) - sums);
-  PixelEvidence evidence = {.column = x, .winner = winner};
-  evidence.right_winner =
-      right_winner(volume, std::int64_t{x} - static_cast<std::int64_t>(winner), y);
-  const std::int64_t best = sums[winner] + kSumOffset;
-  const auto is_rival = [&](std::int16_t sum) {
-    return (sum + kSumOffset) * std::int64_t{100 - options.uniqueness_percent} <= 100 * best;
-  };
-  const auto rivals = static_cast<std::uint32_t>(std::count_if(sums, sums + count, is_rival));
-  evidence.rivals = without_neighbours(rivals, winner, options, sums);
-  evidence.window_pixels = 0;
-  add_window(left, options, x, y, evidence);
-  const auto row_end =
-      match.disparity_px.begin() + static_cast<std::ptrdiff_t>((std::size_t{y} + 1) * volume.width);
-  const auto next =
-      std::find_if(match.disparity_px.begin() + static_cast<std::ptrdiff_t>(pixel + 1), row_end,
-                   [](float disparity_px) { return !std::isnan(disparity_px); });
-  if (next != row_end) evidence.next_disparity_px = *next;
-  return evidence;
-}
-
 bool is_inside(const PixelEvidence& pixel, const StereoOptions& options) {
   return pixel.column >= options.min_disparity_px + pixel.winner + window_radius_px(options);
 }
@@ -584,6 +534,56 @@ double corrected_offset(double offset, double a_factor) {
 double rounded_disparity(double disparity_px, std::uint32_t steps_per_px) {
   if (steps_per_px == 0) return disparity_px;
   return std::floor(disparity_px * steps_per_px + 0.5) / steps_per_px;
+}
+
+StereoMatch match_pair(const GreyImage& left, const GreyImage& right, const StereoOptions& options,
+                       const StereoRun& run, CostVolume& volume) {
+  require_pair(left, right, options);
+  const InstructionSet set = run.instruction_set.empty()
+                                 ? select_instruction_set()
+                                 : find_instruction_set(run.instruction_set);
+  resize_volume(left, options.disparities, volume);
+  StereoMatch match = empty_match(left, options);
+  const CostSource source(left, right, options, kernel_for(set));
+  const WindowSums windows =
+      sum_windows(left, window_radius_px(options), saturation_level(left, options), run.pool);
+  const std::size_t threads = run.pool == nullptr ? 1 : run.pool->threads();
+  WinnerRows rows(source, volume, windows, threads, match);
+  const auto on_row = [&](std::size_t worker, std::size_t y, const std::int16_t* sums) {
+    rows.finish(worker, y, sums);
+  };
+  ProgressCounter progress(run.progress, progress_rows(volume));
+  sum_paths(source, run, volume, RowSumsFunction(on_row), progress);
+  progress.finish();
+  return match;
+}
+
+PixelEvidence gather_evidence(const CostVolume& volume, const StereoMatch& match,
+                              const GreyImage& left, const StereoOptions& options,
+                              std::size_t pixel) {
+  const auto x = static_cast<std::uint32_t>(pixel % volume.width);
+  const auto y = static_cast<std::uint32_t>(pixel / volume.width);
+  const std::int16_t* const sums = volume.sum.data() + pixel * volume.lanes;
+  const auto count = static_cast<std::ptrdiff_t>(volume.disparities);
+  const auto winner = static_cast<std::uint32_t>(std::min_element(sums, sums + count) - sums);
+  PixelEvidence evidence = {.column = x, .winner = winner};
+  evidence.right_winner =
+      right_winner(volume, std::int64_t{x} - static_cast<std::int64_t>(winner), y);
+  const std::int64_t best = sums[winner] + kSumOffset;
+  const auto is_rival = [&](std::int16_t sum) {
+    return (sum + kSumOffset) * std::int64_t{100 - options.uniqueness_percent} <= 100 * best;
+  };
+  const auto rivals = static_cast<std::uint32_t>(std::count_if(sums, sums + count, is_rival));
+  evidence.rivals = without_neighbours(rivals, winner, options, sums);
+  evidence.window_pixels = 0;
+  add_window(left, options, x, y, evidence);
+  const auto row_end =
+      match.disparity_px.begin() + static_cast<std::ptrdiff_t>((std::size_t{y} + 1) * volume.width);
+  const auto next =
+      std::find_if(match.disparity_px.begin() + static_cast<std::ptrdiff_t>(pixel + 1), row_end,
+                   [](float disparity_px) { return !std::isnan(disparity_px); });
+  if (next != row_end) evidence.next_disparity_px = *next;
+  return evidence;
 }
 
 }  // namespace glidar::stereo

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/tof: decode_tof() with what leads to its result.
+// decode_tof() with what leads to its result.
 
 #include <glidar/tof/tof_decode.hpp>
 #include <glidar/tof/tof_options.hpp>

@@ -12,13 +12,11 @@ NB_MODULE(_core, module) {
   glidar::python::bind_trajectory_state(module);
   glidar::python::bind_imu(module);
   glidar::python::bind_scene(module);
-  glidar::python::bind_scene_state(module);
   glidar::python::bind_sensor(module);
   glidar::python::bind_frame(module);
   glidar::python::bind_bag(module);
   glidar::python::bind_boxes(module);
   glidar::python::bind_simulator(module);
-  glidar::python::bind_frame_state(module);
   glidar::python::bind_point_trace(module);
   glidar::python::bind_depth(module);
   glidar::python::bind_stereo(module);

@@ -231,6 +231,50 @@ Mesh mesh_from(const nb::dict& state) {
   return mesh;
 }
 
+void add_classes(SceneHandle& handle, const std::vector<std::string>& names) {
+  std::vector<std::string>& known = handle.change().class_names;
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+  }
+}
+
+/// The motion of objects and rig, and the rig's pose, in the scene file.
+nb::dict placing_state(const SceneHandle& handle) {
+  nb::dict state;
+  state["motion"] = states_of(handle.motion);
+  std::vector<Trajectory> rig;
+  if (handle.rig_motion) rig.push_back(*handle.rig_motion);
+  if (handle.world_from_rig) rig.emplace_back(ConstantPose{*handle.world_from_rig});
+  state["rig"] = states_of(rig);
+  state["looks_at"] = handle.looks_at;
+  return state;
+}
+
+std::optional<std::string> hash_of_file(const std::filesystem::path& path) {
+  const std::optional<Hash128> hash = hash_file(path);
+  return hash ? std::optional(hex(*hash)) : std::nullopt;
+}
+
+/// What pickling and comparing scenes need.
+void bind_scene_state(nb::module_& module) {
+  module.def(
+      "copy_scene", [](const SceneHandle& scene) { return SceneHandle(scene); }, nb::arg("scene"));
+  module.def(
+      "scene_digest", [](const SceneHandle& scene) { return digest_of(*scene.scene); },
+      nb::arg("scene"));
+  module.def(
+      "loaded_mesh_count",
+      [](const SceneHandle& scene) { return loaded_meshes(*scene.scene).size(); },
+      nb::arg("scene"));
+  module.def("mesh_state", mesh_state, nb::arg("scene"), nb::arg("index"),
+             nb::sig("def mesh_state(scene: Scene, index: int) -> dict[str, typing.Any]"));
+  module.def("add_classes", add_classes, nb::arg("scene"), nb::arg("names"));
+  module.def("placing_state", placing_state, nb::arg("scene"),
+             nb::sig("def placing_state(scene: Scene) -> dict[str, typing.Any]"));
+  module.def("hash_file", hash_of_file, nb::arg("path"),
+             nb::sig("def hash_file(path: str) -> str | None"));
+}
+
 /// Options from Python for reading a model.
 ModelOptions model_options(const nb::dict& given) {
   ModelOptions options;
@@ -527,49 +571,6 @@ std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> bounds_of(const Scene
 
 }  // namespace
 
-void add_classes(SceneHandle& handle, const std::vector<std::string>& names) {
-  std::vector<std::string>& known = handle.change().class_names;
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
-  }
-}
-
-/// The motion of objects and rig, and the rig's pose, in the scene file.
-nb::dict placing_state(const SceneHandle& handle) {
-  nb::dict state;
-  state["motion"] = states_of(handle.motion);
-  std::vector<Trajectory> rig;
-  if (handle.rig_motion) rig.push_back(*handle.rig_motion);
-  if (handle.world_from_rig) rig.emplace_back(ConstantPose{*handle.world_from_rig});
-  state["rig"] = states_of(rig);
-  state["looks_at"] = handle.looks_at;
-  return state;
-}
-
-std::optional<std::string> hash_of_file(const std::filesystem::path& path) {
-  const std::optional<Hash128> hash = hash_file(path);
-  return hash ? std::optional(hex(*hash)) : std::nullopt;
-}
-
-void bind_scene_state(nb::module_& module) {
-  module.def(
-      "copy_scene", [](const SceneHandle& scene) { return SceneHandle(scene); }, nb::arg("scene"));
-  module.def(
-      "scene_digest", [](const SceneHandle& scene) { return digest_of(*scene.scene); },
-      nb::arg("scene"));
-  module.def(
-      "loaded_mesh_count",
-      [](const SceneHandle& scene) { return loaded_meshes(*scene.scene).size(); },
-      nb::arg("scene"));
-  module.def("mesh_state", mesh_state, nb::arg("scene"), nb::arg("index"),
-             nb::sig("def mesh_state(scene: Scene, index: int) -> dict[str, typing.Any]"));
-  module.def("add_classes", add_classes, nb::arg("scene"), nb::arg("names"));
-  module.def("placing_state", placing_state, nb::arg("scene"),
-             nb::sig("def placing_state(scene: Scene) -> dict[str, typing.Any]"));
-  module.def("hash_file", hash_of_file, nb::arg("path"),
-             nb::sig("def hash_file(path: str) -> str | None"));
-}
-
 Scene& SceneHandle::change() {
   prepared.clear();
   if (scene.use_count() > 1) scene = std::make_shared<Scene>(*scene);
@@ -670,6 +671,7 @@ void bind_scene(nb::module_& module) {
   module.def("load_scene", load, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
              nb::sig("def load_scene(path: str, options: dict[str, typing.Any], "
                      "log: object | None) -> Scene"));
+  bind_scene_state(module);
 }
 
 }  // namespace glidar::python

@@ -270,6 +270,18 @@ void require_hits_of(const Scene& scene, const Measured& measured) {
   }
 }
 
+/// What pickling and comparing frames need.
+void bind_frame_state(nb::module_& module) {
+  module.def("frame_state", frame_state, nb::arg("frame"),
+             nb::sig("def frame_state(frame: Frame) -> dict[str, typing.Any]"));
+  module.def("frame_arrays", arrays_of, nb::arg("frame"),
+             nb::sig("def frame_arrays(frame: Frame) -> dict[str, numpy.ndarray]"));
+  module.def("restore_frame", restore_frame, nb::arg("state"), nb::arg("arrays"), nb::arg("sensor"),
+             nb::sig("def restore_frame(state: dict[str, typing.Any], arrays: dict[str, "
+                     "numpy.ndarray], sensor: Sensor) -> Frame"));
+  module.def("has_same_columns", has_same_columns, nb::arg("one"), nb::arg("other"));
+}
+
 /// How many frames are measured together: enough for renderers that draw many at once, and few
 /// enough that what was cast is still near in memory when its noise is added.
 constexpr std::size_t kTogether = 8;
@@ -442,17 +454,6 @@ HitColumnMask hit_columns(const std::vector<std::string>& columns) {
 
 }  // namespace
 
-void bind_frame_state(nb::module_& module) {
-  module.def("frame_state", frame_state, nb::arg("frame"),
-             nb::sig("def frame_state(frame: Frame) -> dict[str, typing.Any]"));
-  module.def("frame_arrays", arrays_of, nb::arg("frame"),
-             nb::sig("def frame_arrays(frame: Frame) -> dict[str, numpy.ndarray]"));
-  module.def("restore_frame", restore_frame, nb::arg("state"), nb::arg("arrays"), nb::arg("sensor"),
-             nb::sig("def restore_frame(state: dict[str, typing.Any], arrays: dict[str, "
-                     "numpy.ndarray], sensor: Sensor) -> Frame"));
-  module.def("has_same_columns", has_same_columns, nb::arg("one"), nb::arg("other"));
-}
-
 void bind_simulator(nb::module_& module) {
   nb::class_<HitColumnMask>(module, "HitColumnMask", "The ground truth that a frame keeps.");
   module.def("hit_columns_for", hit_columns, nb::arg("columns"));
@@ -472,6 +473,7 @@ void bind_simulator(nb::module_& module) {
   module.def("attach_scene", attach_scene, nb::arg("frame"), nb::arg("scene"), nb::arg("renderer"));
   module.def("make_simulator", make_simulator, nb::arg("scene"), nb::arg("sensor"),
              nb::arg("renderer"), nb::arg("threads"));
+  bind_frame_state(module);
 }
 
 }  // namespace glidar::python

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/cli_fwd.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/depth_images.hpp>

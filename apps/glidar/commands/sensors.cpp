@@ -35,7 +35,7 @@
 namespace glidar::app {
 namespace {
 
-using SurfaceJson = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::array kSurfaceWavelengths_nm = {850, 905, 1064, 1550};
 
@@ -46,8 +46,8 @@ std::array<double, kSurfaceWavelengths_nm.size()> reflectances(const SurfacePres
   return values;
 }
 
-SurfaceJson json_of(const SurfacePreset& surface) {
-  SurfaceJson reflectance = SurfaceJson::object();
+Json json_of(const SurfacePreset& surface) {
+  Json reflectance = Json::object();
   const auto values = reflectances(surface);
   for (std::size_t k = 0; k < values.size(); ++k) {
     reflectance[std::to_string(kSurfaceWavelengths_nm[k])] = values[k];
@@ -76,18 +76,23 @@ void print_surfaces(const std::vector<SurfacePreset>& surfaces) {
 /// Prints the surface presets and their reflectances.
 void list_surfaces(bool as_json) {
   const std::vector<SurfacePreset> surfaces = load_surfaces();
-  if (!as_json) {
-    print_surfaces(surfaces);
-    return;
-  }
-  SurfaceJson json = SurfaceJson::array();
+  if (!as_json) return print_surfaces(surfaces);
+  Json json = Json::array();
   for (const SurfacePreset& surface : surfaces) json.push_back(json_of(surface));
   print_json(json);
 }
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kMicroG_m_s2 = 1e-6 * kStandardGravity_m_s2;
+
+constexpr const char* kUnbacked = "\n* without a source in the manufacturer's documents\n";
+
+/// Values with their sources; those without one are marked.
+void print_entries(const std::vector<DatasheetEntry>& entries) {
+  for (const DatasheetEntry& entry : entries) {
+    print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
+    if (!entry.source.empty()) print("      {}\n", entry.source);
+  }
+}
 
 void print_imu_heading() {
   print("{:<12} {:>7} {:>15} {:>15} {:>10} {:>10} {:>9} {:>6}  {}\n", "name", "rate", "gyro noise",
@@ -115,10 +120,6 @@ Json json_of(const ImuDatasheet& sheet) {
           {"backed", values.backed}};
 }
 
-void print_imu_json(const Json& json) {
-  print_json(json);
-}
-
 /// Prints the IMU presets as a table, or as JSON.
 void list_imus(bool as_json) {
   Json json = Json::array();
@@ -131,7 +132,7 @@ void list_imus(bool as_json) {
       print_row(sheet);
     }
   }
-  if (as_json) print_imu_json(json);
+  if (as_json) print_json(json);
 }
 
 /// The file of an IMU preset with this name, in capitals or not.
@@ -145,43 +146,14 @@ std::optional<std::filesystem::path> imu_preset_named(const std::string& name) {
 /// Prints an IMU with the sources of its numbers, or as JSON.
 void print_imu(const std::filesystem::path& file, bool as_json) {
   const ImuDatasheet sheet = load_imu_datasheet(file);
-  if (as_json) return print_imu_json(json_of(sheet));
+  if (as_json) return print_json(json_of(sheet));
   print("{}\n\n", sheet.imu.name);
   print_imu_heading();
   print_row(sheet);
   print("\n");
-  for (const DatasheetEntry& entry : sheet.entries) {
-    print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
-    if (!entry.source.empty()) print("      {}\n", entry.source);
-  }
-  print("\n* without a source in the manufacturer's documents\n");
+  print_entries(sheet.entries);
+  print(kUnbacked);
 }
-
-constexpr const char* kSensorsExamples = R"(Examples:
-  glidar sensors
-  glidar sensors livox
-  glidar sensors VLP-16
-  glidar sensors Livox-Mid-40 -o pattern.png
-  glidar sensors OS1-128 --mode 2048x10 --json
-  glidar sensors --surfaces
-  glidar sensors --imus
-  glidar sensors BMI088
-
-Use a name with 'glidar render MODEL --sensor NAME'. "backed" counts the values with a source in the
-manufacturer's documents (data sheets, manuals, drivers, factory calibrations); the others are
-marked *. "beam" is the beam divergence, horizontal x vertical, full width at 1/e^2. Use the name of
-a surface with 'glidar render MODEL --surface NAME', and with 'surface:' in scene files; that of an
-IMU with '--imu NAME', and with 'imus:' in scene files.
-Exit codes: 0 done, 2 no such sensor.)";
-
-struct SensorsFlags {
-  std::string name;
-  std::string mode;
-  std::string picture;
-  bool surfaces = false;
-  bool imus = false;
-  bool json = false;
-};
 
 /// A row of the list of sensors.
 struct Summary {
@@ -309,16 +281,11 @@ void print_sheet(const Datasheet& sheet, const Summary& s) {
   print_heading();
   print_row(sheet, s);
   print("\n");
-  for (const DatasheetEntry& entry : sheet.entries) {
-    print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
-    if (!entry.source.empty()) print("      {}\n", entry.source);
-  }
+  print_entries(sheet.entries);
   if (s.values.backed < s.values.total) {
-    print("\n* without a source in the manufacturer's documents\n");
+    print(kUnbacked);
   }
 }
-
-using Json = nlohmann::ordered_json;
 
 /// Horizontal and vertical divergence in mrad; empty without a footprint.
 Json divergence_json(const Sensor& sensor) {
@@ -369,6 +336,15 @@ Json json_of(const std::vector<DatasheetEntry>& entries) {
   }
   return list;
 }
+
+struct SensorsFlags {
+  std::string name;
+  std::string mode;
+  std::string picture;
+  bool surfaces = false;
+  bool imus = false;
+  bool json = false;
+};
 
 int print_surfaces(const SensorsFlags& flags) {
   if (!flags.name.empty() || !flags.picture.empty()) {
@@ -471,6 +447,23 @@ int run_sensors(const SensorsFlags& flags) {
   if (!flags.json) print("\nwrote {}\n", flags.picture);
   return kDone;
 }
+
+constexpr const char* kSensorsExamples = R"(Examples:
+  glidar sensors
+  glidar sensors livox
+  glidar sensors VLP-16
+  glidar sensors Livox-Mid-40 -o pattern.png
+  glidar sensors OS1-128 --mode 2048x10 --json
+  glidar sensors --surfaces
+  glidar sensors --imus
+  glidar sensors BMI088
+
+Use a name with 'glidar render MODEL --sensor NAME'. "backed" counts the values with a source in the
+manufacturer's documents (data sheets, manuals, drivers, factory calibrations); the others are
+marked *. "beam" is the beam divergence, horizontal x vertical, full width at 1/e^2. Use the name of
+a surface with 'glidar render MODEL --surface NAME', and with 'surface:' in scene files; that of an
+IMU with '--imu NAME', and with 'imus:' in scene files.
+Exit codes: 0 done, 2 no such sensor.)";
 
 }  // namespace
 

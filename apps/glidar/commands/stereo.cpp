@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/cli_fwd.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/console.hpp>
@@ -67,13 +66,6 @@ void write_disparity(const std::string& path, const StereoMatch& match, AtomicFi
                       size_of(match), file);
 }
 
-void write_status(const std::string& path, const StereoMatch& match, AtomicFile& file) {
-  const std::span values(reinterpret_cast<const std::uint8_t*>(match.status.data()),
-                         match.status.size());
-  if (is_npy(path)) return write_image_npy(values, "|u1", size_of(match), file);
-  write_colours_png(values, kStereoColours, "status of each pixel", size_of(match), file);
-}
-
 /// "wall_depth.png" is depth. Throws Error for other names.
 StereoQuantity stereo_quantity(const std::string& path) {
   const std::filesystem::path file(path);
@@ -99,7 +91,9 @@ void write_stereo_files(std::span<const std::string> paths, std::span<const std:
     const StereoQuantity quantity = stereo_quantity(path);
     if (quantity == StereoQuantity::depth) write_depth(path, match, geometry, file);
     if (quantity == StereoQuantity::disparity) write_disparity(path, match, file);
-    if (quantity == StereoQuantity::status) write_status(path, match, file);
+    if (quantity == StereoQuantity::status) {
+      write_status_image(path, match.status, kStereoColours, size_of(match), file);
+    }
     file.finish();
   }
   files.commit();

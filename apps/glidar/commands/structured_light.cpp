@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/cli_fwd.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
@@ -75,24 +74,15 @@ const std::vector<float>& values_of(FringeQuantity quantity, const MeasuredFring
   return measured.decoded.modulation;
 }
 
-void write_fringe_status(bool is_png, const DecodedFringes& decoded, AtomicFile& file) {
-  const std::span numbers(reinterpret_cast<const std::uint8_t*>(decoded.status.data()),
-                          decoded.status.size());
-  const ImageSize size = {decoded.width, decoded.height};
-  if (!is_png) return write_image_npy(numbers, "|u1", size, file);
-  write_colours_png(numbers, kFringeColours, "status of each pixel", size, file);
-}
-
 void write_fringe_file(const std::string& path, const MeasuredFringes& measured,
                        double depth_unit_m, AtomicFile& file) {
   const FringeQuantity quantity = fringe_quantity(path);
-  const bool is_png = path.ends_with(".png");
-  if (quantity == FringeQuantity::status) {
-    return write_fringe_status(is_png, measured.decoded, file);
-  }
   const ImageSize size = {measured.decoded.width, measured.decoded.height};
+  if (quantity == FringeQuantity::status) {
+    return write_status_image(path, measured.decoded.status, kFringeColours, size, file);
+  }
   const std::span<const float> values(values_of(quantity, measured));
-  if (!is_png) return write_image_npy(values, "<f4", size, file);
+  if (is_npy(path)) return write_image_npy(values, "<f4", size, file);
   write_multiples_png(values, depth_unit_m,
                       "depth in units of " + number_text(depth_unit_m) + " m, 0: none", size, file);
 }

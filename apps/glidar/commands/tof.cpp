@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/cli_fwd.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
@@ -38,7 +37,19 @@ namespace {
 enum class TofQuantity { depth, range, amplitude, status };
 
 /// "wall_depth.png" is depth. Throws Error for other names.
-TofQuantity tof_quantity(const std::string& path);
+TofQuantity tof_quantity(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string stem = file.stem().string();
+  if (file.extension() == ".png" || file.extension() == ".npy") {
+    if (stem.ends_with("depth")) return TofQuantity::depth;
+    if (stem.ends_with("range")) return TofQuantity::range;
+    if (stem.ends_with("amplitude")) return TofQuantity::amplitude;
+    if (stem.ends_with("status")) return TofQuantity::status;
+  }
+  throw Error({"--output, " + path, "its name does not state what to write",
+               "names ending in depth, range, amplitude or status, and .png or .npy",
+               "use a name such as depth.png or wall_range.npy"});
+}
 
 /// What is written: a result with the cosine of each pixel's direction to the boresight (P; empty:
 /// 1), and the unit of PNG images of depth and range.
@@ -105,13 +116,6 @@ void write_amplitude(const std::string& path, const TofMeasurement& measured, At
                       size_of(measured), file);
 }
 
-void write_status(const std::string& path, const TofMeasurement& measured, AtomicFile& file) {
-  const std::span values(reinterpret_cast<const std::uint8_t*>(measured.status.data()),
-                         measured.status.size());
-  if (is_npy(path)) return write_image_npy(values, "|u1", size_of(measured), file);
-  write_colours_png(values, kTofColours, "status of each pixel", size_of(measured), file);
-}
-
 void write_quantity(const std::string& path, const TofResult& result, AtomicFile& file) {
   switch (tof_quantity(path)) {
     case TofQuantity::depth:
@@ -121,22 +125,9 @@ void write_quantity(const std::string& path, const TofResult& result, AtomicFile
     case TofQuantity::amplitude:
       return write_amplitude(path, result.measured, file);
     case TofQuantity::status:
-      return write_status(path, result.measured, file);
+      return write_status_image(path, result.measured.status, kTofColours, size_of(result.measured),
+                                file);
   }
-}
-
-TofQuantity tof_quantity(const std::string& path) {
-  const std::filesystem::path file(path);
-  const std::string stem = file.stem().string();
-  if (file.extension() == ".png" || file.extension() == ".npy") {
-    if (stem.ends_with("depth")) return TofQuantity::depth;
-    if (stem.ends_with("range")) return TofQuantity::range;
-    if (stem.ends_with("amplitude")) return TofQuantity::amplitude;
-    if (stem.ends_with("status")) return TofQuantity::status;
-  }
-  throw Error({"--output, " + path, "its name does not state what to write",
-               "names ending in depth, range, amplitude or status, and .png or .npy",
-               "use a name such as depth.png or wall_range.npy"});
 }
 
 /// Writes all files, which appear together. `read` are files that must not be overwritten. Throws

@@ -28,11 +28,11 @@ void write_multiples_png(std::span<const float> values, double unit, const std::
       file);
 }
 
-void write_colours_png(std::span<const std::uint8_t> numbers, std::span<const Colour> colours,
-                       const std::string& description, ImageSize size, AtomicFile& file) {
+void write_status_png(std::span<const std::uint8_t> numbers, std::span<const Colour> colours,
+                      ImageSize size, AtomicFile& file) {
   Picture picture = make_picture(size.width, size.height, Colour{});
   for (std::size_t i = 0; i < numbers.size(); ++i) picture.pixels[i] = colours[numbers[i]];
-  write_png(picture, description, file);
+  write_png(picture, "status of each pixel", file);
 }
 
 }  // namespace glidar::app

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace glidar::app {
 
@@ -38,8 +39,17 @@ void write_image_npy(std::span<const T> values, const char* type, ImageSize size
 void write_multiples_png(std::span<const float> values, double unit, const std::string& description,
                          ImageSize size, AtomicFile& file);
 
-/// Writes numbers, such as statuses, as colours: colours[number].
-void write_colours_png(std::span<const std::uint8_t> numbers, std::span<const Colour> colours,
-                       const std::string& description, ImageSize size, AtomicFile& file);
+/// Writes a PNG of statuses: colours[number].
+void write_status_png(std::span<const std::uint8_t> numbers, std::span<const Colour> colours,
+                      ImageSize size, AtomicFile& file);
+
+/// Writes the status of each pixel: an array of its numbers, or a PNG of colours[number].
+template <class Status>
+void write_status_image(const std::string& path, const std::vector<Status>& statuses,
+                        std::span<const Colour> colours, ImageSize size, AtomicFile& file) {
+  const std::span numbers(reinterpret_cast<const std::uint8_t*>(statuses.data()), statuses.size());
+  if (is_npy(path)) return write_image_npy(numbers, "|u1", size, file);
+  write_status_png(numbers, colours, size, file);
+}
 
 }  // namespace glidar::app

@@ -28,7 +28,8 @@
 namespace glidar::app {
 namespace {
 
-link::CurveKeys make_file(const std::string& path, Console& console) {
+/// Creates a file of new keys, and prints the public one.
+link::CurveKeys make_key_file(const std::string& path, Console& console) {
   const link::CurveKeys keys = link::make_curve_keys();
   AtomicFile file(path, AtomicFile::Permissions::owner_only);
   file.write("public " + keys.public_key + "\nsecret " + keys.secret_key + "\n");
@@ -41,7 +42,7 @@ link::CurveKeys make_file(const std::string& path, Console& console) {
 /// is created with new keys, readable by its owner only, and the public key is printed. Throws
 /// Error.
 link::CurveKeys curve_keys(const std::string& path, Console& console) {
-  if (!std::filesystem::exists(path)) return make_file(path, console);
+  if (!std::filesystem::exists(path)) return make_key_file(path, console);
   const InputFileKind kind{.name = "a file of two keys", .max_mib = 1, .remedy_if_larger = ""};
   std::istringstream file(read_input_file(path, kind));
   std::string first;

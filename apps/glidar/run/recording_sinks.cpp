@@ -33,6 +33,8 @@ osi::OsiRig osi_rig(const PreparedScene& prepared, PoseOrigin origin) {
   return rig;
 }
 
+/// An OSI trace with the detections of every sensor and the ground truth of all objects, see
+/// docs/osi.md.
 class OsiSink final : public FrameSink {
  public:
   OsiSink(const std::string& path, osi::OsiRig rig) : path_(path), trace_(path, std::move(rig)) {}
@@ -51,13 +53,6 @@ class OsiSink final : public FrameSink {
   osi::OsiTraceWriter trace_;
 };
 
-/// An OSI trace with the detections of every sensor and the ground truth of all objects, see
-/// docs/osi.md. The scene must outlive it. Throws Error.
-std::unique_ptr<FrameSink> make_osi_sink(const std::string& path, const PreparedScene& prepared,
-                                         PoseOrigin origin) {
-  return std::make_unique<OsiSink>(path, osi_rig(prepared, origin));
-}
-
 std::vector<KittiSensor> kitti_sensors(const PreparedScene& prepared) {
   std::vector<KittiSensor> sensors;
   for (const ActiveSensor& active : prepared.sensors)
@@ -65,6 +60,8 @@ std::vector<KittiSensor> kitti_sensors(const PreparedScene& prepared) {
   return sensors;
 }
 
+/// A KITTI folder with the scans and images of all frames, see docs/files/kitti.md. `read`: files
+/// that it must not replace.
 class KittiSink final : public FrameSink {
  public:
   KittiSink(const std::string& path, const RenderFlags& flags, const PreparedScene& prepared,
@@ -88,14 +85,8 @@ class KittiSink final : public FrameSink {
   KittiWriter writer_;
 };
 
-/// A KITTI folder with the scans and images of all frames, see docs/files/kitti.md. `read`: files
-/// that it must not replace. Flags and scene must outlive it. Throws Error.
-std::unique_ptr<FrameSink> make_kitti_sink(const std::string& path, const RenderFlags& flags,
-                                           const PreparedScene& prepared,
-                                           const std::vector<std::string>& read) {
-  return std::make_unique<KittiSink>(path, flags, prepared, read);
-}
-
+/// A bag with the topics of docs/bags.md: the clouds and images of every sensor, the samples of
+/// every IMU, the transforms of the rig and its ground truth.
 class BagSink final : public FrameSink {
  public:
   BagSink(const std::string& path, const RenderFlags& flags, const PreparedScene& prepared,
@@ -122,14 +113,6 @@ class BagSink final : public FrameSink {
   std::unique_ptr<ros::RigPublisher> publisher_;
 };
 
-/// A bag with the topics of docs/bags.md: the clouds and images of every sensor, the samples of
-/// every IMU, the transforms of the rig and its ground truth. Flags and scene must outlive it.
-/// Throws Error.
-std::unique_ptr<FrameSink> make_bag_sink(const std::string& path, const RenderFlags& flags,
-                                         const PreparedScene& prepared, PoseOrigin origin) {
-  return std::make_unique<BagSink>(path, flags, prepared, origin);
-}
-
 /// Throws Error when two recordings have the same name.
 void check_names(const std::vector<std::string>& paths) {
   std::set<std::filesystem::path> names;
@@ -139,14 +122,16 @@ void check_names(const std::vector<std::string>& paths) {
   }
 }
 
+/// Flags and scene must outlive it. Throws Error.
 std::unique_ptr<FrameSink> make_recording_sink(const std::string& path, const RenderFlags& flags,
                                                const PreparedScene& prepared,
                                                const std::vector<std::string>& read,
                                                PoseOrigin origin) {
-  if (is_kitti_name(path)) return make_kitti_sink(path, flags, prepared, read);
+  if (is_kitti_name(path)) return std::make_unique<KittiSink>(path, flags, prepared, read);
   if (is_capture_name(path)) return make_capture_sink(path, flags, prepared, origin);
-  if (osi::is_osi_trace_name(path)) return make_osi_sink(path, prepared, origin);
-  return make_bag_sink(path, flags, prepared, origin);
+  if (osi::is_osi_trace_name(path))
+    return std::make_unique<OsiSink>(path, osi_rig(prepared, origin));
+  return std::make_unique<BagSink>(path, flags, prepared, origin);
 }
 
 }  // namespace

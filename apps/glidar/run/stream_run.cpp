@@ -39,6 +39,8 @@
 namespace glidar::app {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 /// How fast the frames of a recording follow.
 enum class ReplayPace : std::uint8_t {
   schedule,  ///< at the rate of the schedule
@@ -70,16 +72,16 @@ class RecordedSource final : public PoseSource {
   Options options_;
   const PreparedScene& prepared_;
   const StopRequest& stop_;
-  std::optional<std::chrono::steady_clock::time_point> due_;
+  std::optional<Clock::time_point> due_;
   std::int64_t last_ns_ = 0;                 ///< stamp of the last frame
   std::uint64_t number_ = 0;                 ///< of the next frame
   std::vector<std::uint64_t> next_indices_;  ///< of each sensor's next frame
   std::string ending_;
 };
 
-using Clock = std::chrono::steady_clock;
-
-void check(const link::RecordedFrame& frame, std::uint64_t number, const PreparedScene& prepared) {
+/// Throws Error unless the frame fits the scene.
+void require_fitting(const link::RecordedFrame& frame, std::uint64_t number,
+                     const PreparedScene& prepared) {
   const std::size_t objects = frame.moment.objects.size();
   const std::size_t instances = prepared.scene.instances.size();
   const bool fits = frame.sensor < prepared.sensors.size() &&
@@ -118,7 +120,7 @@ std::optional<FrameRequest> RecordedSource::next() {
     while (!stop_.is_requested()) stop_.wait_until(Clock::now() + std::chrono::hours(1));
   }
   if (!frame) return std::nullopt;
-  check(*frame, number_, prepared_);
+  require_fitting(*frame, number_, prepared_);
   if (options_.playback != nullptr && !options_.playback->wait(stop_)) return std::nullopt;
   wait_until_due(frame->moment.t_ns);
   if (stop_.is_requested()) return std::nullopt;
@@ -192,7 +194,7 @@ void show_subscribers(const Peers& peers, std::uint64_t expected, std::uint64_t&
 /// Waits for the handshakes of the simulator and of --subscribers; the console shows progress.
 PeerWaitResult wait_for_peers(const Peers& peers, const StreamFlags& flags, const StopRequest& stop,
                               Console& console) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   bool is_announced = false;
   std::uint64_t shown = 0;
   while (!are_complete(peers, flags.subscribers)) {
@@ -229,7 +231,8 @@ woods2016::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
 }
 
 /// Throws Error when a frame is not the one that was recorded.
-void compare(const MeasuredFrame& measured, const std::string& recording, std::uint64_t number) {
+void require_recorded(const MeasuredFrame& measured, const std::string& recording,
+                      std::uint64_t number) {
   if (frame_hash(measured.frame) == measured.frame_hash) return;
   throw Error({fmt::format("{}, frame {}", recording, number),
                "the repeated frame differs from the recorded one",
@@ -503,7 +506,8 @@ bool StreamRun::is_wanted(std::uint64_t index) const {
 void StreamRun::deliver(const MeasuredFrame& measured) {
   if (recorder_)
     recorder_->write(line_of(measured.sensor_index, measured.frame, measured.placed.get()));
-  if (!measured.frame_hash.empty()) compare(measured, flags_.replay, stats_.latency.count());
+  if (!measured.frame_hash.empty())
+    require_recorded(measured, flags_.replay, stats_.latency.count());
   if (publisher_ && publisher_->wants(measured.index)) publish(measured);
   for (const auto& sink : sinks_) sink->write(measured);
   stats_.add_frame(measured.due);

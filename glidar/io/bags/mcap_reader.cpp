@@ -87,8 +87,6 @@ std::size_t McapChannels::topic_of(std::uint16_t channel, const ByteReader& read
   return known->second;
 }
 
-using McapOp = mcap::Op;
-
 /// Of records that are neither chunks nor messages.
 constexpr std::uint64_t kMaxRecord = std::uint64_t{16} << 20U;
 
@@ -166,15 +164,15 @@ void McapScan::check_ends() {
 
 void McapScan::take_record(const McapRecord& record, std::uint64_t at) {
   switch (record.op) {
-    case McapOp::footer:
+    case mcap::Op::footer:
       ended_ = true;
       return;
-    case McapOp::chunk:
+    case mcap::Op::chunk:
       return add_chunk(at, record.size);
-    case McapOp::message:
+    case mcap::Op::message:
       return add_message(at, record.size);
-    case McapOp::schema:
-    case McapOp::channel: {
+    case mcap::Op::schema:
+    case mcap::Op::channel: {
       if (record.size > kMaxRecord)
         reject_bag(file_.place(at), "a schema or channel of more than 16 MiB");
       ByteReader content(file_.peek(at, record.size), file_.place(at));
@@ -266,7 +264,7 @@ class McapReader : public BagReader {
       const McapRecord record = read_mcap_head(reader);
       const std::size_t begin = reader.position();
       ByteReader content(reader.take(record.size), reader.place());
-      if (record.op != McapOp::message) continue;
+      if (record.op != mcap::Op::message) continue;
       const auto channel = content.number<std::uint16_t>();
       content.number<std::uint32_t>();  // the number in the sequence
       const std::int64_t time_ns = time_of(content.number<std::uint64_t>(), content);

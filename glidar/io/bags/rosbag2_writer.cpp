@@ -29,31 +29,41 @@
 namespace glidar::bags {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// A folder that contains only the files of a bag, or nothing.
+bool is_rosbag2_folder(const fs::path& path) {
+  std::error_code error;
+  const fs::directory_iterator files(path, error);
+  if (error) return false;
+  return std::all_of(begin(files), end(files), [](const fs::directory_entry& file) {
+    const fs::path suffix = file.path().extension();
+    return file.is_regular_file() &&
+           (file.path().filename() == "metadata.yaml" || suffix == ".db3" || suffix == ".mcap");
+  });
+}
+
 /// A folder that appears under its name only when all its files are complete. Until commit() they
 /// are in a temporary folder beside it, which the destructor removes.
 class StagedFolder {
  public:
-  /// Throws Error when `path` exists and is not a folder that `is_replaceable` accepts, or no
-  /// folder can be created beside it.
-  StagedFolder(const std::filesystem::path& path,
-               bool (*is_replaceable)(const std::filesystem::path&));
+  /// Throws Error when `path` exists and is no bag, or no folder can be created beside it.
+  explicit StagedFolder(const fs::path& path);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
   /// The path of a new file in the temporary folder, which a signal removes.
-  std::filesystem::path add_file(const std::string& name);
+  fs::path add_file(const std::string& name);
   /// Gives the folder its name; a folder of this name is replaced and removed. Throws Error.
   void commit();
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const fs::path& path() const { return path_; }
 
  private:
-  std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< empty once committed
-  std::vector<int> slots_;           ///< of the list of unfinished files
+  fs::path path_;
+  fs::path temporary_;      ///< empty once committed
+  std::vector<int> slots_;  ///< of the list of unfinished files
 };
-
-namespace fs = std::filesystem;
 
 [[noreturn]] void fail_folder(const fs::path& path, const char* what, int code) {
   throw Error({path.string(),
@@ -61,10 +71,9 @@ namespace fs = std::filesystem;
                code == ENOENT ? "create the folder above it first" : ""});
 }
 
-StagedFolder::StagedFolder(const fs::path& path, bool (*is_replaceable)(const fs::path&))
-    : path_(path) {
+StagedFolder::StagedFolder(const fs::path& path) : path_(path) {
   std::error_code ignored;
-  if (fs::exists(path, ignored) && !(fs::is_directory(path, ignored) && is_replaceable(path))) {
+  if (fs::exists(path, ignored) && !(fs::is_directory(path, ignored) && is_rosbag2_folder(path))) {
     throw Error({path.string(), "exists and is no bag", "a new name, or a bag to replace",
                  "remove it, or write to another path"});
   }
@@ -117,7 +126,7 @@ constexpr const char* kRosDistro = "unknown";
 /// Writes the SQLite storage of rosbag2, with the tables of schema version 4, directly to `path`.
 class SqliteBagWriter : public BagWriter {
  public:
-  explicit SqliteBagWriter(const std::filesystem::path& path);
+  explicit SqliteBagWriter(const fs::path& path);
 
   [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
   std::size_t add_topic(const ros::Topic& topic) override;
@@ -149,7 +158,7 @@ constexpr const char* kTables =
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
 constexpr int kSchemaVersion = 4;
 
-SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& path) : database_(path) {
+SqliteBagWriter::SqliteBagWriter(const fs::path& path) : database_(path) {
   database_.execute("BEGIN");
   database_.execute(kTables);
   Statement version(database_, "INSERT INTO schema VALUES(?,?)");
@@ -201,20 +210,6 @@ void SqliteBagWriter::finish() {
   database_.close();
 }
 
-namespace fs = std::filesystem;
-
-/// A folder that contains only the files of a bag, or nothing.
-bool is_rosbag2_folder(const fs::path& path) {
-  std::error_code error;
-  const fs::directory_iterator files(path, error);
-  if (error) return false;
-  return std::all_of(begin(files), end(files), [](const fs::directory_entry& file) {
-    const fs::path suffix = file.path().extension();
-    return file.is_regular_file() &&
-           (file.path().filename() == "metadata.yaml" || suffix == ".db3" || suffix == ".mcap");
-  });
-}
-
 /// A text in double quotes, for YAML.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
@@ -263,7 +258,7 @@ std::string metadata_yaml(const WrittenTopics& topics, const std::string& storag
 class Rosbag2Writer : public BagWriter {
  public:
   Rosbag2Writer(const fs::path& path, const BagOptions& options)
-      : folder_(path, is_rosbag2_folder),
+      : folder_(path),
         topics_(path.string()),
         file_name_(path.stem().string() + (options.mcap_storage ? "_0.mcap" : "_0.db3")) {
     with_name([&] { open_storage(options); });

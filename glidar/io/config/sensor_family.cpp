@@ -17,11 +17,6 @@
 namespace glidar {
 namespace {
 
-/// The base with overrides merged deeply over it: maps are merged key by key, scalars and lists are
-/// replaced, null removes a key. Throws Error: either is no map, a key is given twice, or null for
-/// a key that the base does not have.
-YamlField merged(const YamlField& base, const YamlField& overrides);
-
 using FieldTable = std::unordered_map<std::string, YamlField>;
 
 /// The values of a map by their keys. Rejects what is no map, and keys that are given twice.
@@ -37,16 +32,14 @@ void append(YAML::Node& map, const YAML::Node& key, const YAML::Node& value) {
   map.force_insert(key, value);
 }
 
-YAML::Node merged_value(const YamlField& base, const YamlField& overriding) {
-  const bool are_maps = base.node.IsMap() && overriding.node.IsMap();
-  return are_maps ? merged(base, overriding).node : overriding.node;
-}
-
 void reject_removal(const YamlField& missing) {
   reject(missing, "no value, which removes the key, but there is none to remove",
          "a value, or null for a key of the document", "remove the line");
 }
 
+/// The base with overrides merged deeply over it: maps are merged key by key, scalars and lists are
+/// replaced, null removes a key. Throws Error: either is no map, a key is given twice, or null for
+/// a key that the base does not have.
 YamlField merged(const YamlField& base, const YamlField& overrides) {
   const FieldTable own = table_of(base);
   const FieldTable overriding = table_of(overrides);
@@ -54,9 +47,14 @@ YamlField merged(const YamlField& base, const YamlField& overrides) {
   for (const auto& pair : base.node) {
     const std::string& key = pair.first.Scalar();
     const auto other = overriding.find(key);
-    const bool is_overridden = other != overriding.end();
-    if (is_overridden && other->second.node.IsNull()) continue;
-    append(map, pair.first, is_overridden ? merged_value(own.at(key), other->second) : pair.second);
+    if (other == overriding.end()) {
+      append(map, pair.first, pair.second);
+      continue;
+    }
+    const YamlField& value = other->second;
+    if (value.node.IsNull()) continue;
+    const bool are_maps = pair.second.IsMap() && value.node.IsMap();
+    append(map, pair.first, are_maps ? merged(own.at(key), value).node : value.node);
   }
   for (const auto& pair : overrides.node) {
     const std::string& key = pair.first.Scalar();

@@ -24,47 +24,9 @@
 namespace glidar {
 namespace {
 
-/// 0 or an error number. Not repeated after an error other than EINTR: Linux reports a lost write
-/// once, so that the next call would succeed without the data.
-int sync(int descriptor) {
-  while (::fsync(descriptor) != 0) {
-    if (errno != EINTR) return errno;
-  }
-  return 0;
-}
-
-[[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code,
-                       const char* remedy) {
-  const bool is_full = code == ENOSPC || code == EDQUOT;
-  throw Error({path.string(),
-               fmt::format("cannot {}: {}", what, std::generic_category().message(code)), "",
-               is_full ? "make room or write to another folder" : remedy});
-}
-
-/// Waits until the data of an open file is on the disk. `path` appears in errors. Throws Error;
-/// then it is unknown which bytes are on the disk.
-void sync_file(int descriptor, const std::filesystem::path& path) {
-  const int error = sync(descriptor);
-  if (error != 0) {
-    fail(path, "write to the disk (fsync)", error, "check the disk; no part of this file remains");
-  }
-}
-
-/// Waits until the names in the folder of this file are on the disk. Ignores file systems that
-/// cannot sync a folder, such as some network file systems. Throws Error.
-void sync_folder_of(const std::filesystem::path& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  const UniqueFd descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  const int error = descriptor ? sync(descriptor.get()) : errno;
-  // POSIX lets a file system reject it (EINVAL); FUSE and network file systems do (ENOTSUP).
-  if (error == 0 || (descriptor && (error == EINVAL || error == ENOTSUP))) return;
-  fail(path, "write its folder to the disk (fsync)", error,
-       "the file is in place and complete, but may not survive power loss; check the disk, or "
-       "omit --durable");
-}
-
 /// A block stays in a core's cache until the system has copied it.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
+
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
   const std::string reason = std::generic_category().message(code);
   std::string remedy;
@@ -147,6 +109,46 @@ std::filesystem::path followed(const std::filesystem::path& path) {
     if (failure) fail(path, "follow this symbolic link", failure.value());
   }
   return at;
+}
+
+/// 0 or an error number. Not repeated after an error other than EINTR: Linux reports a lost write
+/// once, so that the next call would succeed without the data.
+int sync(int descriptor) {
+  while (::fsync(descriptor) != 0) {
+    if (errno != EINTR) return errno;
+  }
+  return 0;
+}
+
+[[noreturn]] void fail_sync(const std::filesystem::path& path, const char* what, int code,
+                            const char* remedy) {
+  const bool is_full = code == ENOSPC || code == EDQUOT;
+  throw Error({path.string(),
+               fmt::format("cannot {}: {}", what, std::generic_category().message(code)), "",
+               is_full ? "make room or write to another folder" : remedy});
+}
+
+/// Waits until the data of an open file is on the disk. `path` appears in errors. Throws Error;
+/// then it is unknown which bytes are on the disk.
+void sync_file(int descriptor, const std::filesystem::path& path) {
+  const int error = sync(descriptor);
+  if (error != 0) {
+    fail_sync(path, "write to the disk (fsync)", error,
+              "check the disk; no part of this file remains");
+  }
+}
+
+/// Waits until the names in the folder of this file are on the disk. Ignores file systems that
+/// cannot sync a folder, such as some network file systems. Throws Error.
+void sync_folder_of(const std::filesystem::path& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  const UniqueFd descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const int error = descriptor ? sync(descriptor.get()) : errno;
+  // POSIX lets a file system reject it (EINVAL); FUSE and network file systems do (ENOTSUP).
+  if (error == 0 || (descriptor && (error == EINVAL || error == ENOTSUP))) return;
+  fail_sync(path, "write its folder to the disk (fsync)", error,
+            "the file is in place and complete, but may not survive power loss; check the disk, or "
+            "omit --durable");
 }
 
 /// Files without a name stay open until they get one, but only while there are few descriptors.

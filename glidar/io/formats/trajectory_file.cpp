@@ -141,9 +141,7 @@ std::int64_t TextRowReader::whole_ns(const Word& word) const {
          "a column of seconds is called 't'");
 }
 
-using Part = TimedPoseError::Part;
-
-// Five million poses of a hundred characters.
+/// Five million poses of a hundred characters.
 constexpr std::uintmax_t kMaxTrajectoryFile_mib = 512;
 constexpr std::array<const char*, 8> kNames = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::size_t kTum = kNames.size();

@@ -23,6 +23,44 @@
 namespace glidar::osi {
 namespace {
 
+/// The id of the rig as the host vehicle; ids of instances have 32 bits.
+constexpr std::uint64_t kHostVehicleId = std::uint64_t{1} << 32U;
+
+const std::string& class_name_of(const Scene& scene, const Instance& instance) {
+  return scene.class_names.at(instance.class_id);
+}
+
+Eigen::AlignedBox3d scaled_box_m(const Scene& scene, const Instance& instance) {
+  const Eigen::AlignedBox3d box = bounds(scene.meshes[instance.mesh]);
+  if (box.isEmpty()) return Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  return {instance.scale * box.min(), instance.scale * box.max()};
+}
+
+ProtobufMessage dimension(const Eigen::Vector3d& size_m) {
+  return vector3(size_m);  // length, width and height have the numbers of x, y and z
+}
+
+/// Fields 4 and 5 of BaseMoving: the velocity and acceleration of a point fixed to a body.
+void add_derivatives(const Trajectory& trajectory, std::int64_t t_ns,
+                     const Eigen::Vector3d& point_m, ProtobufMessage& base) {
+  Pose body_from_point = Pose::Identity();
+  body_from_point.translation() = point_m;
+  const KinematicState state = compose_extrinsic(state_at(trajectory, t_ns), body_from_point);
+  base.message(4, vector3(state.velocity_m_s)).message(5, vector3(state.acceleration_m_s2));
+}
+
+/// ExternalReference: the object's name and class in the scene file.
+ProtobufMessage source_reference(const Scene& scene, const Instance& instance) {
+  return ProtobufMessage()
+      .text(2, "glidar.scene")
+      .text(3, printable_line(instance.name))  // texts of Protocol Buffers are UTF-8
+      .text(3, printable_line(class_name_of(scene, instance)));
+}
+
+ProtobufMessage vehicle_classification(std::uint64_t type) {
+  return ProtobufMessage().integer(1, type);
+}
+
 /// What the messages of one frame have in common.
 struct FrameContext {
   const OsiSensor& sensor;
@@ -157,72 +195,6 @@ void write_message(const std::string& bytes, AtomicFile& file) {
 
 }  // namespace
 
-bool is_osi_trace_name(const std::filesystem::path& path) {
-  return lower_case(path.extension().string()) == ".osi";
-}
-
-OsiTraceWriter::OsiTraceWriter(const std::filesystem::path& path, OsiRig rig)
-    : rig_(std::move(rig)), ground_truth_(rig_), file_(path) {}
-
-const std::vector<std::string>& OsiTraceWriter::columns() {
-  static const std::vector<std::string> kOsiColumns = {
-      "xyz", "intensity", "range", "sigma", "radial_velocity", "instance", "return_source", "ring"};
-  return kOsiColumns;
-}
-
-void OsiTraceWriter::write(std::size_t sensor_index, const Frame& frame, const Beams& beams) {
-  const OutputFrame target = output_frame("ros", beams, frame.world_from_sensor);
-  const FrameContext context = context_of(rig_.sensors[sensor_index], frame, target);
-  make_point_cloud(frame, beams, rig_.scene, target, columns(), cloud_);
-  remove_invalid_points(cloud_, detected_);
-  const ProtobufMessage view =
-      sensor_view(context, ground_truth_.at(frame, context.world_from_rig));
-  write_message(sensor_data(context, view, feature_data(context, detected_, beams)).bytes(), file_);
-}
-
-void OsiTraceWriter::finish() {
-  file_.commit();
-}
-
-namespace {
-
-const std::string& class_name_of(const Scene& scene, const Instance& instance) {
-  return scene.class_names.at(instance.class_id);
-}
-
-Eigen::AlignedBox3d scaled_box_m(const Scene& scene, const Instance& instance) {
-  const Eigen::AlignedBox3d box = bounds(scene.meshes[instance.mesh]);
-  if (box.isEmpty()) return Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
-  return {instance.scale * box.min(), instance.scale * box.max()};
-}
-
-ProtobufMessage dimension(const Eigen::Vector3d& size_m) {
-  return vector3(size_m);  // length, width and height have the numbers of x, y and z
-}
-
-/// Fields 4 and 5 of BaseMoving: the velocity and acceleration of a point fixed to a body.
-void add_derivatives(const Trajectory& trajectory, std::int64_t t_ns,
-                     const Eigen::Vector3d& point_m, ProtobufMessage& base) {
-  Pose body_from_point = Pose::Identity();
-  body_from_point.translation() = point_m;
-  const KinematicState state = compose_extrinsic(state_at(trajectory, t_ns), body_from_point);
-  base.message(4, vector3(state.velocity_m_s)).message(5, vector3(state.acceleration_m_s2));
-}
-
-/// ExternalReference: the object's name and class in the scene file.
-ProtobufMessage source_reference(const Scene& scene, const Instance& instance) {
-  return ProtobufMessage()
-      .text(2, "glidar.scene")
-      .text(3, printable_line(instance.name))  // texts of Protocol Buffers are UTF-8
-      .text(3, printable_line(class_name_of(scene, instance)));
-}
-
-ProtobufMessage vehicle_classification(std::uint64_t type) {
-  return ProtobufMessage().integer(1, type);
-}
-
-}  // namespace
-
 GroundTruthMessages::GroundTruthMessages(const OsiRig& rig) : rig_(rig) {
   for (const Instance& instance : rig.scene.instances)
     boxes_m_.push_back(scaled_box_m(rig.scene, instance));
@@ -302,6 +274,33 @@ ProtobufMessage GroundTruthMessages::stationary_object(std::size_t instance,
       .message(3, ProtobufMessage().integer(1, type))
       .text(4, rig_.scene.sources[object.mesh].path)
       .message(5, source_reference(rig_.scene, object));
+}
+
+bool is_osi_trace_name(const std::filesystem::path& path) {
+  return lower_case(path.extension().string()) == ".osi";
+}
+
+OsiTraceWriter::OsiTraceWriter(const std::filesystem::path& path, OsiRig rig)
+    : rig_(std::move(rig)), ground_truth_(rig_), file_(path) {}
+
+const std::vector<std::string>& OsiTraceWriter::columns() {
+  static const std::vector<std::string> kOsiColumns = {
+      "xyz", "intensity", "range", "sigma", "radial_velocity", "instance", "return_source", "ring"};
+  return kOsiColumns;
+}
+
+void OsiTraceWriter::write(std::size_t sensor_index, const Frame& frame, const Beams& beams) {
+  const OutputFrame target = output_frame("ros", beams, frame.world_from_sensor);
+  const FrameContext context = context_of(rig_.sensors[sensor_index], frame, target);
+  make_point_cloud(frame, beams, rig_.scene, target, columns(), cloud_);
+  remove_invalid_points(cloud_, detected_);
+  const ProtobufMessage view =
+      sensor_view(context, ground_truth_.at(frame, context.world_from_rig));
+  write_message(sensor_data(context, view, feature_data(context, detected_, beams)).bytes(), file_);
+}
+
+void OsiTraceWriter::finish() {
+  file_.commit();
 }
 
 }  // namespace glidar::osi

@@ -41,9 +41,6 @@ struct OsiRig {
   std::optional<OsiMotion> motion = {};
 };
 
-/// The id of the rig as the host vehicle; ids of instances have 32 bits.
-inline constexpr std::uint64_t kHostVehicleId = std::uint64_t{1} << 32U;
-
 /// Makes GroundTruth messages (osi_groundtruth.proto) of a rig's frames: the rig as the host
 /// vehicle, and the instances as boxes.
 class GroundTruthMessages {

@@ -169,15 +169,6 @@ bool UdpResponder::may_answer() {
   return false;
 }
 
-std::unique_ptr<ControlServer> serve_livox(LivoxSensor sensor, const link::Endpoint& at,
-                                           link::ErrorLog& errors, std::uint16_t search_port) {
-  sensor.address = link::ipv4_text(link::resolve_udp_address(at.host, at.port));
-  if (sensor.address == "0.0.0.0")
-    throw Error({"address of the sensor", "all addresses of this machine", "one address",
-                 "give the one that clients use"});
-  return std::make_unique<UdpResponder>(sensor, at.port, search_port, errors);
-}
-
 class OusterServer final : public ControlServer {
  public:
   OusterServer(const OusterApiOptions& sensor, const link::Endpoint& at, link::ErrorLog& errors)
@@ -233,6 +224,15 @@ std::unique_ptr<ControlServer> serve_ouster(const OusterApiOptions& sensor,
 std::unique_ptr<ControlServer> serve_hesai(const PtcSensor& sensor, const link::Endpoint& at,
                                            link::ErrorLog& errors) {
   return std::make_unique<HesaiServer>(sensor, at, errors);
+}
+
+std::unique_ptr<ControlServer> serve_livox(LivoxSensor sensor, const link::Endpoint& at,
+                                           link::ErrorLog& errors, std::uint16_t search_port) {
+  sensor.address = link::ipv4_text(link::resolve_udp_address(at.host, at.port));
+  if (sensor.address == "0.0.0.0")
+    throw Error({"address of the sensor", "all addresses of this machine", "one address",
+                 "give the one that clients use"});
+  return std::make_unique<UdpResponder>(sensor, at.port, search_port, errors);
 }
 
 }  // namespace glidar::control

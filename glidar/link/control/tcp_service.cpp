@@ -27,12 +27,16 @@
 namespace glidar::control {
 namespace {
 
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using Failure = boost::system::error_code;
+
 /// One connection. Keeps itself alive while an operation is in progress.
 class TcpSession : public std::enable_shared_from_this<TcpSession> {
  public:
   using Clock = std::chrono::steady_clock;
 
-  TcpSession(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<Conversation> conversation,
+  TcpSession(tcp::socket&& socket, std::unique_ptr<Conversation> conversation,
              const TcpServiceOptions& options, link::ErrorLog& errors);
   void start();
   void close();
@@ -41,8 +45,6 @@ class TcpSession : public std::enable_shared_from_this<TcpSession> {
   [[nodiscard]] Clock::time_point last_request() const { return last_request_; }
 
  private:
-  using Failure = boost::system::error_code;
-
   void read();
   void on_read(Failure failure, std::size_t size);
   void converse();
@@ -51,8 +53,8 @@ class TcpSession : public std::enable_shared_from_this<TcpSession> {
   void drain();
   void expire_after(std::chrono::milliseconds wait);
 
-  boost::asio::ip::tcp::socket socket_;
-  boost::asio::steady_timer timer_;
+  tcp::socket socket_;
+  asio::steady_timer timer_;
   std::unique_ptr<Conversation> conversation_;
   const TcpServiceOptions& options_;
   link::ErrorLog& errors_;
@@ -67,9 +69,8 @@ class TcpSession : public std::enable_shared_from_this<TcpSession> {
 constexpr std::size_t kMaxPending = std::size_t{64} << 10U;
 constexpr std::chrono::milliseconds kMaxDrain{2'000};
 
-TcpSession::TcpSession(boost::asio::ip::tcp::socket&& socket,
-                       std::unique_ptr<Conversation> conversation, const TcpServiceOptions& options,
-                       link::ErrorLog& errors)
+TcpSession::TcpSession(tcp::socket&& socket, std::unique_ptr<Conversation> conversation,
+                       const TcpServiceOptions& options, link::ErrorLog& errors)
     : socket_(std::move(socket)),
       timer_(socket_.get_executor()),
       conversation_(std::move(conversation)),
@@ -100,7 +101,7 @@ void TcpSession::expire_after(std::chrono::milliseconds wait) {
 }
 
 void TcpSession::read() {
-  socket_.async_read_some(boost::asio::buffer(chunk_),
+  socket_.async_read_some(asio::buffer(chunk_),
                           [self = shared_from_this()](Failure failure, std::size_t size) {
                             self->on_read(failure, size);
                           });
@@ -134,8 +135,8 @@ void TcpSession::send(Step step) {
   answer_ = std::move(step.answer);
   ends_ = step.ends;
   last_request_ = Clock::now();
-  boost::asio::async_write(
-      socket_, boost::asio::buffer(answer_),
+  asio::async_write(
+      socket_, asio::buffer(answer_),
       [self = shared_from_this()](Failure failure, std::size_t) { self->on_sent(failure); });
 }
 
@@ -144,7 +145,7 @@ void TcpSession::on_sent(Failure failure) {
   is_in_request_ = false;
   if (ends_) {
     Failure ignored;
-    socket_.shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+    socket_.shutdown(tcp::socket::shutdown_send, ignored);
     expire_after(kMaxDrain);
     return drain();
   }
@@ -162,12 +163,8 @@ void TcpSession::drain() {
   read();
 }
 
-namespace asio = boost::asio;
-using asio::ip::tcp;
-using ServiceFailure = boost::system::error_code;
-
 tcp::acceptor listen_at(asio::io_context& io, const link::Endpoint& at) {
-  ServiceFailure failure;
+  Failure failure;
   tcp::resolver resolver(io);
   const auto found = resolver.resolve(tcp::v4(), at.host, std::to_string(at.port), failure);
   if (failure || found.empty()) link::fail_at(at, EINVAL, "find the address");
@@ -209,7 +206,7 @@ struct TcpService::Impl {
 };
 
 void TcpService::Impl::accept() {
-  acceptor.async_accept([this](ServiceFailure failure, tcp::socket socket) {
+  acceptor.async_accept([this](Failure failure, tcp::socket socket) {
     if (failure == asio::error::operation_aborted) return;
     if (failure) {
       errors.report(options.what, failure.message());
@@ -221,7 +218,7 @@ void TcpService::Impl::accept() {
 }
 
 void TcpService::Impl::begin(tcp::socket&& socket) {
-  ServiceFailure failure;
+  Failure failure;
   const tcp::endpoint client = socket.remote_endpoint(failure);
   if (failure) return;  // it has gone already
   socket.set_option(tcp::no_delay(true), failure);
@@ -236,7 +233,7 @@ void TcpService::Impl::begin(tcp::socket&& socket) {
 void TcpService::Impl::pause() {
   constexpr std::chrono::milliseconds kPause{100};
   timer.expires_after(kPause);
-  timer.async_wait([this](ServiceFailure failure) {
+  timer.async_wait([this](Failure failure) {
     if (!failure) accept();
   });
 }

@@ -38,35 +38,16 @@
 namespace glidar::foxglove {
 namespace {
 
-class HttpSession;
-
-/// Accepts connections. When too many have not sent a request, the oldest one is closed.
-class Acceptor {
- public:
-  /// Throws Error if it cannot listen at the endpoint.
-  Acceptor(Hub& hub, std::shared_ptr<ReplyGate> gate);
-  void start() { accept(); }
-  [[nodiscard]] std::uint16_t port() const { return port_; }
-
- private:
-  void accept();
-  void begin(boost::asio::ip::tcp::socket&& socket);
-  void pause();
-  void make_room();
-
-  Hub& hub_;
-  std::shared_ptr<ReplyGate> gate_;
-  boost::asio::ip::tcp::acceptor acceptor_;
-  boost::asio::steady_timer timer_;
-  std::uint16_t port_ = 0;
-  std::deque<std::weak_ptr<HttpSession>> waiting_;  ///< oldest first
-};
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+using Failure = boost::system::error_code;
 
 /// A new connection: answers one HTTP request, or becomes a ClientSession. Keeps itself alive while
 /// an operation is in progress.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, std::shared_ptr<ReplyGate> gate);
+  HttpSession(tcp::socket&& socket, Hub& hub, std::shared_ptr<ReplyGate> gate);
   void start();
   /// Makes room for others.
   void close();
@@ -74,7 +55,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   [[nodiscard]] bool is_waiting() const { return is_waiting_; }
 
  private:
-  using Failure = boost::beast::error_code;
   using Request = link::HttpParser::value_type;
 
   void on_read(Failure failure);
@@ -88,14 +68,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer received_;
   link::HttpParser parser_;
-  boost::beast::http::response<boost::beast::http::string_body> response_;
+  http::response<http::string_body> response_;
   Hub& hub_;
   std::shared_ptr<ReplyGate> gate_;
   bool is_waiting_ = true;
   bool is_head_ = false;
 };
-
-namespace http = boost::beast::http;
 
 template <class Message>
 std::string_view header(const Message& message, http::field name) {
@@ -110,8 +88,7 @@ HttpReply json_reply(int status, const char* member, const std::string& text) {
   return {.status = status, .content_type = "application/json", .body = answer_text(member, text)};
 }
 
-HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub,
-                         std::shared_ptr<ReplyGate> gate)
+HttpSession::HttpSession(tcp::socket&& socket, Hub& hub, std::shared_ptr<ReplyGate> gate)
     : stream_(std::move(socket)), hub_(hub), gate_(std::move(gate)) {
   link::apply_limits(hub_.guard().limits(), parser_);
 }
@@ -227,16 +204,12 @@ void HttpSession::respond(const HttpReply& reply) {
 
 void HttpSession::on_written() {
   Failure ignored;
-  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
 }
-
-namespace asio = boost::asio;
-using asio::ip::tcp;
-using ErrorCode = boost::system::error_code;
 
 tcp::endpoint resolve(asio::io_context& io, const link::Endpoint& at) {
   if (at.host == "*") return {tcp::v4(), at.port};
-  ErrorCode failure;
+  Failure failure;
   tcp::resolver resolver(io);
   const auto found = resolver.resolve(at.host, std::to_string(at.port), failure);
   if (failure || found.empty()) link::fail_at(at, EINVAL, "find the address");
@@ -246,7 +219,7 @@ tcp::endpoint resolve(asio::io_context& io, const link::Endpoint& at) {
 tcp::acceptor listen(asio::io_context& io, const link::Endpoint& at) {
   const tcp::endpoint endpoint = resolve(io, at);
   tcp::acceptor acceptor(io);
-  ErrorCode failure;
+  Failure failure;
   acceptor.open(endpoint.protocol(), failure);
   if (!failure) acceptor.set_option(tcp::acceptor::reuse_address(true), failure);
   if (!failure) acceptor.bind(endpoint, failure);
@@ -254,6 +227,28 @@ tcp::acceptor listen(asio::io_context& io, const link::Endpoint& at) {
   if (failure) link::fail_at(at, failure.value(), "listen");
   return acceptor;
 }
+
+/// Accepts connections. When too many have not sent a request, the oldest one is closed.
+class Acceptor {
+ public:
+  /// Throws Error if it cannot listen at the endpoint.
+  Acceptor(Hub& hub, std::shared_ptr<ReplyGate> gate);
+  void start() { accept(); }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+ private:
+  void accept();
+  void begin(tcp::socket&& socket);
+  void pause();
+  void make_room();
+
+  Hub& hub_;
+  std::shared_ptr<ReplyGate> gate_;
+  tcp::acceptor acceptor_;
+  asio::steady_timer timer_;
+  std::uint16_t port_ = 0;
+  std::deque<std::weak_ptr<HttpSession>> waiting_;  ///< oldest first
+};
 
 Acceptor::Acceptor(Hub& hub, std::shared_ptr<ReplyGate> gate)
     : hub_(hub),
@@ -263,7 +258,7 @@ Acceptor::Acceptor(Hub& hub, std::shared_ptr<ReplyGate> gate)
       port_(acceptor_.local_endpoint().port()) {}
 
 void Acceptor::accept() {
-  acceptor_.async_accept([this](ErrorCode failure, tcp::socket socket) {
+  acceptor_.async_accept([this](Failure failure, tcp::socket socket) {
     if (failure == asio::error::operation_aborted) return;
     if (failure) {
       hub_.errors().report("accepting Foxglove clients", failure.message());
@@ -276,7 +271,7 @@ void Acceptor::accept() {
 
 void Acceptor::begin(tcp::socket&& socket) {
   hub_.count_connection();
-  ErrorCode ignored;
+  Failure ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   make_room();
   const auto session = std::make_shared<HttpSession>(std::move(socket), hub_, gate_);
@@ -288,7 +283,7 @@ void Acceptor::begin(tcp::socket&& socket) {
 void Acceptor::pause() {
   constexpr std::chrono::milliseconds kPause{100};
   timer_.expires_after(kPause);
-  timer_.async_wait([this](ErrorCode failure) {
+  timer_.async_wait([this](Failure failure) {
     if (!failure) accept();
   });
 }
@@ -334,7 +329,7 @@ struct FoxgloveServer::Impl {
   }
 
   ServerOptions options;
-  boost::asio::io_context io{1};
+  asio::io_context io{1};
   Hub hub;
   std::shared_ptr<ReplyGate> gate;
   Acceptor acceptor;
