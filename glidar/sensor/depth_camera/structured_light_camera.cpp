@@ -28,11 +28,10 @@ bool is_sequence_allowed(const StructuredLightCamera& camera) {
 }  // namespace
 
 void describe(StructuredLightCamera& camera, FieldVisitor& visitor) {
-  visit_projector(
-      visitor,
-      "as pinhole [optics](optics.md): a camera reversed; its width and height, at most "
-      "16384, are those of the patterns",
-      camera.projector, camera.projector_from_camera, camera.patterns);
+  visit_projector(visitor,
+                  "as pinhole optics: a camera reversed; its width and height, at most "
+                  "16384, are those of the patterns",
+                  camera.projector, camera.projector_from_camera, camera.patterns);
   visit_object(visitor, {"light", "of the projector"}, camera.light);
   visit_object(visitor, {"patterns", "the projected images"}, camera.patterns);
   visit_object(visitor, {"decoding", "thresholds of the decoder"}, camera.decoding);
