@@ -225,8 +225,8 @@ def test_object_ids_of_ply_are_parts(tmp_path):
     text += "".join(f"{x:g} {y:g} {z:g}\n" for x, y, z in vertices)
     text += "".join(f"3 {3 * k} {3 * k + 1} {3 * k + 2} {number}\n" for k, number in faces)
     parts = {part.name: part for part in parts_of(tmp_path / "a.ply", text)}
-    assert {name: part.triangles for name, part in parts.items()} == {"7": 2, "-1": 1, "0": 1}
-    np.testing.assert_allclose([parts["7"].minimum, parts["7"].maximum], [[0, 0, 0], [21, 2, 0]])
+    assert {name: part.triangles for name, part in parts.items()} == {"object_id 7": 2, "object_id -1": 1, "object_id 0": 1}
+    np.testing.assert_allclose([parts["object_id 7"].minimum, parts["object_id 7"].maximum], [[0, 0, 0], [21, 2, 0]])
     for part in parts.values():
         np.testing.assert_array_equal(part.pose, np.eye(4))
 
@@ -260,7 +260,7 @@ def test_nodes_without_a_name_have_that_of_their_mesh(tmp_path):
     made.json["nodes"][1]["name"] = ""
     made.write(tmp_path / "a.gltf")
     assert names_of(tmp_path / "a.gltf") == ["shape", "shape_2"]
-    assert names_of(tmp_path / "a.dae", collada_of('<node><instance_geometry url="#g"/></node>')) == ["triangle"]
+    assert names_of(tmp_path / "a.dae", collada_of('<node><instance_geometry url="#g"/></node>')) == ["g"]  # its id
     resources = f'<object id="5" name="">{MESH_3MF}</object>'
     assert names_of(write_3mf(tmp_path / "a.3mf", resources, '<item objectid="5"/>')) == ["Object_5"]
 
