@@ -90,8 +90,10 @@ void register_cast(const Stage& stage, unsigned threads, int casts, const std::s
 }
 
 /// Casts a footprint's beam samples with the columns that the lidar equation needs.
-void register_sub_cast(const Stage& stage, unsigned threads, const std::string& name) {
-  benchmark::RegisterBenchmark(name.c_str(), [&stage, threads](benchmark::State& state) {
+void register_sub_cast(const Stage& stage, unsigned threads, const FootprintLayout& footprints,
+                       const std::string& name) {
+  benchmark::RegisterBenchmark(name.c_str(), [&stage, threads,
+                                              footprints](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.threads = threads});
     Beams rays;
     expand_beams(sample_footprint(*stage.wide.footprint), stage.beams, {0, stage.beams.size()},
@@ -101,7 +103,8 @@ void register_sub_cast(const Stage& stage, unsigned threads, const std::string& 
       renderer->cast({.beams = rays,
                       .world_from_sensor = Pose::Identity(),
                       .world_from_instance = {},
-                      .hit_columns = {.shading = true, .diffuse = true}},
+                      .hit_columns = {.shading = true, .diffuse = true},
+                      .footprints = footprints},
                      hits);
     }
     count_rays(stage, state);
@@ -137,7 +140,8 @@ int main(int argc, char** argv) {
     const std::string at = std::to_string(threads) + " threads ";
     glidar::bench::register_cast(stage, threads, 1, at + "cast");
     glidar::bench::register_cast(stage, threads, 7, at + "seven casts");
-    glidar::bench::register_sub_cast(stage, threads, at + "sub-rays");
+    glidar::bench::register_sub_cast(stage, threads, {}, at + "sub-rays");
+    glidar::bench::register_sub_cast(stage, threads, {7, 1.5e-3, 6.4e-3}, at + "sub-rays at once");
     glidar::bench::register_simulation(stage, stage.wide, stage.motion, threads, at + "footprint");
     glidar::bench::register_simulation(stage, stage.sensor, stage.motion, threads, at + "simulate");
     glidar::bench::register_simulation(stage, stage.noisy, stage.motion, threads,
@@ -153,6 +157,8 @@ int main(int argc, char** argv) {
         {at + "moving along timed poses / simulate", at + "simulate", at + "moving", 0.6});
     ratios.push_back({at + "footprint of seven sub-rays / seven casts", at + "seven casts",
                       at + "footprint", 0.8});
+    ratios.push_back({at + "sub-rays of a footprint at once / one by one", at + "sub-rays",
+                      at + "sub-rays at once", 1.0});
     ratios.push_back({at + "footprint / cast of its sub-rays with the light's columns",
                       at + "sub-rays", at + "footprint", 0.8});
     ratios.push_back({at + "with noise / cast", at + "cast", at + "with noise", 0.6});

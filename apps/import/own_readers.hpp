@@ -25,7 +25,7 @@ struct ReaderInput {
   /// The bytes of the model itself.
   [[nodiscard]] std::string_view bytes() const;
   /// The words of the model. UTF-16 is converted in `storage`, which must outlive the cursor; other
-  /// texts are read as the cursor continues.
+  /// texts are read as the cursor advances.
   [[nodiscard]] TextCursor text(std::string& storage, bool continues) const;
   /// The file itself, whose read bytes can be forgotten.
   [[nodiscard]] FileContent& content() const { return *files.content(model.string()); }

@@ -29,8 +29,8 @@ std::string shown(std::string_view word);
 /// Reads words of lines. Lines end with LF, CR or CR LF.
 class TextCursor {
  public:
-  /// Of a file, from its byte `begin`; it is read as the cursor continues, and what is behind the
-  /// cursor is forgotten. Copies must not be behind the one that continues.
+  /// Of a file, from its byte `begin`; it is read as the cursor advances, and what is behind the
+  /// cursor is forgotten. Copies must not be behind the one that advances.
   TextCursor(FileContent& file, std::size_t begin, bool continues, bool comments);
 
   /// `continues`: a backslash before the end of a line continues it. `comments`: a '#' begins a
