@@ -19,6 +19,8 @@ target_compile_options(
             $<$<CXX_COMPILER_ID:GNU>:-Wno-error=restrict>
             # GCC 14 takes the content of empty std::optionals for uninitialised
             $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>
+            # in unity builds GCC takes the types of sources for those of headers
+            $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${GLIDAR_UNITY_BUILD}>>:-Wno-subobject-linkage>
             # GCC 14 takes references that outlive an argument for references into it; GCC 12 has no such warning
             $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")

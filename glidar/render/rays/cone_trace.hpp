@@ -5,7 +5,7 @@
 #include <glidar/render/rays/cones.hpp>
 #include <glidar/render/rays/tree_traversal.hpp>
 
-// Finds the triangles that the rays of cones may hit. docs/internals/ray-casting-bounds.md derives
+// Finds the triangles that the rays of cones may hit. docs/internals/ray-casting.md derives
 // the bounds.
 namespace glidar::rays::GLIDAR_KERNEL {
 
