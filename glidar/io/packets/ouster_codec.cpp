@@ -333,57 +333,6 @@ class OusterDecoder final : public PacketDecoder {
 
 }  // namespace
 
-std::string ouster_metadata(const Sensor& sensor, const OusterOptions& options) {
-  const OusterFormat format = ouster_format(sensor, options);
-  const Spinning& spinning = spinning_optics(sensor, "Ouster packets");
-  const Json all = {
-      {"beam_intrinsics", beam_intrinsics(spinning)},
-      {"calibration_status",
-       {{"reflectivity", {{"timestamp", "2024-01-01T00:00:00"}, {"valid", true}}}}},
-      {"config_params", config_of(sensor, format, options.identity)},
-      {"imu_intrinsics", {{"imu_to_sensor_transform", matrix_mm(options.sensor_from_imu)}}},
-      {"lidar_data_format", data_format_of(spinning, format)},
-      {"lidar_intrinsics",
-       {{"lidar_to_sensor_transform",
-         {-1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}}}},
-      {"sensor_info", info_of(sensor, options.identity)},
-      {"user_data", ""}};
-  return all.dump(2) + "\n";
-}
-
-OusterSource load_ouster_source(const std::filesystem::path& metadata) {
-  return parse_ouster_source(read_text_file(metadata, kOusterJson), metadata.string());
-}
-
-OusterSource parse_ouster_source(const std::string& text, const std::string& file) {
-  OusterSource source;
-  OusterMetadata metadata = parse_ouster_metadata(text, file);
-  const Spinning& spinning = metadata.spinning;
-  const auto all = parse_json<nlohmann::json>(file, text);
-  const auto value = [&](const char* key) { return find_ouster_value(all, key); };
-  source.format.profile = profile_of(value("udp_profile_lidar"), file + ": udp_profile_lidar");
-  source.format.rows = metadata.slot_count;
-  source.format.slots = std::move(metadata.slots);
-  source.format.columns_per_packet = whole_number(value("columns_per_packet"), kColumnsPerPacket,
-                                                  64, file + ": columns_per_packet");
-  if (source.format.columns_per_packet == 0)
-    throw Error({file + ": columns_per_packet", "0", "1 to 64"});
-  source.identity.init_id = static_cast<std::uint32_t>(
-      whole_number(value("initialization_id"), 0, UINT32_MAX, file + ": initialization_id"));
-  source.identity.lidar_port = static_cast<std::uint16_t>(
-      whole_number(value("udp_port_lidar"), kOusterLidarPort, 65'535, file + ": udp_port_lidar"));
-  source.identity.imu_port = static_cast<std::uint16_t>(
-      whole_number(value("udp_port_imu"), kOusterImuPort, 65'535, file + ": udp_port_imu"));
-  const nlohmann::json* line = value("prod_line");
-  const bool has_line = line != nullptr && line->is_string();
-  source.sensor.name = "Ouster " + (has_line ? shown(line->get<std::string>()) : "sensor");
-  source.sensor.rate_hz = spinning.rotation_hz;
-  source.sensor.notes = std::move(metadata.notes);
-  source.sensor.optics = std::move(metadata.spinning);
-  source.sensor.receiver.returns.resize(ouster_returns(source.format.profile));
-  return source;
-}
-
 bool is_ouster(const Sensor& sensor) {
   return sensor.name.starts_with("Ouster OS");
 }
