@@ -3,7 +3,6 @@
 #include <glidar/simulate/depth_from_images.hpp>
 
 #include <glidar/math/constants.hpp>
-#include <glidar/simulate/image_reading.hpp>
 #include <glidar/simulate/infrared_image.hpp>
 #include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
