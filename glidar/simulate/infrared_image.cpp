@@ -75,7 +75,6 @@ struct ShadowLight {
 };
 
 constexpr std::size_t kRaysPerTask = 4096;
-constexpr std::size_t kRowsPerTask = 4;
 constexpr double kSunReach = 1e4;    // metres from which rays of the sun come
 constexpr double kRangeStep = 0.03;  // between neighbours, beyond which they are not one surface
 
