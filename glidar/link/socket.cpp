@@ -258,6 +258,14 @@ void process_events(zmq::socket_t& socket) {
 
 }  // namespace
 
+CurveKeys make_curve_keys() {
+  constexpr std::size_t kLetters = 40;
+  std::array<char, kLetters + 1> public_key{};
+  std::array<char, kLetters + 1> secret_key{};
+  if (zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) throw zmq::error_t();
+  return {public_key.data(), secret_key.data()};
+}
+
 struct Context::Impl {
   zmq::context_t context{1};
   std::atomic<std::uint64_t> sockets{0};  ///< created so far

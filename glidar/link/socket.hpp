@@ -3,7 +3,6 @@
 #pragma once
 
 #include <glidar/link/connection_guard.hpp>
-#include <glidar/link/curve.hpp>
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/payload.hpp>
 
@@ -20,6 +19,13 @@
 
 /// A thin layer over ZeroMQ for all protocols, which reports errors as Error.
 namespace glidar::link {
+
+/// Keys of CURVE (https://rfc.zeromq.org/spec/26), 40 characters of Z85 each.
+struct CurveKeys {
+  std::string public_key;
+  std::string secret_key;
+};
+CurveKeys make_curve_keys();
 
 /// ZeroMQ's I/O thread; must outlive its sockets. The destructor waits until all messages are sent,
 /// at most for the sockets' `linger`.

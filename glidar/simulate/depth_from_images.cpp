@@ -3,7 +3,6 @@
 #include <glidar/simulate/depth_from_images.hpp>
 
 #include <glidar/math/constants.hpp>
-#include <glidar/simulate/image_reading.hpp>
 #include <glidar/simulate/infrared_image.hpp>
 #include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
@@ -25,7 +24,19 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kTofPixelsPerTask = 1024;
+/// Calls body(i) for all i below `count`, on all threads.
+template <class Body>
+void for_each_in(const Simulation& s, std::size_t count, std::size_t per_task, const Body& body) {
+  s.renderer.thread_pool().parallel_for(count, per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+template <class Body>
+void for_pixels(const Simulation& s, const Body& body) {
+  constexpr std::size_t kPixelsPerTask = 1024;
+  for_each_in(s, s.beams.size(), kPixelsPerTask, body);
+}
 
 /// Raw values of a pixel.
 void expose_pixel(const Simulation& s, const PreparedTof& prepared, std::size_t pixel,
@@ -48,10 +59,7 @@ void expose_images(const Simulation& s, const PreparedTof& prepared, TofImages& 
   images.frequencies = static_cast<std::uint32_t>(prepared.steps.frequencies);
   images.taps = static_cast<std::uint32_t>(prepared.steps.taps);
   images.level.resize(pixels * steps);
-  const auto expose_pixels = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) expose_pixel(s, prepared, i, images);
-  };
-  s.renderer.thread_pool().parallel_for(pixels, kTofPixelsPerTask, expose_pixels);
+  for_pixels(s, [&](std::size_t i) { expose_pixel(s, prepared, i, images); });
 }
 
 Status status_of(TofStatus status, bool is_miss) {
@@ -112,10 +120,7 @@ void set_returns(const Simulation& s, const PreparedTof& prepared, const TofMeas
   frame.tof_amplitude.resize(pixels);
   frame.bounced_share.resize(pixels);
   frame.return_source.assign(pixels, ReturnSource::none);
-  const auto set = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) set_return(s, prepared, measured, i);
-  };
-  s.renderer.thread_pool().parallel_for(pixels, kTofPixelsPerTask, set);
+  for_pixels(s, [&](std::size_t i) { set_return(s, prepared, measured, i); });
 }
 
 TofCalibration calibration_of(const PreparedTof& prepared) {
@@ -143,7 +148,6 @@ TofPixelTrace trace_pixel(const Simulation& s, const PreparedTof& prepared, std:
                                  calibration_of(prepared), {.pool = &s.renderer.thread_pool()})};
 }
 
-constexpr std::size_t kReadingsPerTask = 1024;
 constexpr float kTransparentOpacity = 0.5F;  ///< surfaces below it are a cause of holes
 
 /// What the left or right image is taken with.
@@ -275,14 +279,10 @@ void set_returns(const Simulation& s, const PreparedActiveStereo& prepared,
   const auto is_hole = [&](std::size_t i) { return matched[i] != StereoStatus::valid; };
   find_hidden(s, second_origin_m(prepared.camera), EntryFilter(is_hole), memory.unseen);
   find_hidden(s, prepared.camera.projector.origin_m, EntryFilter(is_hole), memory.unlit);
-  const auto set_pixel = [&](std::size_t i) {
+  for_pixels(s, [&](std::size_t i) {
     if (is_hole(i)) return invalidate_return(s.frame, i, find_cause(s, matched[i], i));
     set_depth(s, prepared, i);
-  };
-  const auto set = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) set_pixel(i);
-  };
-  s.renderer.thread_pool().parallel_for(matched.size(), kReadingsPerTask, set);
+  });
 }
 
 /// The light of the pixel that shows in the right image what pixel i shows in the left one.
@@ -325,14 +325,10 @@ StereoPixelTrace trace_pixel(const Simulation& s, const PreparedActiveStereo& pr
   return trace;
 }
 
-constexpr std::size_t kPatternRaysPerTask = 4096;
-
 template <class Body>
 void for_rays(const Simulation& s, const Body& body) {
-  s.renderer.thread_pool().parallel_for(s.workspace.infrared.projector.size(), kPatternRaysPerTask,
-                                        [&](std::size_t begin, std::size_t end) {
-                                          for (std::size_t i = begin; i < end; ++i) body(i);
-                                        });
+  constexpr std::size_t kRaysPerTask = 4096;
+  for_each_in(s, s.workspace.infrared.projector.size(), kRaysPerTask, body);
 }
 
 /// Rates of all pixels in the projector's greatest light, and the coordinate that lights each ray.
@@ -419,8 +415,6 @@ std::vector<RawImage> take_pattern_images(const Simulation& s,
   return images;
 }
 
-constexpr std::size_t kFringePixelsPerTask = 1024;
-
 /// Decodes raw images, which keep their grey levels.
 DecodedFringes decode(const Simulation& s, const StructuredLight& setup,
                       std::vector<RawImage>& images) {
@@ -486,19 +480,15 @@ void set_depth(const Simulation& s, double depth_m, float mean_level, std::size_
 /// Ranges and statuses from what was decoded.
 void set_returns(const Simulation& s, const PreparedStructuredLight& prepared,
                  const DecodedFringes& decoded) {
-  ThreadPool& threads = s.renderer.thread_pool();
   s.frame.return_source.assign(s.beams.size(), ReturnSource::none);
-  const std::vector<float> depth_m = triangulate(decoded, prepared.setup, s.beams, &threads);
+  const std::vector<float> depth_m =
+      triangulate(decoded, prepared.setup, s.beams, &s.renderer.thread_pool());
   const auto is_hole = [&](std::size_t i) { return decoded.status[i] != FringeStatus::valid; };
   find_hidden(s, prepared.projector_m, EntryFilter(is_hole), s.workspace.infrared.unlit);
-  const auto set_pixel = [&](std::size_t i) {
+  for_pixels(s, [&](std::size_t i) {
     if (!is_hole(i)) return set_depth(s, double{depth_m[i]}, decoded.mean_level[i], i);
     invalidate_return(s.frame, i, find_cause(s, prepared, decoded.status[i], i));
-  };
-  const auto set = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) set_pixel(i);
-  };
-  threads.parallel_for(depth_m.size(), kFringePixelsPerTask, set);
+  });
 }
 
 /// A pixel of all images.

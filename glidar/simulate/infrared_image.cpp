@@ -75,7 +75,6 @@ struct ShadowLight {
 };
 
 constexpr std::size_t kRaysPerTask = 4096;
-constexpr std::size_t kRowsPerTask = 4;
 constexpr double kSunReach = 1e4;    // metres from which rays of the sun come
 constexpr double kRangeStep = 0.03;  // between neighbours, beyond which they are not one surface
 
@@ -380,6 +379,38 @@ void render_infrared(const Simulation& s, const InfraredView& view, ElectronRate
   rates.height = view.imager.size.height;
   find_electron_rates(s, view.imager, memory.projector, rates.projector);
   find_electron_rates(s, view.imager, memory.ambient, rates.ambient);
+}
+
+PixelLight light_of(const ElectronRates& rates, const Exposure& exposure, std::size_t pixel) {
+  return {exposure.time_s * double{rates.projector[pixel]},
+          exposure.time_s * double{rates.ambient[pixel]}};
+}
+
+PixelReading read_pixel(const Simulation& s, const ElectronRates& rates, const ImageExposure& taken,
+                        std::size_t pixel) {
+  const std::size_t entry = taken.number * rates.projector.size() + pixel;
+  return read_pixel(taken.imager, levels_per_electron(taken.imager, taken.exposure),
+                    taken.speckle_contrast, light_of(rates, taken.exposure, pixel),
+                    rng_key(s.frame, taken.purpose, entry));
+}
+
+RawImage read_image(const Simulation& s, const ElectronRates& rates, const ImageExposure& taken) {
+  RawImage image;
+  image.grey = {.width = rates.width,
+                .height = rates.height,
+                .max_level = (1U << taken.imager.bits) - 1U,
+                .level = std::vector<std::uint16_t>(rates.projector.size())};
+  image.electrons.resize(rates.projector.size());
+  const auto read = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const PixelLight light = light_of(rates, taken.exposure, i);
+      image.electrons[i] = static_cast<float>(light.projector_e + light.ambient_e);
+      image.grey.level[i] = read_pixel(s, rates, taken, i).level;
+    }
+  };
+  constexpr std::size_t kReadingsPerTask = 1024;
+  s.renderer.thread_pool().parallel_for(rates.projector.size(), kReadingsPerTask, read);
+  return image;
 }
 
 }  // namespace glidar

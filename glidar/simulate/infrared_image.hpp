@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -70,5 +71,24 @@ void render_infrared(const Simulation& s, const InfraredView& view, ElectronRate
 /// light with cos^4 of the angle from the axis. 0 for pixels without a ray.
 void find_electron_rates(const Simulation& s, const PreparedImager& imager,
                          std::span<const float> radiance, std::vector<float>& per_s);
+
+/// An image that an imager takes, and its random numbers.
+struct ImageExposure {
+  const Imager& imager;
+  Exposure exposure;
+  double speckle_contrast = 0.0;
+  Purpose purpose = Purpose::left_image;
+  std::size_t number = 0;  ///< of the image among those of one purpose
+};
+
+/// Mean electrons of a pixel.
+PixelLight light_of(const ElectronRates& rates, const Exposure& exposure, std::size_t pixel);
+
+/// How a pixel of the image gets its grey level.
+PixelReading read_pixel(const Simulation& s, const ElectronRates& rates, const ImageExposure& taken,
+                        std::size_t pixel);
+
+/// The image as the imager reports it, without a name.
+RawImage read_image(const Simulation& s, const ElectronRates& rates, const ImageExposure& taken);
 
 }  // namespace glidar

@@ -60,8 +60,9 @@ void add_scaled(const TofExposure& exposure, double scale, const TofLight* from,
   }
 }
 
-void add_pixel(const Simulation& s, const PreparedTof& prepared, const TofExposure& exposure,
-               std::size_t pixel, std::vector<TofLight>& sum) {
+/// Adds the mean of the light over bounces to a pixel; `sum` is memory for it.
+void add_bounces_to(const Simulation& s, const PreparedTof& prepared, const TofExposure& exposure,
+                    std::size_t pixel, std::vector<TofLight>& sum) {
   TofWorkspace& memory = s.workspace.tof;
   const std::size_t steps = step_count(prepared);
   const PixelSurface own = surface_of(s, pixel);
@@ -92,7 +93,7 @@ void add_filtered_bounces(const Simulation& s, const PreparedTof& prepared,
   s.renderer.thread_pool().parallel_for(s.beams.rows, 1, [&](std::size_t begin, std::size_t end) {
     std::vector<TofLight> sum;
     for (std::size_t i = begin * s.beams.cols; i < end * s.beams.cols; ++i) {
-      add_pixel(s, prepared, exposure, i, sum);
+      add_bounces_to(s, prepared, exposure, i, sum);
     }
   });
 }
@@ -345,8 +346,8 @@ double add_ray(const PreparedTof& prepared, const TofExposure& exposure,
 }
 
 /// Adds the light of a pixel's sub-rays to its steps. Returns the reflectance seen, from 0 to 1.
-double add_pixel(const Simulation& s, const PreparedTof& prepared, const TofExposure& exposure,
-                 SurfaceReflectance& surfaces, std::size_t pixel) {
+double add_sub_rays(const Simulation& s, const PreparedTof& prepared, const TofExposure& exposure,
+                    SurfaceReflectance& surfaces, std::size_t pixel) {
   TofWorkspace& memory = s.workspace.tof;
   const std::size_t n = prepared.camera.sub_rays;
   const std::size_t steps = step_count(prepared);
@@ -365,7 +366,7 @@ void add_direct_light(const Simulation& s, const PreparedTof& prepared,
   const auto add_rows = [&](std::size_t begin, std::size_t end) {
     SurfaceReflectance surfaces(s.scene, prepared.wavelength_m);
     for (std::size_t pixel = begin * columns; pixel < end * columns; ++pixel) {
-      s.workspace.tof.reflectance[pixel] = add_pixel(s, prepared, exposure, surfaces, pixel);
+      s.workspace.tof.reflectance[pixel] = add_sub_rays(s, prepared, exposure, surfaces, pixel);
     }
   };
   s.renderer.thread_pool().parallel_for(s.beams.rows, 1, add_rows);

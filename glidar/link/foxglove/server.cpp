@@ -6,11 +6,11 @@
 #include <glidar/link/foxglove/client_session.hpp>
 #include <glidar/link/foxglove/http_routes.hpp>
 #include <glidar/link/foxglove/hub.hpp>
-#include <glidar/link/foxglove/reply_gate.hpp>
 #include <glidar/link/http_parser.hpp>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/socket_base.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -28,7 +28,9 @@
 #include <cstring>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -42,6 +44,64 @@ namespace asio = boost::asio;
 namespace http = boost::beast::http;
 using asio::ip::tcp;
 using Failure = boost::system::error_code;
+
+/// Passes answers from any thread to the server's thread, until the server ends.
+class ReplyGate {
+ public:
+  explicit ReplyGate(asio::io_context& io) : io_(&io) {}
+  /// Runs the work in the server's thread, unless the server has ended.
+  void post(std::function<void()> work);
+  /// From now on, post() does nothing.
+  void close();
+
+ private:
+  std::mutex mutex_;
+  asio::io_context* io_;
+};
+
+using Answer = std::function<void(std::optional<std::string>)>;
+
+/// Answers once: when called, or when destroyed.
+class PendingReply {
+ public:
+  PendingReply(std::shared_ptr<ReplyGate> gate, Answer answer)
+      : gate_(std::move(gate)), answer_(std::move(answer)) {}
+  PendingReply(const PendingReply&) = delete;
+  PendingReply& operator=(const PendingReply&) = delete;
+  ~PendingReply() { reply(std::nullopt); }
+
+  void reply(std::optional<std::string> text) {
+    Answer answer;
+    {
+      const std::lock_guard lock(mutex_);
+      answer = std::exchange(answer_, {});
+    }
+    if (!answer) return;
+    gate_->post([answer = std::move(answer), text = std::move(text)] { answer(text); });
+  }
+
+ private:
+  std::shared_ptr<ReplyGate> gate_;
+  std::mutex mutex_;
+  Answer answer_;
+};
+
+void ReplyGate::post(std::function<void()> work) {
+  const std::lock_guard lock(mutex_);
+  if (io_ != nullptr) asio::post(*io_, std::move(work));
+}
+
+void ReplyGate::close() {
+  const std::lock_guard lock(mutex_);
+  io_ = nullptr;
+}
+
+/// What the caller receives to answer a pick. `answer` runs once in the server's thread, without a
+/// text if the reply was destroyed without a call.
+PickReply make_pick_reply(const std::shared_ptr<ReplyGate>& gate, Answer answer) {
+  const auto pending = std::make_shared<PendingReply>(gate, std::move(answer));
+  return [pending](const std::string& text) { pending->reply(text); };
+}
 
 /// A new connection: answers one HTTP request, or becomes a ClientSession. Keeps itself alive while
 /// an operation is in progress.
