@@ -5,6 +5,7 @@
 #include <glidar/math/constants.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace glidar::rays {
@@ -47,6 +48,9 @@ struct WaitingBeams {
   }
 };
 
+/// After a bundle of which most cones meet too many triangles, so many are traced ray by ray.
+constexpr unsigned kDense = 15;
+
 /// Sixteen footprints around their first sub-rays.
 struct Bundle {
   BeamBlock middle;
@@ -63,8 +67,16 @@ class FootprintTrace {
     std::fill(hits_.instance.begin() + static_cast<std::ptrdiff_t>(footprints.begin * size_),
               hits_.instance.begin() + static_cast<std::ptrdiff_t>(footprints.end * size_),
               kInvalidId);
+    unsigned dense = 0;  // bundles that are not tried, because one before met too many triangles
     for (std::size_t i = footprints.begin; i < footprints.end; i += kLanes) {
-      trace_bundle({i, std::min(i + kLanes, footprints.end)});
+      const BeamRange bundle{i, std::min(i + kLanes, footprints.end)};
+      if (dense > 0) {
+        --dense;
+        for (std::size_t k = bundle.begin; k < bundle.end; ++k) add_others(k);
+        continue;
+      }
+      trace_bundle(bundle);
+      if (std::popcount(overflowed_) > static_cast<int>(kLanes / 2)) dense = kDense;
     }
     if (unsure_.count > 0) find_unsure();
     if (others_.count > 0) find_others();
@@ -85,7 +97,7 @@ class FootprintTrace {
       if (is_searched) {
         decide(i, found_[lane]);
       } else {
-        for (std::size_t beam = i * size_; beam < (i + 1) * size_; ++beam) add_other(beam);
+        add_others(i);
       }
     }
   }
@@ -228,6 +240,13 @@ class FootprintTrace {
         }
       }
       if (unsure_.add(beam, found.end_m)) find_unsure();
+    }
+  }
+
+  /// The sub-rays of a footprint.
+  void add_others(std::size_t footprint) {
+    for (std::size_t beam = footprint * size_; beam < (footprint + 1) * size_; ++beam) {
+      add_other(beam);
     }
   }
 
