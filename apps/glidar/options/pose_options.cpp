@@ -21,8 +21,8 @@ void add_pose_options(CLI::App& command, PoseFlags& flags) {
             parse_pose);
   OptionGroup(command, "Model")
       .add("--scale", "S | X,Y,Z",
-           "Scale of the model along its axes, after --unit; negative mirrors [1]",
-           flags.scale, parse_scale);
+           "Scale of the model along its axes, after --unit; negative mirrors [1]", flags.scale,
+           parse_scale);
   require_option(command, {"--target"}, "--eye");
   forbid_together(command, {"--sensor-pose"}, {"--eye", "--target"});
 }
