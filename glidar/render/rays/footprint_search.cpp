@@ -222,25 +222,25 @@ class FootprintTrace {
     found.forget_farther();
     if (found.count == 0) return;
     const std::size_t first = footprint * size_;
-    if (found.count == 1 && found.hit[0].is_certain) {
-      const PossibleHit& hit = found.hit[0];
-      const MeshTree& tree = cast_.trees.of_instance(hit.leaf.instance);
-      const std::uint32_t primitive =
-          tree.blocks[hit.slot / kBlockSize].primitive[hit.slot % kBlockSize];
-      for (std::size_t beam = first; beam < first + size_; ++beam) {
-        hits_.instance[beam] = hit.leaf.instance;
-        hits_.primitive[beam] = primitive;
-      }
-      return;
-    }
+    if (found.count == 1 && found.hit[0].is_certain) return hit_all(first, found.hit[0]);
     for (std::size_t beam = first; beam < first + size_; ++beam) {
-      if (beam == first || unsure_.count == 0) {
-        for (unsigned k = 0; k < found.count; ++k) {
-          unsure_.leaf[unsure_.leaves++] = found.hit[k].leaf;
-        }
-      }
+      if (beam == first || unsure_.count == 0) add_leaves(found);
       if (unsure_.add(beam, found.end_m)) find_unsure();
     }
+  }
+
+  void hit_all(std::size_t first, const PossibleHit& hit) {
+    const MeshTree& tree = cast_.trees.of_instance(hit.leaf.instance);
+    const std::uint32_t primitive =
+        tree.blocks[hit.slot / kBlockSize].primitive[hit.slot % kBlockSize];
+    for (std::size_t beam = first; beam < first + size_; ++beam) {
+      hits_.instance[beam] = hit.leaf.instance;
+      hits_.primitive[beam] = primitive;
+    }
+  }
+
+  void add_leaves(const PossibleHits& found) {
+    for (unsigned k = 0; k < found.count; ++k) unsure_.leaf[unsure_.leaves++] = found.hit[k].leaf;
   }
 
   /// The sub-rays of a footprint.
