@@ -40,6 +40,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 extern char** environ;
 
@@ -180,8 +181,13 @@ void gain_powers(Attempts& t) {
   t.add("duplicate a descriptor", ::dup(0));
   t.add("make a memory file", ::memfd_create("x", 0));
   errno = ENOENT;
-  const bool is_empty = environ == nullptr || *environ == nullptr;
-  t.add("read a variable of the environment", is_empty ? -1 : 0);
+  constexpr std::string_view kOwn =
+      "GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4";  // the same for all
+  bool has_others = false;
+  for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable) {
+    if (*variable != kOwn) has_others = true;
+  }
+  t.add("read a variable of the environment", has_others ? 0 : -1);
 }
 
 void attempt_all(Attempts& attempts) {
