@@ -17,8 +17,8 @@ VerifyResult moving_sensor_and_target(const VerifySubject& subject,
 /// Such beams among many bodies, most of which move.
 VerifyResult sensor_in_traffic(const VerifySubject& subject, const std::vector<Shape>& shapes);
 
-/// The beams at the target measured by a sensor: also the poses of sensor and target, the beams without the
-/// motion, and radial velocities.
+/// The beams at the target measured by a sensor: also the poses of sensor and target, the beams
+/// without the motion, and radial velocities.
 VerifyResult measured_motion(const VerifySubject& subject, const std::vector<Shape>& shapes);
 
 }  // namespace glidar
