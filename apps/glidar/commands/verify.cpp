@@ -26,7 +26,7 @@ constexpr const char* kVerifyExamples = R"(Examples:
 
 Each row is one case with one shape at one distance from the sensor. "One shape at rest" measures a
 shape that grows with the distance and one of 1 m, at the world's origin and 1 km and 1000 km from
-it (by its pose, and by its vertices). The other cases are hard or large ones: docs/internals/accuracy.md.
+it (by its pose, and by its vertices). docs/internals/accuracy.md lists the hard and large cases.
 Scope: hit or miss, instance, triangle, range and every geometric column of hits (normals, depth,
 cosines, barycentric weights, points of the object), with several tiles, 1,000 instances, 209,088
 triangles, culled back faces and motion; rays through lenses; signals of the lidar equation, echoes
