@@ -20,7 +20,7 @@ void add_pose_options(CLI::App& command, PoseFlags& flags) {
             "Position in the world, m, and attitude of the sensor", flags.world_from_sensor,
             parse_pose);
   OptionGroup(command, "Model")
-      .add("--scale", "S | X,Y,Z", "Scale of the model, after --unit; negative factors mirror [1]",
+      .add("--scale", "S|X,Y,Z", "Scale of the model, after --unit; negative factors mirror [1]",
            flags.scale, parse_scale);
   require_option(command, {"--target"}, "--eye");
   forbid_together(command, {"--sensor-pose"}, {"--eye", "--target"});
