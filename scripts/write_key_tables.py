@@ -1,22 +1,25 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of keys in docs/ and the schemas beside the examples from the descriptions in the program.
+"""Writes the lists of keys in docs/ and the schemas beside the examples from the descriptions in the program.
 
 usage: write_key_tables.py GLIDAR [ROOT]; GLIDAR is the program, ROOT the folder of the sources.
-A table is between the lines `<!-- keys: PATH -->` and `<!-- end of keys -->`. PATH is the kind of schema and
-keys from there on, for example `sensor lidar_equation`; an alternative of a type is named as `optics=pinhole`. `-KEY` at
-the end leaves out the keys of the map KEY, which another table has; `*` those of all maps.
+       write_key_tables.py GLIDAR --print PATH prints the table of the keys: unit, default, allowed values and meaning.
+A list is between the lines `<!-- keys: PATH -->` and `<!-- end of keys -->`; `<!-- names of keys: PATH -->` has names and
+defaults alone. PATH is the kind of schema and keys from there on, for example `sensor lidar_equation`; an alternative of a
+type is named as `optics=pinhole`. `-KEY` at the end leaves out the keys of the map KEY, which another list has; `*` those of
+all maps. Alternatives of a type are a table.
 """
 
 import json
 import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 SCHEMA_FILES = {"sensor": "sensors/sensor.schema.json", "imu": "sensors/imu.schema.json", "scene": "examples/scene.schema.json"}
-MARKED = re.compile(r"(<!-- keys: ([^\n]*) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
+MARKED = re.compile(r"(<!-- (names of keys|keys): ([^\n]*) -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 
 
 def schema_text(program, kind):
@@ -99,6 +102,37 @@ def rows_of(schema, prefix=""):
             yield from rows_of(value, f"{prefix}{key}.")
 
 
+def defaults_of(key, value, required):
+    """The default in brackets, the unit where the name of the key has none, and the other words that are allowed."""
+    default = default_of(key, value, required)
+    unit = value.get("x-unit", "") if "_" not in key and not default[:1].isalpha() else ""
+    parts = [" ".join(part for part in (default, unit) if part)]
+    others = [f"`{word}`" for word in value.get("enum", []) if f"`{word}`" not in default]
+    parts += ["or " + ", ".join(others)] if others else []
+    text = "; ".join(part for part in parts if part)
+    return f" ({text})" if text else ""
+
+
+def names_of(schema, prefix=""):
+    """Every key as `KEY` (default), with its meaning; nested maps follow their key."""
+    for key, value in schema["properties"].items():
+        if "const" in value:
+            continue
+        items = value.get("items")
+        is_list = isinstance(items, dict) and "properties" in items
+        yield f"`{prefix}{key}`" + defaults_of(key, value, schema.get("required", [])), value["description"]
+        if is_list or "properties" in value:
+            yield from names_of(items if is_list else value, f"{prefix}{key}[]." if is_list else f"{prefix}{key}.")
+
+
+def key_list(schema):
+    return [f"- {name}: {meaning}" for name, meaning in names_of(schema)]
+
+
+def key_names(schema):
+    return textwrap.wrap(", ".join(name for name, _ in names_of(schema)), 150, break_long_words=False, break_on_hyphens=False)
+
+
 def row(cells):
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
@@ -133,7 +167,7 @@ def type_table(schema):
     return lines
 
 
-def table(schemas, path):
+def table(schemas, path, of_keys=key_table):
     kind, *words = path.split()
     steps = [word for word in words if word[0] not in "-*"]
     schema = find(schemas(kind), steps)
@@ -141,13 +175,14 @@ def table(schemas, path):
         schema = find(schema["additionalProperties"], steps)
     if "oneOf" in schema:
         return type_table(schema)
-    return key_table(without_keys_inside(schema, schema["properties"] if "*" in words else {word[1:] for word in words}))
+    return of_keys(without_keys_inside(schema, schema["properties"] if "*" in words else {word[1:] for word in words}))
 
 
 def written(text, schemas):
-    """The text with the tables as they are now."""
+    """The text with the lists as they are now."""
     def replaced(match):
-        return match[1] + "\n".join(table(schemas, match[2])) + "\n" + match[3]
+        of_keys = key_list if match[2] == "keys" else key_names
+        return match[1] + "\n".join(table(schemas, match[3], of_keys)) + "\n" + match[4]
     return MARKED.sub(replaced, text)
 
 
@@ -161,6 +196,9 @@ def main():
             texts[kind] = schema_text(program, kind)
         return json.loads(texts[kind])
 
+    if root == Path("--print"):
+        print("\n".join(table(schemas, " ".join(sys.argv[3:]))))
+        return
     for page in sorted(root.glob("docs/**/*.md")):
         old = page.read_text(encoding="utf-8")
         new = written(old, schemas)
