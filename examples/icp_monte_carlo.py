@@ -6,7 +6,7 @@
 A depth camera sees a target from a new place in every trial. Registration by small_gicp and Open3D finds the camera's
 pose against points of the target's model, from starts that are turned and shifted by the steps of a grid, once with
 the exact cloud and once with a noisy one. The errors are compared with the Cramer-Rao bound that GLIDAR computes for the
-very same view, and beside the estimate that knows every point's plane, which attains it (docs/studies/icp.md).
+very same view, and beside the estimate that knows every point's plane, which attains it (docs/studies.md).
 """
 
 import argparse

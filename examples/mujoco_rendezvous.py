@@ -5,7 +5,7 @@
 
 MuJoCo moves a tumbling satellite, on which no torque acts, and a chaser with a flash LiDAR. GLIDAR measures what the
 LiDAR sees, ICP (small_gicp) finds the satellite's pose in every cloud, and the chaser steers by that pose alone. All
-of it runs twice: in lock-step and by the original GLIDAR protocol (docs/link/mujoco.md).
+of it runs twice: in lock-step and by the original GLIDAR protocol (docs/studies.md).
 """
 
 import argparse

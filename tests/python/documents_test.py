@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python code of README.md, of the pages about Python and of the notebook works."""
 
-import inspect
 import json
 import os
 import re
@@ -28,7 +27,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/python.md", "docs/python/reference.md"])
+@pytest.mark.parametrize("name", ["README.md", "docs/python.md"])
 def test_python_code_of_a_page_runs(name, folder):
     found = blocks(name)
     assert found
@@ -38,43 +37,10 @@ def test_python_code_of_a_page_runs(name, folder):
 
 
 def test_every_public_name_has_a_docstring_and_is_documented():
-    text = (ROOT / "docs/python/reference.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/python.md").read_text(encoding="utf-8")
     for name in glidar.__all__:
         assert getattr(glidar, name).__doc__, name
         assert re.search(rf"\b{name}\b", text), name
-
-
-def calls(text):
-    """Names and arguments of the calls in the first columns of the tables."""
-    for row in re.findall(r"^\| (`.*?) \| ", text, re.MULTILINE):
-        yield from re.findall(r"`(\w[\w.]*)\((.*?)\)`", row)
-
-
-def named(name):
-    """What a name of the table is: scene.bounds is that of the class Scene."""
-    owner, _, method = name.rpartition(".")
-    return getattr(getattr(glidar, owner[0].upper() + owner[1:]), method) if owner else getattr(glidar, name)
-
-
-def test_the_reference_tables_list_the_arguments_of_the_functions():
-    found = list(calls((ROOT / "docs/python/reference.md").read_text(encoding="utf-8")))
-    assert len(found) > 20
-    for name, text in found:
-        parameters = {key: one for key, one in inspect.signature(named(name)).parameters.items() if key != "self"}
-        kinds = {one.kind for one in parameters.values()}
-        words = [] if "{" in text else [word for word in re.split(r", | or ", text) if word]
-        positional = words.index("*") if "*" in words else len(words)
-        listed = [word.partition("=") for word in words if word not in ("*", "...")]
-        for place, (word, _, default) in enumerate(listed):
-            if word not in parameters:
-                assert inspect.Parameter.VAR_KEYWORD in kinds, f"{name} has no {word}"
-                continue
-            if default and default != "...":
-                assert repr(parameters[word].default) == default, f"{name}, {word}"
-            if place >= positional:
-                assert parameters[word].kind is inspect.Parameter.KEYWORD_ONLY, f"{name}, {word}"
-        if words and "..." not in text and inspect.Parameter.VAR_KEYWORD not in kinds:
-            assert {word for word, _, _ in listed} == set(parameters), name
 
 
 NOTEBOOK = ROOT / "examples/notebooks/first_steps.ipynb"

@@ -32,7 +32,7 @@ SEED = 3
 VIEWS, DEVIATIONS = 150, 4.5
 # No method is below the bound but by chance: the squares of VIEWS errors, each a sum of six, sink by 4.5 deviations.
 LEAST_RATIO = np.sqrt(1 - DEVIATIONS * np.sqrt(2 / VIEWS))
-# The best ICP stays within so many bounds (docs/studies/icp.md: 1.2 in the middle), a wrong frame or sign is ten and more off.
+# The best ICP stays within so many bounds (docs/studies.md: 1.2 in the middle), a wrong frame or sign is ten and more off.
 MOST_RATIO = 2.5
 # With exact clouds what is left of a weighted fit is Open3D's last digits; planes belong to the wrong triangle rarely.
 EXACT_RATIO = 0.05
@@ -131,7 +131,7 @@ class Shares(unittest.TestCase):
 
 class PlaneIcp(unittest.TestCase):
     def test_of_small_gicp_takes_residuals_by_components(self):
-        """What docs/studies/icp.md states: along an oblique normal n it sums (n_k r_k)^2, not (n r)^2."""
+        """What docs/studies.md states: along an oblique normal n it sums (n_k r_k)^2, not (n r)^2."""
         normal = np.ones(3) / np.sqrt(3)
         along = np.array([1, -1, 0]) / np.sqrt(2)
         u, v = np.random.default_rng(0).random((2, 5000, 1)) - 0.5

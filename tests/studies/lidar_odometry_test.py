@@ -27,7 +27,7 @@ import glidar
 
 SECONDS = 3.0
 # Over 20 s KISS-ICP is off by 2 % of the way without deskewing, by 1.2 % with its own and by 1 % with the ground truth's
-# (docs/studies/lidar-odometry.md). Three seconds vary by a half; a turn's motion itself is 10 % of a second's way.
+# (docs/studies.md). Three seconds vary by a half; a turn's motion itself is 10 % of a second's way.
 LARGEST_DRIFT_PERCENT = 4.0
 
 

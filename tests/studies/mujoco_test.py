@@ -31,7 +31,7 @@ EXAMPLE = ROOT / "examples" / "mujoco_rendezvous.py"
 SECONDS = 4.0
 
 # A pixel of flash-256 is 1.4 mrad, 60 mm at 45 m. A pose that is wrong by half a pixel, a frame or an axis is off by
-# 30 mm or 1.6 degrees; the estimator itself stays below 3 mm and 0.25 degrees over the whole approach (docs/link/mujoco.md).
+# 30 mm or 1.6 degrees; the estimator itself stays below 3 mm and 0.25 degrees over the whole approach (docs/studies.md).
 LARGEST_MM, LARGEST_DEG = 6.0, 0.5
 # Of 0.1 m of noise on about 700 points, 4 mm are left of the range; of the attitude, whose worst axis has a lever of
 # half a metre, about a degree. ICP is no optimum: three times and more.

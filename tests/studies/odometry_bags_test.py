@@ -23,7 +23,7 @@ import odometry_bags as study
 from odometry_pictures import draw_runs
 
 SECONDS = 4.0
-# A second's way is 9 m, and the motion during a revolution 10 % of it; see docs/studies/lidar-odometry.md.
+# A second's way is 9 m, and the motion during a revolution 10 % of it; see docs/studies.md.
 MAX_DRIFT_PERCENT = 4.0
 
 
