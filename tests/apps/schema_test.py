@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of keys in docs/ and the schemas beside the examples are those of the program."""
+"""The lists of keys in docs/ and the schemas beside the examples are those of the program."""
 
 import importlib.util
 import json
 import subprocess
+import sys
 import unittest
 from pathlib import Path
 
@@ -32,21 +33,29 @@ class Schema(unittest.TestCase):
             self.assertEqual(kept, run(kind).stdout, "run scripts/write_key_tables.py GLIDAR")
         self.assertEqual(run().stdout, run("sensor").stdout)
 
-    def test_tables_in_the_documentation_are_up_to_date(self):
+    def test_lists_in_the_documentation_are_up_to_date(self):
         script = load_script()
-        tables = 0
+        lists = 0
         for page in sorted(ROOT.glob("docs/**/*.md")):
             text = page.read_text(encoding="utf-8")
-            tables += text.count("<!-- keys:")
+            lists += text.count("<!-- keys:") + text.count("<!-- names of keys:")
             self.assertEqual(text, script.written(text, self.schemas), f"{page}: run scripts/write_key_tables.py GLIDAR")
-        self.assertGreaterEqual(tables, 24)
+        self.assertGreaterEqual(lists, 24)
 
-    def test_a_table_that_differs_is_written_again(self):
+    def test_a_list_that_differs_is_written_again(self):
         script = load_script()
         old = "a\n<!-- keys: sensor limits -->\nold\n<!-- end of keys -->\nb\n"
         new = script.written(old, self.schemas)
-        self.assertIn("| `near_m` | m | 0 | from 0 | shortest reported distance |", new)
+        self.assertIn("- `near_m` (0): shortest reported distance\n", new)
         self.assertNotIn("old", new)
+        names = script.written(old.replace("keys: sensor", "names of keys: sensor"), self.schemas)
+        self.assertIn("\n`near_m` (0), `far_m` (no limit), ", names)
+        self.assertNotIn("shortest", names)
+
+    def test_a_printed_table_has_units_defaults_and_limits(self):
+        command = [sys.executable, "-B", ROOT / "scripts/write_key_tables.py", "glidar", "--print", "sensor", "limits"]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        self.assertIn("| `near_m` | m | 0 | from 0 | shortest reported distance |", done.stdout)
 
     def test_every_preset_refers_to_the_schema(self):
         for preset in sorted((ROOT / "sensors").glob("*.yaml")):
