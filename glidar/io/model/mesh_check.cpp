@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace glidar {
@@ -27,6 +30,24 @@ struct Side {
   }
 };
 
+/// Sorted values. `first_of` is the number, below `vertices`, by which they are sorted first:
+/// values are placed by it, and only the few with the same one are compared.
+template <class T, class FirstOf>
+std::vector<T> sorted(const std::vector<T>& values, std::size_t vertices, FirstOf first_of) {
+  std::vector<std::size_t> ends(vertices + 1, 0);
+  for (const T& value : values) ++ends[first_of(value) + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<T> placed(values.size());
+  for (const T& value : values) placed[ends[first_of(value)]++] = value;
+  auto begin = placed.begin();
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto end = placed.begin() + static_cast<std::ptrdiff_t>(ends[v]);
+    std::sort(begin, end);
+    begin = end;
+  }
+  return placed;
+}
+
 /// Triangles with vertices replaced by the first vertex at the same position.
 std::vector<Triangle> by_place(const Mesh& mesh, const std::vector<std::uint32_t>& place) {
   std::vector<Triangle> triangles = mesh.triangles;
@@ -36,7 +57,7 @@ std::vector<Triangle> by_place(const Mesh& mesh, const std::vector<std::uint32_t
   return triangles;
 }
 
-std::vector<Side> sides_of(const std::vector<Triangle>& triangles) {
+std::vector<Side> sides_of(const std::vector<Triangle>& triangles, std::size_t vertices) {
   std::vector<Side> sides;
   sides.reserve(triangles.size() * 3);
   for (const Triangle& t : triangles) {
@@ -47,12 +68,11 @@ std::vector<Side> sides_of(const std::vector<Triangle>& triangles) {
       sides.push_back({std::min(from, to), std::max(from, to), from < to});
     }
   }
-  std::sort(sides.begin(), sides.end());
-  return sides;
+  return sorted(sides, vertices, [](const Side& side) { return side.low; });
 }
 
-void count_edges(const std::vector<Triangle>& triangles, MeshCheck& check) {
-  const std::vector<Side> sides = sides_of(triangles);
+void count_edges(const std::vector<Triangle>& triangles, std::size_t vertices, MeshCheck& check) {
+  const std::vector<Side> sides = sides_of(triangles, vertices);
   for (std::size_t first = 0; first < sides.size();) {
     std::size_t end = first;
     std::size_t upwards = 0;
@@ -67,9 +87,9 @@ void count_edges(const std::vector<Triangle>& triangles, MeshCheck& check) {
   }
 }
 
-void count_duplicates(std::vector<Triangle> triangles, MeshCheck& check) {
+void count_duplicates(std::vector<Triangle> triangles, std::size_t vertices, MeshCheck& check) {
   for (Triangle& t : triangles) std::sort(t.begin(), t.end());
-  std::sort(triangles.begin(), triangles.end());
+  triangles = sorted(triangles, vertices, [](const Triangle& t) { return t[0]; });
   for (std::size_t i = 1; i < triangles.size(); ++i) {
     check.duplicate_triangles += triangles[i] == triangles[i - 1] ? 1 : 0;
   }
@@ -125,9 +145,9 @@ MeshCheck check_mesh(const Mesh& mesh) {
   if (!mesh.origins.empty()) return check;
   if (mesh.triangles.empty()) return check;
   const std::vector<std::uint32_t> place = first_at_position(mesh.positions_m);
-  const std::vector<Triangle> triangles = by_place(mesh, place);
-  count_edges(triangles, check);
-  count_duplicates(triangles, check);
+  std::vector<Triangle> triangles = by_place(mesh, place);
+  count_edges(triangles, place.size(), check);
+  count_duplicates(std::move(triangles), place.size(), check);
   measure(mesh, check);
   count_vertices(mesh, place, check);
   return check;
