@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A client of `glidar stream builtin:asteroid --lockstep tcp://127.0.0.1:5600`, from the tables of
 // docs/link/lockstep.md alone.
-// [docs]
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -45,4 +44,3 @@ int main(int argc, char** argv) {
   for (std::size_t k = 2; k < xyz.size(); k += 3) nearest_m = std::min(nearest_m, xyz[k]);
   std::printf("%zu points, the nearest %.3f m ahead\n", xyz.size() / 3, nearest_m);
 }
-// [docs]
