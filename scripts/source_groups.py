@@ -4,7 +4,7 @@
 """Groups C++ sources that can be compiled together, because none of them define or shadow the others' names.
 
 usage: source_groups.py SIZE FILE...; prints a line per group: its files, separated by semicolons.
-Sources of one group are in the same folder. A group has at most SIZE sources.
+A group has at most SIZE sources.
 """
 
 import re
@@ -58,7 +58,7 @@ def groups(sources, size, kind_of):
 
 def main():
     sources = [(Path(name),) for name in sys.argv[2:]]
-    for members in groups(sources, int(sys.argv[1]), lambda source: source[0].parent):
+    for members in groups(sources, int(sys.argv[1]), lambda source: None):
         print(";".join(str(file) for file, in members))
 
 

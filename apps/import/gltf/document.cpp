@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t kMaxDepth = 64;  // of the JSON; the standard's own objects have 8
 
 /// Version 1 (2015) has other objects and shaders.
-[[noreturn]] void refuse_version(const std::string& version) {
-  throw Refusal{"glTF version " + version + ": GLIDAR reads version 2",
+[[noreturn]] void refuse_version(const std::string& version, const std::string& member = "") {
+  throw Refusal{member + "glTF version " + version + ": GLIDAR reads version 2",
                 "convert it to version 2: gltf-pipeline -i MODEL -o NEW.glb, or import it in "
                 "Blender and export it"};
 }
@@ -131,7 +131,7 @@ void check_version(const Document& document) {
   if (!asset) refuse("asset", "it is missing, so the version of glTF is unknown");
   if (!version.starts_with("2.")) refuse_version(in_quotes(version));
   const std::string least = asset["minVersion"].text_or("2.0");
-  if (least != "2.0") refuse_version(in_quotes(least));
+  if (least != "2.0") refuse_version(in_quotes(least), "asset.minVersion: ");
 }
 
 }  // namespace

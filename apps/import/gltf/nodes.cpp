@@ -15,23 +15,15 @@ namespace {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
-Eigen::Matrix4d matrix_of(const Value& value) {
-  const std::vector<double> m = value.numbers(16);
-  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix4d>(m.data());  // by columns
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    value.refuse("its last row is not 0, 0, 0, 1: no affine transform");
-  }
-  return matrix;
-}
-
-Eigen::Matrix4d parent_from_node(const Value& node) {
+Eigen::Matrix4d parent_from_node(const Value& node, Notes& notes) {
   const Value matrix = node["matrix"];
   const Value translation = node["translation"];
   const Value rotation = node["rotation"];
   const Value scale = node["scale"];
   if (matrix) {
     if (translation || rotation || scale) matrix.refuse("translation, rotation or scale beside it");
-    return matrix_of(matrix);
+    const std::vector<double> numbers = matrix.numbers(16);
+    return affine(numbers.data(), matrix, "its last row", notes);
   }
   const std::vector<double> t = translation.numbers_or({0, 0, 0});
   const std::vector<double> q = rotation.numbers_or({0, 0, 0, 1});
@@ -168,6 +160,20 @@ std::vector<Eigen::VectorXd> rows_of(const Value& index, std::size_t components,
 
 }  // namespace
 
+Eigen::Matrix4d affine(const double* by_columns, const Value& where, const std::string& row,
+                       Notes& notes) {
+  constexpr double kRounding = 1e-5;  // exporters invert matrices in single precision
+  Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix4d>(by_columns);
+  const Eigen::RowVector4d last(0, 0, 0, 1);
+  const double difference = (matrix.row(3) - last).cwiseAbs().maxCoeff();
+  if (!(difference <= kRounding)) where.refuse(row + " is not 0, 0, 0, 1: no affine transform");
+  if (difference > 0) {
+    notes.add_at(where.path(), "the last row of a matrix is rounded: read as 0, 0, 0, 1");
+  }
+  matrix.row(3) = last;
+  return matrix;
+}
+
 Eigen::Matrix4d composed(const Eigen::Vector3d& translation, const Eigen::Vector4d& rotation,
                          const Eigen::Vector3d& scale) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
@@ -184,7 +190,7 @@ Nodes read_nodes(Document& document) {
   result.scene_from_node.resize(nodes.size());
   std::vector<bool> is_placed(nodes.size(), false);
   for (const std::size_t i : below(without_parent(family), family)) {
-    const Eigen::Matrix4d local = parent_from_node(nodes.at(i));
+    const Eigen::Matrix4d local = parent_from_node(nodes.at(i), document.notes);
     const std::size_t parent = family.parent[i];
     result.scene_from_node[i] =
         parent == kNoNode ? local : Eigen::Matrix4d(result.scene_from_node[parent] * local);

@@ -49,11 +49,8 @@ std::vector<Eigen::Matrix4d> joints_of(const Context& context, const Value& skin
   }
   const std::vector<double> numbers = read_numbers(accessor, context.model.notes);
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const Eigen::Map<const Eigen::Matrix4d> bind(numbers.data() + i * 16);
-    if (bind.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-      index.refuse(fmt::format("the last row of matrix {} is not 0, 0, 0, 1", i));
-    }
-    joints[i] = joints[i] * bind;
+    const std::string row = fmt::format("the last row of matrix {}", i);
+    joints[i] = joints[i] * affine(numbers.data() + i * 16, index, row, context.model.notes);
   }
   return joints;
 }

@@ -158,7 +158,7 @@ constexpr std::array kMembers = std::to_array<Member>({
 });
 
 // Required extensions without an effect on the shape: a note names them.
-constexpr std::array<std::string_view, 17> kNoted = {"KHR_animation_pointer",
+constexpr std::array<std::string_view, 18> kNoted = {"KHR_animation_pointer",
                                                      "KHR_lights_punctual",
                                                      "KHR_materials_anisotropy",
                                                      "KHR_materials_clearcoat",
@@ -169,6 +169,7 @@ constexpr std::array<std::string_view, 17> kNoted = {"KHR_animation_pointer",
                                                      "KHR_materials_transmission",
                                                      "KHR_materials_variants",
                                                      "KHR_materials_volume",
+                                                     "KHR_techniques_webgl",
                                                      "KHR_xmp_json_ld",
                                                      "EXT_lights_ies",
                                                      "EXT_lights_image_based",
@@ -252,11 +253,13 @@ std::string places(const Unused& unused) {
 }
 
 void note_extensions(const Search& found, Document& document) {
-  const Value listed = document.root()["extensionsUsed"];
   std::map<std::string, Unused> all = found.unused_extensions;
-  for (std::size_t i = 0; i < listed.size(); ++i) {
-    const std::string name = listed.at(i).text();
-    if (!is_used(name)) all.try_emplace(name);
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    const Value listed = document.root()[list];
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+      const std::string name = listed.at(i).text();
+      if (!is_used(name)) all.try_emplace(name);
+    }
   }
   for (const auto& [name, unused] : all) {
     const std::string where = unused.count == 0 ? "" : " (" + places(unused) + ")";

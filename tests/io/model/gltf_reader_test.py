@@ -108,6 +108,8 @@ def changed(change, base=plate):
 
 
 SCALE = np.diag([0.01, 0.01, 0.01, 1.0])
+ROUNDED = np.array([[1, 0, 0, -1], [0, 1, 0, 2], [0, 0, 1, 0], [0, 1e-7, 0, 1 - 1e-6]])
+PROJECTION = np.array([[1, 0, 0, -1], [0, 1, 0, 2], [0, 0, 1, 0], [0, 0, 1e-3, 1.0]])
 SHIFT = np.array([[1, 0, 0, -1], [0, 1, 0, 2], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 
 # Their shape must be that which NumPy reads.
@@ -185,6 +187,7 @@ REFUSED = {
     "missing mesh": (lambda: with_nodes([{"mesh": 4}]), "nodes[0].mesh: there is no meshes[4]"),
     "matrix and scale": (lambda: with_nodes([{"mesh": 0, "matrix": np.eye(4).ravel().tolist(), "scale": [1, 1, 1]}]), "nodes[0].matrix"),
     "projection": (lambda: with_nodes([{"mesh": 0, "matrix": [1, 0, 0, 1] + [0, 1, 0, 0] + [0, 0, 1, 0] + [0, 0, 0, 1]}]), "no affine transform"),
+    "bind matrix of a projection": (lambda: skinned([SCALE, PROJECTION]), "skins[0].inverseBindMatrices: the last row of matrix 1 is not 0, 0, 0, 1"),
     "zero rotation": (lambda: with_nodes([{"mesh": 0, "rotation": [0, 0, 0, 0]}]), "nodes[0].rotation"),
     "short translation": (lambda: with_nodes([{"mesh": 0, "translation": [0, 0]}]), "nodes[0].translation: 2 numbers, 3 are needed"),
     "text for a number": (lambda: with_nodes([{"mesh": 0, "scale": ["1", 1, 1]}]), "nodes[0].scale"),
@@ -200,7 +203,7 @@ REFUSED = {
     "version 1": (lambda: changed(lambda j: j["asset"].update(version="1.0")), "glTF version '1.0': GLIDAR reads version 2"),
     "lists by name": (lambda: changed(lambda j: j.update(meshes={})), "glTF version 1.0"),
     "no version": (lambda: changed(lambda j: j.pop("asset")), "asset: it is missing"),
-    "later version": (lambda: changed(lambda j: j["asset"].update(minVersion="2.1")), "glTF version '2.1'"),
+    "later version": (lambda: changed(lambda j: j["asset"].update(minVersion="2.1")), "asset.minVersion: glTF version '2.1'"),
     "unknown requirement": (lambda: changed(lambda j: j.update(extensionsRequired=["ABC_curved_space"])),
                             "extensionsRequired[0]: it requires the extension 'ABC_curved_space'"),
     "alpha mode": (lambda: material(alphaMode="GLASS"), "materials[0].alphaMode: 'GLASS'"),
@@ -243,6 +246,11 @@ NOTED = {
     "extension that is not listed": (lambda: changed(lambda j: j["nodes"][0].update(extensions={"ABC_ghi": {}})), "ABC_ghi is left out (nodes[0])"),
     "lights that are required": (lambda: changed(lambda j: j.update(extensionsRequired=["KHR_lights_punctual"], extensionsUsed=["KHR_lights_punctual"])),
                                  "the extension KHR_lights_punctual is left out"),
+    "shaders that are required": (lambda: changed(lambda j: j.update(extensionsRequired=["KHR_techniques_webgl"])),
+                                  "the extension KHR_techniques_webgl is left out"),
+    "rounded matrix of a node": (lambda: with_nodes([{"mesh": 0, "matrix": ROUNDED.T.ravel().tolist()}]),
+                                 "nodes[0].matrix: the last row of a matrix is rounded: read as 0, 0, 0, 1"),
+    "rounded bind matrix": (lambda: skinned([SCALE, ROUNDED]), "skins[0].inverseBindMatrices: the last row of a matrix is rounded: read as 0, 0, 0, 1"),
     "unknown member": (lambda: changed(lambda j: j["nodes"][0].update(colour=3)), "nodes[0].colour is not part of glTF 2.0"),
     "animations": (lambda: changed(lambda j: j.update(animations=[{}, {}])), "2 animations are left out"),
     "cameras": (lambda: changed(lambda j: j.update(cameras=[{}])), "1 cameras are left out"),
