@@ -141,15 +141,15 @@ TEST(ManyInstances, UnnamedOnesAreNamedInOrderAroundGivenNames) {
   EXPECT_THAT(names, ::testing::ElementsAre("box_2", "box_3", "box_4", "box_5", "box", "sphere"));
 }
 
-/// At quadratic time this would take a day.
-TEST(ManyInstances, AMillionUnnamedOnesOfOneModelLoad) {
+/// At quadratic time this would take an hour.
+TEST(ManyInstances, UnnamedOnesOfOneModelLoadInLinearTime) {
   const testing::TestFolder folder;
-  constexpr std::size_t kCount = 1'000'000;
+  constexpr std::size_t kCount = 200'000;
   const auto path = folder.write(
       "scene.yaml", "models:\n- &a {model: 'builtin:box'}\n" + repeated("- *a\n", kCount - 1));
   const Scene scene = load_scene_file(path, {}, {}).scene;
   ASSERT_THAT(scene.instances, SizeIs(kCount));
-  EXPECT_EQ(scene.instances.back().name, "box_1000000");
+  EXPECT_EQ(scene.instances.back().name, "box_200000");
   EXPECT_EQ(scene.instances.back().id, kCount);
 }
 
