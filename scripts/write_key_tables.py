@@ -8,7 +8,7 @@ usage: write_key_tables.py GLIDAR [ROOT]; GLIDAR is the program, ROOT the folder
 A list is between the lines `<!-- keys: PATH -->` and `<!-- end of keys -->`; `<!-- names of keys: PATH -->` has names and
 defaults alone. PATH is the kind of schema and keys from there on, for example `sensor lidar_equation`; an alternative of a
 type is named as `optics=pinhole`. `-KEY` at the end leaves out the keys of the map KEY, which another list has; `*` those of
-all maps. Alternatives of a type are a table.
+all maps. Alternatives of a type have a line each, with all of their keys.
 """
 
 import json
@@ -156,14 +156,15 @@ def short_key(key, schema, required):
     return f"`{key}`" if default == "required" else f"`{key}` ({default.strip('`')})"
 
 
-def type_table(schema):
-    """One row for each alternative, with all of its keys."""
-    selector = type_of(schema["oneOf"][0])[0]
-    lines = [row((f"`{selector}`", "keys (default)", "effect", "source")), "|---|---|---|---|"]
+def type_list(schema):
+    """One line for each alternative: its keys, its effect and, in brackets, its source."""
+    lines = []
     for one in schema["oneOf"]:
-        key, about = type_of(one)
-        keys = [short_key(name, value, one.get("required", [])) for name, value in one["properties"].items() if name != key]
-        lines.append(row((f"`{about['const']}`", ", ".join(keys), about["description"], about.get("x-source", ""))))
+        selector, about = type_of(one)
+        keys = [short_key(name, value, one.get("required", [])) for name, value in one["properties"].items() if name != selector]
+        named = " with ".join(part for part in (f"`{about['const']}`", ", ".join(keys)) if part)
+        source = f" [{about['x-source']}]" if "x-source" in about else ""
+        lines.append(f"- {named}: {about['description']}{source}")
     return lines
 
 
@@ -174,7 +175,7 @@ def table(schemas, path, of_keys=key_table):
     if isinstance(schema.get("additionalProperties"), dict):
         schema = find(schema["additionalProperties"], steps)
     if "oneOf" in schema:
-        return type_table(schema)
+        return type_list(schema)
     return of_keys(without_keys_inside(schema, schema["properties"] if "*" in words else {word[1:] for word in words}))
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the table of sensor presets in docs/sensors.md from the list that the program prints.
+"""Writes the list of sensor presets in docs/sensors.md from the list that the program prints.
 
 usage: write_preset_table.py GLIDAR [ROOT]; GLIDAR is the program, ROOT the folder of the sources.
-The table is between the lines `<!-- presets -->` and `<!-- end of presets -->`. scripts/plot_presets.py draws the
+The list is between the lines `<!-- presets -->` and `<!-- end of presets -->`. scripts/plot_presets.py draws the
 beam patterns of a group.
 """
 
@@ -53,16 +53,14 @@ def names_text(some_presets):
     return "; ".join(f"{maker}: {', '.join(names)}" for maker, names in sorted(makers.items()))
 
 
-def table(all_presets):
-    lines = ["| kind | presets |", "|---|---|"]
-    for group, title in GROUPS.items():
-        lines.append(f"| {title} | {names_text(preset for preset in all_presets if group_of(preset) == group)} |")
-    return lines
+def lines_of(all_presets):
+    """One line for each group of presets."""
+    return [f"- {title}. {names_text(preset for preset in all_presets if group_of(preset) == group)}" for group, title in GROUPS.items()]
 
 
 def written(text, all_presets):
-    """The text with the table as it is now."""
-    return MARKED.sub(lambda match: match[1] + "\n".join(table(all_presets)) + "\n" + match[2], text)
+    """The text with the list as it is now."""
+    return MARKED.sub(lambda match: match[1] + "\n".join(lines_of(all_presets)) + "\n" + match[2], text)
 
 
 def main():

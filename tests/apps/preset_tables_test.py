@@ -36,13 +36,13 @@ class PresetTables(unittest.TestCase):
         cls.script = load_script()
         cls.presets = cls.script.presets("glidar")
 
-    def test_the_table_is_up_to_date(self):
+    def test_the_list_is_up_to_date(self):
         text = (ROOT / self.script.PAGE).read_text(encoding="utf-8")
         self.assertEqual(len(self.script.MARKED.findall(text)), 1)
         self.assertEqual(text, self.script.written(text, self.presets), REMEDY)
 
-    def test_the_table_has_every_preset_once(self):
-        names = [name for line in self.script.table(self.presets)[2:] for part in line.split(" | ")[1].rstrip(" |").split("; ")
+    def test_the_list_has_every_preset_once(self):
+        names = [name for line in self.script.lines_of(self.presets) for part in line.split(". ", 1)[1].split("; ")
                  for name in part.split(": ")[1].split(", ")]
         self.assertEqual(sorted(names), sorted(preset["name"] for preset in self.presets))
 
@@ -57,10 +57,10 @@ class PresetTables(unittest.TestCase):
             picture = ROOT / f"docs/images/presets/{group}.png"
             self.assertEqual(text_of(picture, "Description").split(), names, f"{picture}: run scripts/plot_presets.py GLIDAR")
 
-    def test_a_table_that_differs_is_written_again(self):
+    def test_a_list_that_differs_is_written_again(self):
         preset = {"name": "X", "sensor": "Maker X", "kind": "line_scan", "rows": 1}
         new = self.script.written("a\n<!-- presets -->\nold\n<!-- end of presets -->\nb\n", [preset])
-        self.assertIn("| one line: 2D, airborne | Maker: X |", new)
+        self.assertIn("- one line: 2D, airborne. Maker: X\n", new)
         self.assertNotIn("old", new)
 
 

@@ -246,7 +246,7 @@ class Options(StreamTest):
         self.assertGreater(len(names), 8)
         for name in names:
             default = self.refused("stream", self.box, "--limit", name + "=0").split(f"--limit {name}=")[-1].strip()
-            self.assertIn(f"| `{name}` | {default} |", docs)
+            self.assertIn(f"- `{name}` ({default}): ", docs)
 
 
 if __name__ == "__main__":
