@@ -29,8 +29,8 @@ Nodes read_nodes(Document& document);
 /// The transforms of the copies of a node's mesh (EXT_mesh_gpu_instancing); one without copies.
 std::vector<Eigen::Matrix4d> copies_of(Document& document, Buffers& buffers, const Value& node);
 
-/// The affine matrix of 16 numbers by columns. A last row (named `row` in errors) that is 0, 0, 0,
-/// 1 but for rounding is read as that, with a note; others are refused.
+/// The affine matrix of 16 numbers by columns. If rounding changed its last row (named `row` in
+/// errors) from 0, 0, 0, 1, it is read as that, with a note; others are refused.
 Eigen::Matrix4d affine(const double* by_columns, const Value& where, const std::string& row,
                        Notes& notes);
 
