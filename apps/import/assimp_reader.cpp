@@ -122,7 +122,7 @@ void copy_vertices(const aiMesh& from, SourceMesh& mesh) {
 
 /// What several meshes add to.
 struct Left {
-  std::uint64_t intersecting = 0;
+  PolygonSplitter polygons;
   std::uint64_t outside = 0;  ///< faces with a corner that is no vertex
 };
 
@@ -166,7 +166,7 @@ std::uint64_t copy_faces(const aiMesh& from, SourceMesh& mesh, Left& left) {
     if (!is_inside) {
       ++left.outside;
     } else if (corners.size() >= 3) {
-      left.intersecting += add_face(mesh, corners) ? 0 : 1;
+      left.polygons.add(mesh, corners);
     } else {
       ++lines;
       for (const unsigned v : corners) of_lines[v] = true;
@@ -243,7 +243,7 @@ std::vector<Copied> copy_meshes(const aiScene& scene, SourceModel& source) {
     const bool has_skin = has_skins && from.mNumBones > 0 && copied.lines == 0;
     copied.is_posed = has_skin && pose_collada(from, places, mesh);
   }
-  note_intersecting(source, left.intersecting);
+  left.polygons.note_intersecting(source);
   if (left.outside > 0) {
     source.notes.add(
         fmt::format("faces that name missing vertices are left out: {}", left.outside));

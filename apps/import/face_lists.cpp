@@ -133,7 +133,7 @@ void copy_vertices(FileLists& lists, const std::vector<std::uint32_t>& faces,
 
 /// `is_last`: frees the lists.
 SourceMesh mesh_of(FileLists& lists, const std::vector<std::uint32_t>& faces,
-                   std::vector<std::uint32_t>& newest, bool is_last, std::size_t& intersecting) {
+                   std::vector<std::uint32_t>& newest, bool is_last, PolygonSplitter& polygons) {
   SourceMesh mesh;
   copy_vertices(lists, faces, newest, is_last, mesh);
   if (is_last) {
@@ -145,7 +145,7 @@ SourceMesh mesh_of(FileLists& lists, const std::vector<std::uint32_t>& faces,
   for (const std::uint32_t f : faces) {
     const std::uint32_t begin = lists.faces.begin_of(f);
     const auto face = std::span(lists.faces.vertices).subspan(begin, lists.faces.end_of(f) - begin);
-    intersecting += add_face(mesh, face) ? 0 : 1;
+    polygons.add(mesh, face);
   }
   return mesh;
 }
@@ -167,7 +167,7 @@ bool is_one_list(const FileLists& lists) {
 }
 
 /// All faces name one list of vertices: it becomes the mesh.
-SourceMesh whole_mesh(FileLists& lists, std::size_t& intersecting) {
+SourceMesh whole_mesh(FileLists& lists, PolygonSplitter& polygons) {
   SourceMesh mesh;
   mesh.positions = std::move(lists.positions);
   mesh.normals = std::move(lists.normals);
@@ -178,7 +178,7 @@ SourceMesh whole_mesh(FileLists& lists, std::size_t& intersecting) {
   for (std::size_t f = 0; f < lists.faces.size(); ++f) {
     const std::uint32_t begin = lists.faces.begin_of(f);
     const std::uint32_t end = lists.faces.end_of(f);
-    intersecting += add_face(mesh, corners.subspan(begin, end - begin)) ? 0 : 1;
+    polygons.add(mesh, corners.subspan(begin, end - begin));
   }
   return mesh;
 }
@@ -212,7 +212,7 @@ void add_meshes(FileLists lists, SourceModel& source) {
   state_content(lists, source);
   if (lists.parts.empty()) lists.parts.emplace_back();
   source.nodes = std::move(lists.nodes);
-  std::size_t intersecting = 0;
+  PolygonSplitter polygons;
   const auto place = [&source](SourceMesh mesh, const FilePart& part) {
     if (mesh.triangles.empty()) return;
     mesh.material = part.material;
@@ -221,7 +221,7 @@ void add_meshes(FileLists lists, SourceModel& source) {
   };
   if (is_one_list(lists)) {
     const FilePart part = lists.parts[0];
-    SourceMesh mesh = whole_mesh(lists, intersecting);
+    SourceMesh mesh = whole_mesh(lists, polygons);
     lists = {};
     place(std::move(mesh), part);
   } else {
@@ -231,10 +231,10 @@ void add_meshes(FileLists lists, SourceModel& source) {
       if (faces[i].empty()) continue;
       const FilePart part = lists.parts[i];
       const bool is_last = i + 1 == faces.size();
-      place(mesh_of(lists, faces[i], newest, is_last, intersecting), part);
+      place(mesh_of(lists, faces[i], newest, is_last, polygons), part);
     }
   }
-  note_intersecting(source, intersecting);
+  polygons.note_intersecting(source);
 }
 
 void scale_colours(std::vector<Eigen::Vector3f>& colours) {

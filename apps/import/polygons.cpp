@@ -54,13 +54,19 @@ std::vector<Point> projected(const SourceMesh& mesh, std::span<const std::uint32
 /// Clips ears (Meisters, "Polygons have ears", 1975), in the order of the corners.
 class EarClipper {
  public:
-  explicit EarClipper(std::vector<Point> points)
-      : points_(std::move(points)), before_(points_.size()), after_(points_.size()) {
+  /// Takes from `steps_left` one step for each corner that is tried, and for each comparison with
+  /// it.
+  EarClipper(std::vector<Point> points, std::uint64_t& steps_left)
+      : points_(std::move(points)),
+        before_(points_.size()),
+        after_(points_.size()),
+        steps_left_(steps_left) {
     const auto count = static_cast<std::uint32_t>(points_.size());
     for (std::uint32_t i = 0; i < count; ++i) {
       before_[i] = (i + count - 1) % count;
       after_[i] = (i + 1) % count;
     }
+    is_convex_ = is_convex();
   }
 
   /// Appends the triangles. False if no ear is left: the polygon intersects itself.
@@ -93,23 +99,50 @@ class EarClipper {
     before_[corner] = after_[corner] = corner;
   }
 
+  /// True if no corner is reflex and the polygon goes to the right once: no corner obstructs an
+  /// ear.
+  [[nodiscard]] bool is_convex() const {
+    const auto count = static_cast<std::uint32_t>(points_.size());
+    const auto goes_right = [&](std::uint32_t i) {
+      return points_[i].x() < points_[after_[i]].x() ||
+             (points_[i].x() == points_[after_[i]].x() && points_[i].y() < points_[after_[i]].y());
+    };
+    std::size_t turns = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (is_reflex(i) || points_[i] == points_[after_[i]]) return false;
+      turns += goes_right(i) && !goes_right(after_[i]) ? 1 : 0;
+    }
+    return turns == 1;
+  }
+
   /// A straight corner is an ear without area, so that polygons beside it share its vertex.
   /// `is_strict`: no reflex corner may touch the ear. The second pass is not strict, for seams and
   /// repeated corners.
-  [[nodiscard]] bool is_ear(std::uint32_t corner, bool is_strict) const {
+  [[nodiscard]] bool is_ear(std::uint32_t corner, bool is_strict) {
     const Corners ear = {before_[corner], corner, after_[corner]};
     const double area = turn(ear[0], ear[1], ear[2]);
+    take_step();
     if (area < 0.0) return false;
+    if (is_convex_) return true;
     const auto count = static_cast<std::uint32_t>(points_.size());
     for (std::uint32_t other = 0; other < count; ++other) {
-      const double nearest = std::min(
-          {turn(ear[0], ear[1], other), turn(ear[1], ear[2], other), turn(ear[2], ear[0], other)});
-      if (nearest > 0.0) return false;
-      if (is_strict && nearest == 0.0 && area > 0.0 && is_reflex(other) && !is_at(other, ear)) {
-        return false;
-      }
+      take_step();
+      if (obstructs(other, ear, is_strict && area > 0.0)) return false;
     }
     return true;
+  }
+
+  [[nodiscard]] bool obstructs(std::uint32_t other, const Corners& ear, bool is_strict) const {
+    const double nearest = std::min(
+        {turn(ear[0], ear[1], other), turn(ear[1], ear[2], other), turn(ear[2], ear[0], other)});
+    if (nearest > 0.0) return true;
+    return is_strict && nearest == 0.0 && is_reflex(other) && !is_at(other, ear);
+  }
+
+  void take_step() {
+    if (steps_left_-- > 0) return;
+    throw Refusal{"its polygons have so many corners that splitting them takes too long",
+                  "split its faces into triangles in the program that made it"};
   }
 
   [[nodiscard]] bool is_reflex(std::uint32_t corner) const {
@@ -131,6 +164,8 @@ class EarClipper {
   std::vector<Point> points_;
   std::vector<std::uint32_t> before_;  ///< among the corners that are left; itself: cut
   std::vector<std::uint32_t> after_;
+  std::uint64_t& steps_left_;
+  bool is_convex_ = false;
 };
 
 /// The corner of a quadrilateral where its diagonal begins: a concave one, else the first. There
@@ -147,7 +182,8 @@ std::size_t first_corner(const SourceMesh& mesh, std::span<const std::uint32_t> 
   return 0;
 }
 
-bool split(SourceMesh& mesh, std::span<const std::uint32_t> corners) {
+/// False if the polygon intersects itself.
+bool split(SourceMesh& mesh, std::span<const std::uint32_t> corners, std::uint64_t& steps_left) {
   if (corners.size() == 3) {
     mesh.triangles.push_back({corners[0], corners[1], corners[2]});
     return true;
@@ -160,7 +196,7 @@ bool split(SourceMesh& mesh, std::span<const std::uint32_t> corners) {
     return true;
   }
   std::vector<Corners> ears;
-  const bool is_whole = EarClipper(projected(mesh, corners)).clip(ears);
+  const bool is_whole = EarClipper(projected(mesh, corners), steps_left).clip(ears);
   for (const Corners& ear : ears) {
     mesh.triangles.push_back({corners[ear[0]], corners[ear[1]], corners[ear[2]]});
   }
@@ -169,7 +205,8 @@ bool split(SourceMesh& mesh, std::span<const std::uint32_t> corners) {
 
 }  // namespace
 
-bool add_face(SourceMesh& mesh, std::span<const std::uint32_t> corners) {
+void PolygonSplitter::add(SourceMesh& mesh, std::span<const std::uint32_t> corners) {
+  constexpr std::uint64_t kSteps = 50;  // for each corner
   const std::size_t before = mesh.triangles.size();
   if (corners.size() > 3 && mesh.first_of_face.empty()) {
     mesh.first_of_face.resize(before);
@@ -178,13 +215,14 @@ bool add_face(SourceMesh& mesh, std::span<const std::uint32_t> corners) {
   if (corners.size() > 3 || !mesh.first_of_face.empty()) {
     mesh.first_of_face.push_back(static_cast<std::uint32_t>(before));
   }
-  return split(mesh, corners);
+  if (corners.size() > 4) steps_left_ += kSteps * corners.size();
+  if (!split(mesh, corners, steps_left_)) ++intersecting_;
 }
 
-void note_intersecting(SourceModel& source, std::size_t polygons) {
-  if (polygons == 0) return;
-  source.notes.add(
-      fmt::format("polygons that intersect themselves, parts of which are left out: {}", polygons));
+void PolygonSplitter::note_intersecting(SourceModel& source) const {
+  if (intersecting_ == 0) return;
+  source.notes.add(fmt::format(
+      "polygons that intersect themselves, parts of which are left out: {}", intersecting_));
 }
 
 }  // namespace glidar::import

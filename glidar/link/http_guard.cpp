@@ -8,7 +8,6 @@
 #include <netinet/in.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace glidar::link {
@@ -20,19 +19,33 @@ bool is_listed(const std::vector<std::string>& list, std::string_view text) {
   });
 }
 
+bool is_ipv6(const std::string& name) {
+  in6_addr address{};
+  return inet_pton(AF_INET6, name.c_str(), &address) == 1;
+}
+
+bool is_numeric(const std::string& name) {
+  in_addr address{};
+  return inet_pton(AF_INET, name.c_str(), &address) == 1 || is_ipv6(name);
+}
+
+/// Empty, or a colon and a port, which may be empty (RFC 3986, 3.2.3).
+bool is_port(std::string_view text) {
+  constexpr std::size_t kMaxDigits = 5;
+  return text.empty() || (text.starts_with(':') && text.size() <= 1 + kMaxDigits &&
+                          text.find_first_not_of("0123456789", 1) == std::string_view::npos);
+}
+
 /// "localhost" of "localhost:8765", "::1" of "[::1]:8765"; empty if invalid.
 std::string host_name(std::string_view host) {
   if (host.starts_with('[')) {
     const std::size_t end = host.find(']');
-    return end == std::string_view::npos ? std::string() : std::string(host.substr(1, end - 1));
+    if (end == std::string_view::npos || !is_port(host.substr(end + 1))) return "";
+    const std::string name(host.substr(1, end - 1));
+    return is_ipv6(name) ? name : "";
   }
-  return lower_case(host.substr(0, host.find(':')));
-}
-
-bool is_numeric(const std::string& name) {
-  std::array<unsigned char, sizeof(in6_addr)> address{};
-  return inet_pton(AF_INET, name.c_str(), address.data()) == 1 ||
-         inet_pton(AF_INET6, name.c_str(), address.data()) == 1;
+  const std::size_t end = std::min(host.find(':'), host.size());
+  return is_port(host.substr(end)) ? lower_case(host.substr(0, end)) : "";
 }
 
 bool is_localhost(const std::string& name) {

@@ -9,6 +9,10 @@
 #include <gmock/gmock.h>
 #include <Eigen/Geometry>
 
+#include <cmath>
+#include <numbers>
+#include <vector>
+
 namespace glidar {
 namespace {
 
@@ -17,10 +21,12 @@ using ::testing::HasSubstr;
 using testing::load;
 using ::testing::Not;
 using testing::TestFolder;
+using ::testing::ThrowsMessage;
 
 /// A model of one polygon in the plane x + y + 2 z = 0 whose corners are above the given ones.
 Model polygon(const std::vector<Eigen::Vector2d>& corners) {
   std::ostringstream obj;
+  obj.precision(17);
   for (const Eigen::Vector2d& c : corners) {
     obj << "v " << c.x() << ' ' << c.y() << ' ' << -(c.x() + c.y()) / 2.0 << '\n';
   }
@@ -76,6 +82,42 @@ TEST(ModelPolygons, ClockwisePolygonsKeepTheirSide) {
   const Model model = polygon({{0, 2}, {2, 2}, {2, 0}, {1, 1}, {0, 0}});
   EXPECT_EQ(model.mesh.triangles.size(), 3U);
   EXPECT_EQ(area(model), -3.0);
+}
+
+/// A star whose spikes alternate between two radii.
+std::vector<Eigen::Vector2d> star(std::size_t corners) {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double angle = 6.0 * static_cast<double>(i) / static_cast<double>(corners);
+    const double radius = i % 2 == 0 ? 1.0 : 2.0;
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return points;
+}
+
+/// A regular polygon that goes around `turns` times.
+std::vector<Eigen::Vector2d> regular(std::size_t corners, double turns) {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double angle =
+        turns * 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(corners);
+    points.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  return points;
+}
+
+TEST(ModelPolygons, ConvexOnesMayHaveAnyNumberOfCorners) {
+  EXPECT_EQ(polygon(regular(200'000, 1.0)).mesh.triangles.size(), 199'998U);
+}
+
+TEST(ModelPolygons, ThatTurnTwiceAreNotTakenForConvexOnes) {
+  EXPECT_LT(polygon(regular(5, 2.0)).mesh.triangles.size(), 3U);  // a pentagram has no ear
+}
+
+TEST(ModelPolygons, ManyCornersAreSplitOrRefusedInLittleTime) {
+  EXPECT_EQ(polygon(star(5000)).mesh.triangles.size(), 4998U);
+  EXPECT_THAT([] { polygon(star(30'000)); },
+              ThrowsMessage<Error>(HasSubstr("splitting them takes too long")));
 }
 
 TEST(ModelPolygons, SelfIntersectionIsReported) {

@@ -14,7 +14,9 @@ TEST(AccessRules, AllowOnlyHostNamesThatNoForeignSiteCanHave) {
     EXPECT_TRUE(is_allowed_host(host, rules)) << host;
   }
   for (const char* host :
-       {"", ":8765", "attacker.example", "127.0.0.1.example", "[::1", "[]", "1.2.3"}) {
+       {"", ":8765", "attacker.example", "127.0.0.1.example", "[::1", "[]", "1.2.3",
+        "[::1]attacker.example", "[127.0.0.1]attacker.example:80", "[localhost]", "127.0.0.1:x",
+        "127.0.0.1:123456", "127.0.0.1:80:90", "localhost:80/x"}) {
     EXPECT_FALSE(is_allowed_host(host, rules)) << host;
   }
   EXPECT_TRUE(is_allowed_host("any.example", {.hosts = {"*"}}));
@@ -28,7 +30,8 @@ TEST(AccessRules, AllowProgramsThisServersPageAndKnownViewers) {
   }
   for (const char* origin :
        {"null", "https://attacker.example", "http://robot:8766", "robot:8765",
-        "https://app.foxglove.dev.attacker.example", "http://127.0.0.1.example"}) {
+        "https://app.foxglove.dev.attacker.example", "http://127.0.0.1.example",
+        "http://[::1].attacker.example", "http://127.0.0.1:80/x"}) {
     EXPECT_FALSE(is_allowed_origin(origin, "robot:8765", rules)) << origin;
   }
   EXPECT_TRUE(is_allowed_origin("https://a.example", "robot", {.origins = {"https://a.example"}}));

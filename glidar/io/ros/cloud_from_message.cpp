@@ -148,17 +148,27 @@ class NameList {
 
  private:
   /// False if a name is in use.
-  bool name(Column& column, std::size_t number, const std::string& wanted,
-            std::size_t count) const {
+  bool name(Column& column, std::size_t number, const std::string& wanted, std::size_t count) {
     column.name = number == 1 ? wanted : fmt::format("{}_{}", wanted, number);
     column.components.clear();
-    for (std::size_t i = 0; i < count; ++i)
+    if (!is_free(column.name)) return false;
+    for (std::size_t i = 0; i < count; ++i) {
       column.components.push_back(count == 1 ? column.name : fmt::format("{}_{}", column.name, i));
-    return !used_.contains(column.name) &&
-           std::none_of(column.components.begin(), column.components.end(),
-                        [&](const std::string& component) { return used_.contains(component); });
+      if (count > 1 && !is_free(column.components.back())) return false;
+    }
+    return true;
   }
 
+  /// Throws Error after so many tries as only names that are made to collide need.
+  bool is_free(const std::string& name) {
+    constexpr std::size_t kMaxTries = std::size_t{1} << 20U;
+    if (++tries_ > kMaxTries)
+      reject_cloud(fmt::format("names of fields that collide with others, such as {}", name),
+                   "names that differ by more than numbers behind them");
+    return !used_.contains(name);
+  }
+
+  std::size_t tries_ = 0;
   std::map<std::string, std::size_t> numbers_;
   /// At first those of the points, and of NPZ's other arrays.
   std::set<std::string> used_ = {

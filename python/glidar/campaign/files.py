@@ -26,7 +26,8 @@ from glidar.campaign.beneath import Inside
 MAX_BYTES = 1 << 40  # of a file that is hashed or copied in blocks
 MAX_JSON_BYTES = 1 << 30
 MAX_JSON_LEVELS = 64
-STRING = re.compile(rb'"(?:[^"\\]|\\.)*"')
+MAX_JSON_VALUES = 1 << 24
+STRING = re.compile(rb'"(?:[^"\\]|\\.)*(?:"|\Z)', re.DOTALL)  # to the end where it has none: in linear time
 NO_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
 MAX_PID = (1 << 31) - 1
 TEMP_NAME = re.compile(r"(?P<host>.+)-(?P<pid>[0-9]{1,10})-[0-9a-f]{8}", re.ASCII | re.DOTALL)
@@ -219,9 +220,20 @@ def _no_number(word):
     raise ValueError(f"{word} is not a JSON number")
 
 
-def read_json(path):
+def _has_more_values(data, max_values):
+    """Whether JSON has more values than that, keys not counted: each follows a comma or begins a list or map."""
+
+    def count(text):
+        return 1 + sum(map(text.count, (b",", b"[", b"{")))
+
+    return count(data) > max_values and count(STRING.sub(b"", data)) > max_values
+
+
+def read_json(path, max_values=MAX_JSON_VALUES):
     """The content of a JSON file; raises Error when it cannot be read or parsed."""
     data = read_bytes(path, MAX_JSON_BYTES)
+    if _has_more_values(data, max_values):
+        raise Error(str(path), f"JSON of more than {max_values} values", "fewer", "")
     try:
         value = json.loads(data, parse_constant=_no_number)
         is_too_deep = _is_too_deep(data)

@@ -9,7 +9,7 @@ import numpy as np
 
 from glidar import Error
 from glidar._errors import excerpt
-from glidar.campaign import files, records, rotations
+from glidar.campaign import files, pages, records, rotations
 
 INDEX_FILE = "index.parquet"
 FACTS = ["beams", "hits", "range_min_m", "range_max_m", "intensity_mean"]
@@ -137,12 +137,12 @@ def _no_index(path, what):
                  "glidar campaign check lists the files that differ")
 
 
-def _check_size(path, metadata, rows):
-    """Raises Error unless the file claims this number of rows, of a size that rows can have."""
+def _check_size(path, opened, metadata, rows):
+    """Raises Error unless the file claims this number of rows, and its pages have a size that rows can have."""
     if metadata.num_rows != rows:
         raise Error(str(path), f"{metadata.num_rows} rows", f"{rows}, one for each trial",
                     "copy the part again from its source; this one may be corrupt or forged")
-    size = sum(metadata.row_group(i).total_byte_size for i in range(metadata.num_row_groups))
+    size = pages.uncompressed_bytes(opened, metadata)
     allowed = MIN_TABLE_BYTES + rows * MAX_ROW_BYTES
     if size > allowed:
         raise Error(str(path), f"a table of {size >> 20} MiB", f"at most {allowed >> 20} MiB for {rows} rows", "")
@@ -152,20 +152,24 @@ def read(path, rows):
     """An index or a part of one with this number of rows, after checking the columns that all of them have. The others
     have numbers."""
     import pyarrow as pa
+    import pyarrow.compute as pc
     import pyarrow.parquet as pq
 
     try:
         with files.open_input(path) as opened, _native(opened) as source:
             with pq.ParquetFile(source) as file:
-                _check_size(path, file.metadata, rows)
+                _check_size(path, opened, file.metadata, rows)
                 _check_columns(path, file.schema_arrow)
             # texts as dictionaries: a long one that is repeated needs its memory once
             table = pq.read_table(source, read_dictionary=TEXTS)
-    except (pa.ArrowException, OSError) as error:
+    except (pa.ArrowException, OSError, ValueError) as error:  # ValueError: malformed pages, names that are not UTF-8
         raise _no_index(path, error) from None
     for name in [*TEXTS, *POSE, "trial", "shard", "ok"]:
         if table[name].null_count:
             raise _no_index(path, f"column {name} has gaps")
+    for name in POSE:
+        if not pc.all(pc.is_finite(table[name])).as_py():
+            raise _no_index(path, f"column {name} has numbers that are not finite")
     if table.num_rows != rows:
         raise _no_index(path, f"{table.num_rows} rows instead of {rows}")
     return _with_plain_texts(path, table)

@@ -19,6 +19,8 @@ MAX_SHARD_TRIALS = 1 << 16
 SHA256 = re.compile("[0-9a-f]{64}", re.ASCII)
 MAX_SHARDS = 1 << 22
 MAX_BYTES = 1 << 62  # of a file
+MIN_RECEIPT_VALUES = 1 << 16
+MAX_TRIAL_VALUES = 1 << 8  # in a receipt, on average
 
 
 class _Record:
@@ -69,8 +71,8 @@ class _Record:
         return self.value
 
 
-def _read(path):
-    return _Record(path, "", files.read_json(path))
+def _read(path, max_values=files.MAX_JSON_VALUES):
+    return _Record(path, "", files.read_json(path, max_values))
 
 
 def _check_listed(listed):
@@ -142,7 +144,7 @@ def shard_trials(described, shard):
 def read_receipt(path, described):
     """The content of a receipt of this campaign, whose campaign.json is `described`."""
     shard = names.receipt_shard(path)
-    record = _read(path)
+    record = _read(path, MIN_RECEIPT_VALUES + MAX_TRIAL_VALUES * described["shard_trials"])
     _check_counts(record)
     listed = _check_listed(record.at("files"))
     if shard is None:

@@ -14,13 +14,16 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
+#include <string>
 
 namespace glidar::ros {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 /// 4 rows of 5 beams; the columns fire from right to left, the first 100 ns after the frame's
 /// start.
@@ -324,6 +327,37 @@ TEST(CloudFromMessage, ManyNamesThatBecomeOneTakeLittleTime) {
   message.point_step = 12 + kFields;
   const PointCloud cloud = to_point_cloud(message);
   EXPECT_EQ(cloud.columns.back().name, "__" + std::to_string(kFields));
+}
+
+/// `count` fields of one byte with these names, then x, y, z and a field of `count` bytes.
+PointCloud2 with_many_names(std::uint32_t count, const std::function<std::string(unsigned)>& name) {
+  PointCloud2 message;
+  message.height = message.width = 1;
+  for (std::uint32_t i = 0; i < count; ++i)
+    message.fields.push_back({name(i), i, PointField::uint8, 1});
+  std::uint32_t at = count;
+  for (const char* axis : {"x", "y", "z"}) {
+    message.fields.push_back({axis, at, PointField::float32, 1});
+    at += 4;
+  }
+  message.fields.push_back({"a", at, PointField::uint8, count});
+  message.point_step = message.row_step = at + count;
+  message.data = Payload(std::vector<std::byte>(message.point_step));
+  return message;
+}
+
+TEST(CloudFromMessage, NamesThatCollideWithThoseOfComponentsTakeLittleTime) {
+  constexpr std::uint32_t kCount = 30'000;
+  const PointCloud cloud = to_point_cloud(
+      with_many_names(kCount, [](unsigned i) { return "a_" + std::to_string(i + 2); }));
+  EXPECT_EQ(cloud.columns.back().name, "a_" + std::to_string(kCount + 2));
+  // each number for the column is found to be in use at its last component only
+  const PointCloud2 hostile = with_many_names(kCount, [](unsigned i) {
+    const std::string number = i == 0 ? "" : std::to_string(i + 1) + "_";
+    return "a_" + number + std::to_string(kCount - 1);
+  });
+  EXPECT_THAT([&] { to_point_cloud(hostile); },
+              ThrowsMessage<Error>(HasSubstr("names of fields that collide")));
 }
 
 TEST(CloudFromMessage, RowsWithoutPointsTakeNoTime) {

@@ -3,6 +3,7 @@
 """Parts of a campaign from an untrusted source: receipts, manifests and files are checked before use."""
 
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 
 from glidar import Error
-from glidar.campaign import files, names, npz_output, records, report, run
+from glidar.campaign import files, index, names, npz_output, pages, records, report, run
 from glidar.campaign.beneath import Inside
 
 
@@ -211,6 +212,7 @@ FORGED_PARTS = {
     "column ok differs": lambda table: replaced(table, "ok", [True, True, True, False]),
     "column note": lambda table: table.append_column("note", table["scene"]),
     "MiB": lambda table: replaced(table, "error", ["x" * (6 << 20)] * 4),
+    "column x_m has numbers that are not finite": lambda table: replaced(table, "x_m", [1.0, 2.0, 3.0, np.inf]),
 }
 
 
@@ -221,6 +223,72 @@ def test_the_rows_of_a_part_are_those_of_its_receipt(folder, found):
         merge(folder)
     assert not (folder / "new" / "index.parquet").exists()
     assert not (folder / "new" / "parts" / "000001.parquet").exists()
+
+
+def varint(number, size=0):
+    """A number of Thrift's compact protocol, in at least `size` bytes."""
+    made = bytearray()
+    while number or not made or len(made) < size:
+        made.append(number & 0x7F | 0x80)
+        number >>= 7
+    made[-1] &= 0x7F
+    return bytes(made)
+
+
+def test_a_part_that_claims_to_be_small_is_rejected_before_it_is_unpacked(folder):
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    rewrite_part(folder, lambda table: replaced(table, "error", ["x" * (100 << 20), "", "", ""]))
+    part = folder / "p1" / "parts" / "000001.parquet"
+    data = part.read_bytes()
+    claimed = varint(2 * pq.ParquetFile(part).metadata.row_group(0).total_byte_size)
+    head, found, tail = data.rpartition(claimed)
+    assert found
+    part.write_bytes(head + varint(2000, len(claimed)) + tail)
+    assert pq.ParquetFile(part).metadata.row_group(0).total_byte_size == 1000
+    before = pa.total_allocated_bytes(), pa.default_memory_pool().max_memory()
+    with pytest.raises(Error, match="a table of 100 MiB; allowed: at most 16 MiB"):
+        index.read(part, 4)
+    assert (pa.total_allocated_bytes(), pa.default_memory_pool().max_memory()) == before
+
+
+@pytest.mark.parametrize("header", [b"", b"\x15", b"\x15" + b"\xff" * 20, b"\x19\xf3" + b"\xff" * 8 + b"\x7f", b"\x19\x19" * 9000,
+                                    b"\x1c" * 50, b"\x1d\x00", b"\x15\x00\x15\x01\x15\x00\x00", b"\x15\x00\x00"])
+def test_malformed_headers_of_pages_are_rejected(header):
+    class Metadata:
+        """Of one column with one page."""
+
+        num_row_groups = num_columns = 1
+        data_page_offset = 0
+        has_dictionary_page = False
+        total_compressed_size = 1 << 20
+
+        def row_group(self, _):
+            return self
+
+        column = row_group
+
+    with pytest.raises(ValueError):
+        pages.uncompressed_bytes(io.BytesIO(header), Metadata())
+
+
+def test_a_part_with_names_that_are_not_text_is_rejected(folder):
+    rewrite_part(folder, lambda table: table)
+    part = folder / "p1" / "parts" / "000001.parquet"
+    part.write_bytes(part.read_bytes().replace(b"x_m", b"\xba_m"))
+    with pytest.raises(Error, match="it is not an index of trials"):
+        index.read(part, 4)
+
+
+def test_records_of_very_many_values_are_rejected_before_they_are_parsed(folder):
+    receipt = folder / "p1" / "receipts" / "000001.json"
+    text = receipt.read_text().rstrip("}\n")
+    receipt.write_text(f'{text}, "x": ["{"," * 70_000}"]}}')  # a text is one value
+    merge(folder)
+    receipt.write_text(f'{text}, "x": [{"{}," * 70_000} 1]}}')
+    with pytest.raises(Error, match="JSON of more than 66560 values"):
+        run.merge([folder / "p0", folder / "p1"], folder / "other")
 
 
 def test_names_in_a_campaigns_folder_lead_nowhere_else(folder):
