@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same bytes from every build type, any number of threads and any C library.
 #include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulator.hpp>
 #include <support/data.hpp>
 #include <support/preset.hpp>
 #include <support/simulate.hpp>
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace glidar {
 namespace {
@@ -53,6 +56,50 @@ TEST(Golden, BeamsOfPresetsHaveTheRecordedBytes) {
   EXPECT_EQ(hash("Livox-Mid-360"), 16599951781615489346U);
   EXPECT_EQ(hash("Azure-Kinect-WFOV"), 17200857416396549151U);
   EXPECT_EQ(hash("D435"), 5669341467647616280U);
+}
+
+/// A frame of pulses with footprints, returns and noise, on a body twice: as it is, and larger,
+/// turned and before a part of the first.
+Frame pulsed_frame(float mirror) {
+  Scene scene = testing::scene_of(make_builtin_model("asteroid"));
+  Instance large = scene.instances[0];
+  large.scale = 2.75;
+  large.world_from_object = look_at({-1.0, 3.5, 0.75}, {0.3, 0.2, 0.1}, Eigen::Vector3d::UnitZ());
+  large.materials = {static_cast<std::uint32_t>(scene.materials.size())};
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials.back().mirror = mirror;
+  scene.instances.push_back(large);
+  Sensor sensor = testing::preset("VLP-16");
+  sensor.receiver.returns = {{Return::Order::strongest, 0}, {Return::Order::farthest, 0}};
+  const auto renderer = make_renderer(scene, {.threads = 2});
+  Simulator simulator(scene, sensor, *renderer);
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(3.0, -2.0, 0.25);
+  Frame frame;
+  frame.seed = 3;
+  simulator.simulate(static_motion(scene, pose), {.normal = true}, frame);
+  return frame;
+}
+
+TEST(Golden, FramesOfFootprintsHaveTheRecordedBytes) {
+  const Frame plain = pulsed_frame(0.0F);
+  EXPECT_EQ(hash_of(plain.range_m), 5765623209004123444U);
+  EXPECT_EQ(hash_of(plain.intensity), 17085379318233326308U);
+  EXPECT_EQ(hash_of(plain.status), 5944900632760247420U);
+  EXPECT_EQ(hash_of(plain.return_source), 7364110070399786890U);
+  EXPECT_EQ(hash_of(plain.ground_truth.range_m), 12053345696802950158U);
+  EXPECT_EQ(hash_of(plain.ground_truth.primitive), 5773909311519655076U);
+  EXPECT_EQ(hash_of(plain.ground_truth.normal), 13122420343999016593U);
+  const Frame mirrored = pulsed_frame(0.6F);
+  EXPECT_EQ(hash_of(mirrored.range_m), 14401977297723139572U);
+  EXPECT_EQ(hash_of(mirrored.intensity), 2442026864755054115U);
+  EXPECT_EQ(hash_of(mirrored.return_source), 17745416241687838664U);
+  const auto count = [](const Frame& frame, ReturnSource source) {
+    return std::count(frame.return_source.begin(), frame.return_source.end(), source);
+  };
+  EXPECT_GT(count(plain, ReturnSource::surface), 3000);
+  EXPECT_GT(count(plain, ReturnSource::mixed_pixel), 50);
+  EXPECT_GT(count(mirrored, ReturnSource::ghost), 50);
 }
 
 }  // namespace
