@@ -212,7 +212,7 @@ FORGED_PARTS = {
     "column ok differs": lambda table: replaced(table, "ok", [True, True, True, False]),
     "column note": lambda table: table.append_column("note", table["scene"]),
     "MiB": lambda table: replaced(table, "error", ["x" * (6 << 20)] * 4),
-    "column x_m has numbers that are not finite": lambda table: replaced(table, "x_m", [1.0, 2.0, 3.0, np.inf]),
+    "column x_m has an infinite number": lambda table: replaced(table, "x_m", [1.0, 2.0, 3.0, np.inf]),
 }
 
 
