@@ -58,8 +58,8 @@ TEST(Golden, BeamsOfPresetsHaveTheRecordedBytes) {
   EXPECT_EQ(hash("D435"), 5669341467647616280U);
 }
 
-/// A frame of pulses with footprints, returns and noise, on a body twice: as it is, and larger,
-/// turned and before a part of the first.
+/// A frame of pulses with footprints, returns and noise, of two instances of a body: the second is
+/// larger, turned, and hides a part of the first.
 Frame pulsed_frame(float mirror) {
   Scene scene = testing::scene_of(make_builtin_model("asteroid"));
   Instance large = scene.instances[0];

@@ -159,7 +159,7 @@ class NameList {
     return true;
   }
 
-  /// Throws Error after so many tries as only names that are made to collide need.
+  /// Throws Error after more tries than names need that are not made to collide.
   bool is_free(const std::string& name) {
     constexpr std::size_t kMaxTries = std::size_t{1} << 20U;
     if (++tries_ > kMaxTries)

@@ -93,7 +93,7 @@ def _sizes(file, begin, end):
 
 
 def uncompressed_bytes(file, metadata):
-    """Of all pages together. `file` is the opened file, `metadata` its pyarrow.parquet.FileMetaData. Raises ValueError
+    """The size of all pages together. `file` is the opened file, `metadata` its pyarrow.parquet.FileMetaData. Raises ValueError
     when they are malformed."""
     total = 0
     try:
