@@ -93,8 +93,8 @@ def _sizes(file, begin, end):
 
 
 def uncompressed_bytes(file, metadata):
-    """The size of all pages together. `file` is the opened file, `metadata` its pyarrow.parquet.FileMetaData. Raises ValueError
-    when they are malformed."""
+    """The size of all pages together. `file` is the opened file, `metadata` its pyarrow.parquet.FileMetaData. Raises
+    ValueError when they are malformed."""
     total = 0
     try:
         for i in range(metadata.num_row_groups):
