@@ -129,7 +129,7 @@ std::string first_extra(const CLI::App& program) {
 
 /// Prints the message as an error; returns the exit code of invalid input.
 int report_error(const std::string& message) {
-  print(stderr, "glidar: error: {}\n", message);
+  print_message("glidar: error", message);
   return kBadInput;
 }
 

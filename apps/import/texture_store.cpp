@@ -5,7 +5,6 @@
 #include <import/decode_image.hpp>
 
 #include <glidar/io/model/height_map.hpp>
-#include <glidar/io/model/texture_search.hpp>
 
 #include <filesystem>
 #include <string_view>
@@ -35,7 +34,7 @@ constexpr std::size_t kMaxNameLength = 1024;  // for messages and lists
 
 TextureStore::TextureStore(SourceModel& source, ModelFolder folder, ModelFiles& files,
                            ImportedModel& imported)
-    : source_(source), folder_(std::move(folder)), files_(files), imported_(imported) {}
+    : source_(source), search_(std::move(folder)), files_(files), imported_(imported) {}
 
 std::int32_t TextureStore::keep(Texture texture) {
   budget_ -= texture.texels.size();
@@ -51,7 +50,7 @@ std::int32_t TextureStore::decode(const std::string& name) {
   } else if (name.starts_with("data:")) {
     decoded = decode_data_uri(name, budget_);
   } else {
-    TextureLookup lookup = find_texture(name, folder_);
+    TextureLookup lookup = search_.find(name);
     file = lookup.found;
     decoded.reason = lookup.reason;
     imported_.lookups.push_back(std::move(lookup));

@@ -6,6 +6,7 @@
 #include <import/source_model.hpp>
 
 #include <glidar/io/model/imported_model.hpp>
+#include <glidar/io/model/texture_search.hpp>
 
 #include <cstdint>
 #include <map>
@@ -34,7 +35,7 @@ class TextureStore {
   std::int32_t decode(const std::string& name);
 
   SourceModel& source_;
-  ModelFolder folder_;
+  TextureSearch search_;
   ModelFiles& files_;
   ImportedModel& imported_;
   std::uint64_t budget_ = std::uint64_t{512} << 20U;

@@ -57,6 +57,15 @@ class Explain(CliTest):
             self.assertIn("write the cloud again", error)
             self.assertNotIn("exception", error)
 
+    def test_errors_quote_at_most_8_kib_of_a_sidecar(self):
+        self.succeed("render", "builtin:box", "--width", "8", "--height", "6", "-o", "a.pcd")
+        sidecar = json.loads(self.bytes_of("a.pcd.json"))
+        sidecar["command"]["arguments"][1] = "x" * 131071
+        self.write("a.pcd.json", json.dumps(sidecar))
+        error = self.refused("explain", "a.pcd", "--index", "0")
+        self.assertTrue(error.startswith("glidar: error: xxx"), error[:30])
+        self.assertLess(len(error), 8300)
+
     def test_the_trace_of_every_point_ends_at_its_reported_values(self):
         self.write("s.yaml", SENSOR)
         columns = ("--columns", "xyz,range,intensity,status,row,col,return")

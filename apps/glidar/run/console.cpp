@@ -46,20 +46,20 @@ void Console::info(std::string_view message) {
   listener_.info(message);
   if (quiet_) return;
   erase();
-  print(stderr, "glidar: {}\n", message);
+  print_message("glidar", message);
 }
 
 void Console::warn(std::string_view message) {
   const std::lock_guard lock(mutex_);
   listener_.warn(message);
   erase();
-  print(stderr, "glidar: warning: {}\n", message);
+  print_message("glidar: warning", message);
 }
 
 void Console::error(std::string_view message) {
   const std::lock_guard lock(mutex_);
   erase();
-  print(stderr, "glidar: error: {}\n", message);
+  print_message("glidar: error", message);
 }
 
 void Console::set_progress(double fraction_done) {

@@ -9,4 +9,9 @@ void print_lines(std::FILE* to, std::string_view lines) {
   std::fwrite(text.data(), 1, text.size(), to);
 }
 
+void print_message(std::string_view prefix, std::string_view message) {
+  constexpr std::size_t kMaxMessage_bytes = 8192;
+  print(stderr, "{}: {}\n", prefix, excerpt(message, kMaxMessage_bytes));
+}
+
 }  // namespace glidar::app

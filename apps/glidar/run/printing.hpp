@@ -17,6 +17,10 @@ namespace glidar::app {
 /// Prints lines for people. Nothing in them controls a terminal, see printable_lines().
 void print_lines(std::FILE* to, std::string_view lines);
 
+/// Prints a line to standard error: the prefix and the message, which is cut at 8 KiB, because it
+/// may quote files of others.
+void print_message(std::string_view prefix, std::string_view message);
+
 /// A value of print(): texts become one printable line.
 template <class Value>
 decltype(auto) printable_value(const Value& value) {

@@ -64,8 +64,9 @@ bool holds(const CachedFile& cached, const CacheEntry& entry, const fs::path& ca
   for (const std::string& path : imported.absent) {
     if (!still_absent(path, folder)) return false;
   }
+  TextureSearch search(std::move(folder));
   for (const TextureLookup& lookup : imported.lookups) {
-    if (find_texture(lookup.name, folder) != lookup) return false;
+    if (search.find(lookup.name) != lookup) return false;
   }
   return changed_file(imported, canonical_model, entry.texture_folders).empty();
 }

@@ -9,9 +9,9 @@
 #include <charconv>
 #include <cstddef>
 #include <iterator>
-#include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace glidar {
@@ -66,19 +66,6 @@ std::vector<std::string> spellings(const std::string& name) {
   return all;
 }
 
-/// A file with this base name, ignoring letter case; the first in byte order of several.
-std::optional<fs::path> any_case(const fs::path& place, const std::string& base) {
-  std::error_code error;
-  std::optional<fs::path> best;
-  const std::string wanted = lower_case(base);
-  for (fs::directory_iterator entry(place, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const fs::path& path = entry->path();
-    if (lower_case(path.filename().string()) == wanted && (!best || path < *best)) best = path;
-  }
-  return best;
-}
-
 bool has_scheme(std::string_view name) {
   return name.find("://") != std::string_view::npos &&
          std::none_of(kSchemes.begin(), kSchemes.end(),
@@ -129,7 +116,23 @@ std::string percent_decoded(const std::string& text) {
   return decoded;
 }
 
-TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
+TextureSearch::TextureSearch(ModelFolder folder) : folder_(std::move(folder)) {}
+
+fs::path TextureSearch::any_case(const fs::path& place, const std::string& base) {
+  const auto [listing, is_new] = listings_.try_emplace(place);
+  auto& names = listing->second;
+  std::error_code error;
+  for (fs::directory_iterator entry(is_new ? place : fs::path(), error), end;
+       !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const auto [known, first] = names.try_emplace(lower_case(name), name);
+    if (!first) known->second = std::min(known->second, name);
+  }
+  const auto match = names.find(lower_case(base));
+  return match == names.end() ? fs::path() : place / match->second;
+}
+
+TextureLookup TextureSearch::find(const std::string& name) {
   TextureLookup result{name, "", "not found"};
   if (name.size() > kMaxTextureName) return {name, "", "the name is too long for a file"};
   if (has_scheme(trimmed(name, kPadding))) return {name, "", "network addresses are not followed"};
@@ -142,20 +145,20 @@ TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
   }
   const std::vector<std::string> wanted = spellings(name);
   const auto take = [&](const fs::path& path) {
-    const ConfinedFile file = confine(path, folder);
+    const ConfinedFile file = confine(path, folder_);
     if (file.access == Access::granted) result = {name, file.path.string(), ""};
     if (file.access == Access::outside || file.access == Access::not_a_file) {
       result.reason = reason(file.access);
     }
     return file.access == Access::granted;
   };
-  std::vector<fs::path> look_in = places(folder);
+  std::vector<fs::path> look_in = places(folder_);
   for (const std::string& spelling : wanted) {
     for (const fs::path& place : look_in) {
       if (take(place / spelling)) return result;
     }
   }
-  const std::vector<fs::path>& others = folder.texture_folders;
+  const std::vector<fs::path>& others = folder_.texture_folders;
   for (const fs::path& ending : others.empty() ? std::vector<fs::path>() : endings(name)) {
     for (const fs::path& place : others) {
       if (take(place / ending)) return result;
@@ -164,8 +167,8 @@ TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
   look_in.insert(look_in.end(), others.begin(), others.end());
   for (const fs::path& place : look_in) {
     for (const std::string& spelling : wanted) {
-      const auto match = any_case(place, base_name(spelling));
-      if (match && take(*match)) return result;
+      const fs::path match = any_case(place, base_name(spelling));
+      if (!match.empty() && take(match)) return result;
     }
   }
   return result;

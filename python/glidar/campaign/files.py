@@ -184,7 +184,7 @@ def open_input(path, max_bytes=MAX_BYTES):
     size = os.fstat(descriptor).st_size
     if size > max_bytes:
         file.close()
-        raise Error(str(path), f"a file of {size >> 20} MiB", f"a file of at most {max_bytes >> 20} MiB", "")
+        raise Error(str(path), f"a file of {size:,} bytes", f"a file of at most {max_bytes:,} bytes", "")
     return file
 
 
@@ -196,7 +196,7 @@ def read_bytes(path, max_bytes):
         except OSError as error:
             raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None
     if len(data) > max_bytes:
-        raise Error(str(path), "a file that grows while it is read", f"a file of at most {max_bytes >> 20} MiB", "")
+        raise Error(str(path), "a file that grows while it is read", f"a file of at most {max_bytes:,} bytes", "")
     return data
 
 

@@ -71,10 +71,13 @@ def _summary(manifest):
         ("made by", escape(f"GLIDAR {plan['glidar']}, {versions}"))])
 
 
-def _log_lines(folder):
+def _log_lines(folder, shards):
+    room = (1 << 20) + (shards << 10)  # bytes: several runs whose shards all need several lines
     lines = []
     for path in filter(names.is_log, Inside(folder.root, "log").children()):
-        for text in files.read_bytes(path, files.MAX_JSON_BYTES).decode("utf-8", "replace").splitlines():
+        data = files.read_bytes(path, room)
+        room -= len(data)
+        for text in data.decode("utf-8", "replace").splitlines():
             try:
                 entry = json.loads(text)
             except (ValueError, RecursionError):
@@ -100,9 +103,12 @@ def _time_at_work(end_s, seconds):
     return end_s - start_s[0] - np.insert(np.cumsum(pause_s), 0, 0.0)
 
 
-def _speed(folder):
+def _speed(folder, shards):
     """The speed of all runs together, relative to the time in which a shard was in progress."""
-    lines = [entry for entry in _log_lines(folder) if "shard" in entry]
+    try:
+        lines = [entry for entry in _log_lines(folder, shards) if "shard" in entry]
+    except Error as error:  # logs do not affect results
+        return f"<p>The logs cannot be read: {escape(str(error))}</p>"
     if len(lines) < 2:
         return "<p>Too few shards for a speed.</p>"
     time_s = _time_at_work(np.array([entry["time_s"] for entry in lines]),
@@ -274,7 +280,7 @@ def page(root: str | os.PathLike[str]) -> str:
                 ("Distributions", _distributions(table, campaign)),
                 ("Coverage", _coverage(table, campaign)),
                 ("Example views", _examples(folder, table, described)),
-                ("Speed", _speed(folder))]
+                ("Speed", _speed(folder, described["shards"]))]
     body = "".join(f"<h2>{title}</h2>{content}" for title, content in sections)
     name = escape(campaign["name"])
     return (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{name}</title>'

@@ -27,7 +27,7 @@ class TextureSpelling : public ::testing::TestWithParam<Spelling> {};
 TEST_P(TextureSpelling, IsFound) {
   const TestFolder temp;
   const fs::path file = temp.write(GetParam().file, "x");
-  const TextureLookup lookup = find_texture(GetParam().name, {temp.path(), temp.path(), {}});
+  const TextureLookup lookup = TextureSearch({temp.path(), temp.path(), {}}).find(GetParam().name);
   EXPECT_EQ(lookup.found, file.string());
   EXPECT_EQ(lookup.reason, "");
 }
@@ -59,7 +59,17 @@ TEST(TextureSearch, TheExactCaseWinsOverAnother) {
   const TestFolder temp;
   temp.write("A.png", "x");
   const fs::path exact = temp.write("textures/a.png", "x");
-  EXPECT_EQ(find_texture("a.png", {temp.path(), temp.path(), {}}).found, exact.string());
+  EXPECT_EQ(TextureSearch({temp.path(), temp.path(), {}}).find("a.png").found, exact.string());
+}
+
+TEST(TextureSearch, ListsEachFolderOnce) {
+  const TestFolder temp;
+  const ModelFolder folder{temp.path(), temp.path(), {}};
+  TextureSearch search(folder);
+  EXPECT_EQ(search.find("missing.png").found, "");
+  const fs::path late = temp.write("A.PNG", "x");
+  EXPECT_EQ(search.find("a.png").found, "");
+  EXPECT_EQ(TextureSearch(folder).find("a.png").found, late.string());
 }
 
 TEST(TextureSearch, AModelPackageSharesItsMaterials) {
@@ -68,15 +78,16 @@ TEST(TextureSearch, AModelPackageSharesItsMaterials) {
   const fs::path model = temp.write("meshes/chair.dae", "x");
   const ModelFolder folder = model_folder(model);
   EXPECT_EQ(folder.root, temp.path());
-  EXPECT_EQ(find_texture("wood.png", folder).found, file.string());
+  EXPECT_EQ(TextureSearch(folder).find("wood.png").found, file.string());
 }
 
 TEST(TextureSearch, ModelConfigMarksAPackage) {
   const TestFolder temp;
   temp.write("model.config", "x");
   const fs::path file = temp.write("textures/wood.png", "x");
-  EXPECT_EQ(find_texture("../textures/wood.png", model_folder(temp.write("dae/a.dae", "x"))).found,
-            file.string());
+  EXPECT_EQ(
+      TextureSearch(model_folder(temp.write("dae/a.dae", "x"))).find("../textures/wood.png").found,
+      file.string());
 }
 
 TEST(TextureSearch, ResolvesParentsOfLinksLikeTheSystem) {
@@ -104,7 +115,7 @@ TEST(TextureSearch, NothingOutsideTheRootIsFound) {
   const TestFolder temp;
   temp.write("secret.png", "x");
   const fs::path model = temp.write("inner/a.obj", "x");
-  const TextureLookup lookup = find_texture("../secret.png", model_folder(model));
+  const TextureLookup lookup = TextureSearch(model_folder(model)).find("../secret.png");
   EXPECT_EQ(lookup.found, "");
   EXPECT_THAT(lookup.reason, ::testing::StartsWith("outside the model's folder"));
 }
@@ -114,8 +125,8 @@ TEST(TextureSearch, ALinkOutOfTheRootIsRejected) {
   temp.write("secret.png", "x");
   const fs::path model = temp.write("inner/a.obj", "x");
   fs::create_symlink("../secret.png", temp.path() / "inner" / "link.png");
-  EXPECT_EQ(find_texture("link.png", model_folder(model)).found, "");
-  EXPECT_THAT(find_texture("link.png", model_folder(model)).reason,
+  EXPECT_EQ(TextureSearch(model_folder(model)).find("link.png").found, "");
+  EXPECT_THAT(TextureSearch(model_folder(model)).find("link.png").reason,
               ::testing::StartsWith("outside the model's folder"));
 }
 
@@ -124,7 +135,7 @@ class TextureFolders : public ::testing::Test {
  protected:
   TextureFolders() { temp_.write("art/skins/images/a.png", "x"); }
   [[nodiscard]] TextureLookup find(const std::string& name) const {
-    return find_texture(name, folder_);
+    return TextureSearch(folder_).find(name);
   }
 
   TestFolder temp_;
@@ -182,8 +193,8 @@ TEST_F(TextureFolders, AreNamedAsTheRemedyForAbsoluteNames) {
 TEST(TextureSearch, FoldersAndDevicesAreNotAcceptedAsTextures) {
   const TestFolder temp;
   fs::create_directory(temp.path() / "a.png");
-  EXPECT_EQ(find_texture("a.png", {temp.path(), temp.path(), {}}).reason, "not a file");
-  EXPECT_EQ(find_texture("/dev/zero", {temp.path(), temp.path(), {}}).found, "");
+  EXPECT_EQ(TextureSearch({temp.path(), temp.path(), {}}).find("a.png").reason, "not a file");
+  EXPECT_EQ(TextureSearch({temp.path(), temp.path(), {}}).find("/dev/zero").found, "");
 }
 
 TEST(TextureSearch, InvalidNamesAreMissingWithAReason) {
@@ -192,7 +203,7 @@ TEST(TextureSearch, InvalidNamesAreMissingWithAReason) {
   for (const std::string& name :
        {std::string(), std::string("   "), std::string("http://host/a.png"), std::string(5000, 'a'),
         std::string("a\0b.png", 7), std::string(300, 'b') + ".png"}) {
-    const TextureLookup lookup = find_texture(name, folder);
+    const TextureLookup lookup = TextureSearch(folder).find(name);
     EXPECT_EQ(lookup.found, "") << name.substr(0, 20);
     EXPECT_NE(lookup.reason, "") << name.substr(0, 20);
   }

@@ -151,8 +151,17 @@ def test_speed_excludes_pauses_between_runs(campaign):
     for name, shards in runs.items():
         (log / f"{name}.jsonl").write_text("".join(
             json.dumps({"time_s": end, "shard": 0, "trials": 10, "seconds": took}) + "\n" for end, took in shards))
-    text = campaign_report._speed(CampaignFolder(campaign.folder))
+    text = campaign_report._speed(CampaignFolder(campaign.folder), 5)
     assert "50 trials in 5.0 s" in text and "10 trials/s by 3 processes" in text
+
+
+def test_logs_that_are_too_large_for_the_shards_are_not_read(campaign):
+    log = campaign.folder / "log"
+    log.mkdir()
+    for name in "ab":
+        (log / f"{name}.jsonl").write_text("\n" * 600_000)
+    text = campaign_report._speed(CampaignFolder(campaign.folder), 5)
+    assert "cannot be read" in text and "b.jsonl" in text
 
 
 def test_cells_of_the_sphere_have_equal_areas():
