@@ -90,6 +90,20 @@ Decoded decode_webp(std::span<const std::uint8_t> bytes, std::uint64_t budget) {
   return decoded;
 }
 
+/// Each scan of a progressive JPEG costs time for all texels, however small it is.
+bool has_too_many_scans(std::span<const std::uint8_t> bytes, std::uint64_t texels) {
+  constexpr std::array<std::uint8_t, 2> kScan = {0xFF, 0xDA};
+  constexpr std::uint64_t kAlways = 32;                         // encoders write about ten
+  constexpr std::uint64_t kMostWork = std::uint64_t{1} << 29U;  // texels: about a second
+  if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
+  std::uint64_t scans = 0;
+  for (auto at = bytes.begin(); at != bytes.end(); ++scans) {
+    at = std::search(at, bytes.end(), kScan.begin(), kScan.end());
+    if (at != bytes.end()) at += kScan.size();
+  }
+  return scans > std::max(kAlways, kMostWork / std::max<std::uint64_t>(texels, 1));
+}
+
 }  // namespace
 
 Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) {
@@ -117,6 +131,9 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
   std::string refused =
       too_large(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 4, budget);
   if (!refused.empty()) return no_image(std::move(refused));
+  if (has_too_many_scans(bytes,
+                         static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height)))
+    return no_image("a JPEG with too many scans for its size");
   const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 0), stbi_image_free);
   if (!texels) return no_image("broken, or too large for the memory limit");

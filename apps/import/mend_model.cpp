@@ -12,6 +12,7 @@
 #include <pugixml.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -150,6 +151,20 @@ void check_paths(const pugi::xml_node& model) {
       "export it without that extension, or as STL or glTF"};
 }
 
+/// Assimp's time grows with the square of the instances that an object or the build places.
+void check_instances(const pugi::xml_node& model) {
+  constexpr std::size_t kMost = 20'000;
+  const auto full = model.find_node([](const pugi::xml_node& node) {
+    const std::string_view name = node.name();
+    if (name != "components" && name != "build") return false;
+    const auto children = node.children();
+    return static_cast<std::size_t>(std::distance(children.begin(), children.end())) > kMost;
+  });
+  if (!full) return;
+  throw Refusal{fmt::format("its element '{}' places more than {} objects", full.name(), kMost),
+                "place them by a scene file"};
+}
+
 /// The pictures that the resources of a model refer to.
 void add_pictures(const pugi::xml_node& model, std::set<std::string>& pictures) {
   for (const pugi::xml_node& resource : model.child("resources")) {
@@ -169,6 +184,7 @@ std::string mended_3mf(const ZipArchive& archive, const std::vector<std::string>
       const pugi::xml_document document = parsed_xml(content, "the XML of " + name);
       check_extensions(document.document_element(), notes);
       check_paths(document.document_element());
+      check_instances(document.document_element());
       add_pictures(document.document_element(), pictures);
       add_names(document, "object", "Object_", node_names);
       if (is_utf16(content)) content = as_utf8(document);

@@ -4,6 +4,7 @@
 
 import json
 import os
+import struct
 import unicodedata
 import unittest
 
@@ -48,6 +49,27 @@ class Pipes(CliTest):
         for path in ("pipe", "/dev/zero", "."):
             self.write("r.jsonl", json.dumps({**HEAD, "files": [{"path": path, "hash": "x"}]}) + '\n{"frames": 0}\n')
             self.assertIn(f"{path} has changed", self.succeed("replay", "r.jsonl").stderr)
+
+
+def progressive_jpeg(side, scans):
+    """A black image whose scans are all the same."""
+    table = b"\xff\xdb\0\x43\0" + bytes([1] * 64)
+    frame = b"\xff\xc2\0\x0b\x08" + struct.pack(">HH", side, side) + b"\x01\x01\x11\0"
+    codes = b"".join(b"\xff\xc4\0\x14" + bytes([kind, 1] + [0] * 16) for kind in (0, 0x10))
+    return b"\xff\xd8" + table + frame + codes + scans * (b"\xff\xda\0\x08\x01\x01" + bytes(8)) + b"\xff\xd9"
+
+
+class Images(CliTest):
+    def test_the_scans_of_a_jpeg_are_limited_by_its_size(self):
+        self.write("a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n")
+        self.write("a.mtl", "newmtl m\nmap_Kd a.jpg\n")
+        for side, scans, is_read in ((16, 30, True), (16, 1000, True), (4096, 40, False)):
+            with self.subTest(side=side, scans=scans):
+                with open(os.path.join(self.folder, "a.jpg"), "wb") as file:
+                    file.write(progressive_jpeg(side, scans))
+                text = self.succeed("info", "a.obj").stdout
+                self.assertEqual("a JPEG with too many scans" not in text, is_read, text)
+                self.assertEqual("MISSING" not in text, is_read, text)
 
 
 class Text(CliTest):

@@ -116,6 +116,7 @@ PACKAGES = {"plain.3mf": threemf(), "thumbnail.3mf": threemf(pictures=["Metadata
             "utf16le.dae": dae().replace("utf-8", "utf-16").encode("utf-16"), "utf16be.dae": b"\xfe\xff" + dae().replace("utf-8", "utf-16").encode("utf-16-be")}
 BAD_PACKAGES = {"parts elsewhere": (threemf(PRODUCTION, '<item objectid="1" p:path="/3D/b.model"/>'), "production extension"),
                 "required": (threemf(PRODUCTION + ' requiredextensions="p"'), "requires the extension"),
+                "too many items": (threemf(item=20001 * '<item objectid="1"/>'), "'build' places more than 20000 objects"),
                 "damaged": (damaged(threemf()), "its archive is damaged: '3D/3dmodel.model'")}
 
 UNREAD = {  # file name, first bytes, the name in the message
