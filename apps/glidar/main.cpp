@@ -58,7 +58,7 @@ std::string explain_extra(const CLI::App& program, const Commands& commands, std
                            : fmt::format("unknown option {}; did you mean {}?", word, nearest);
   }
   if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
-  std::vector<std::string> names = {"--help"};
+  std::vector<std::string> names = {"--help", "--version"};
   for (const auto& [name, run] : commands) names.push_back(name);
   const std::string nearest = closest_match(word, names);
   return nearest.empty()
@@ -133,9 +133,34 @@ int report_error(const std::string& message) {
   return kBadInput;
 }
 
-int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** argv) {
+/// The words of the command line as the options have them: `help render` is `render --help`, and
+/// options may be spelled in American English. Throws Error for `-h 480`.
+std::vector<std::string> tidied(std::vector<std::string> words) {
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::string& word = words[i];
+    const std::string height = word == "-h" && i + 1 < words.size() ? words[i + 1] : "";
+    if (!height.empty() && height.find_first_not_of("0123456789") == std::string::npos) {
+      throw Error({"-h " + height, "-h prints the help", "",
+                   "the height of an image is --height " + height});
+    }
+    if (!word.starts_with("--")) continue;
+    const std::size_t end = std::min(word.find('='), word.size());
+    word =
+        std::regex_replace(std::regex_replace(word.substr(0, end), std::regex("color"), "colour"),
+                           std::regex("center"), "centre") +
+        word.substr(end);
+  }
+  return words;
+}
+
+int parse_and_run(CLI::App& program, const Commands& commands,
+                  const std::vector<std::string>& arguments) {
   try {
-    program.parse(argc, argv);
+    program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& help_or_version) {
     return program.exit(help_or_version);
   } catch (const CLI::ArgumentMismatch& error) {
@@ -212,7 +237,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help; also for view, stream, replay, decode, explain, info, campaign,
+More: glidar help render; also for view, stream, replay, decode, explain, info, campaign,
 sensors, schema, filter, align, stereo, structured-light, tof and verify)";
 
 /// Parses the command line and runs the chosen subcommand; returns the exit code.
@@ -223,12 +248,12 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", version_text(), "Print the version and the optional parts");
   program.require_subcommand(1);
   program.footer(kExamples);
-  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  const std::vector<std::string> arguments = tidied({argv + std::min(argc, 1), argv + argc});
   Commands commands;
   for (const Subcommand& one : all_subcommands()) {
     commands.emplace_back(one.name, one.add(program, arguments));
   }
-  return parse_and_run(program, commands, argc, argv);
+  return parse_and_run(program, commands, arguments);
 }
 
 }  // namespace

@@ -88,6 +88,79 @@ std::optional<std::size_t> dissimilarity(std::string_view word, std::string_view
   return is_near ? std::optional(2 * distance) : std::nullopt;
 }
 
+struct Synonym {
+  std::string_view word;
+  std::string_view term;
+};
+
+/// Words of other programs for GLIDAR's terms. Of several terms, the first that is a candidate.
+constexpr std::array kSynonyms = {Synonym{"color", "colour"},
+                                  Synonym{"colors", "colours"},
+                                  Synonym{"center", "centre"},
+                                  Synonym{"gray", "grey"},
+                                  Synonym{"label", "class"},
+                                  Synonym{"labels", "class"},
+                                  Synonym{"category", "class"},
+                                  Synonym{"semantic", "class"},
+                                  Synonym{"color", "diffuse"},
+                                  Synonym{"reflectance", "diffuse"},
+                                  Synonym{"albedo", "diffuse"},
+                                  Synonym{"color", "materials"},
+                                  Synonym{"colour", "materials"},
+                                  Synonym{"texture", "materials"},
+                                  Synonym{"reflectance", "materials"},
+                                  Synonym{"file", "model"},
+                                  Synonym{"filename", "model"},
+                                  Synonym{"mesh", "model"},
+                                  Synonym{"path", "model"},
+                                  Synonym{"uri", "model"},
+                                  Synonym{"objects", "models"},
+                                  Synonym{"instances", "models"},
+                                  Synonym{"meshes", "models"},
+                                  Synonym{"camera", "sensor"},
+                                  Synonym{"lidar", "sensor"},
+                                  Synonym{"rpy", "euler_deg"},
+                                  Synonym{"quaternion", "orientation"},
+                                  Synonym{"quat", "orientation"},
+                                  Synonym{"translation", "position"},
+                                  Synonym{"location", "position"},
+                                  Synonym{"xyz", "position"},
+                                  Synonym{"position", "pose"},
+                                  Synonym{"orientation", "pose"},
+                                  Synonym{"rotation", "pose"},
+                                  Synonym{"translation", "pose"},
+                                  Synonym{"location", "pose"},
+                                  Synonym{"xyz", "pose"},
+                                  Synonym{"rpy", "pose"},
+                                  Synonym{"pose", "sensor-pose"},
+                                  Synonym{"frames", "duration"},
+                                  Synonym{"fps", "rate"},
+                                  Synonym{"fps", "rate_hz"},
+                                  Synonym{"frequency", "rate_hz"},
+                                  Synonym{"version", "--version"}};
+
+/// The text with the term in the place of the word, which has no letters beside it; empty: it does
+/// not have the word.
+std::string with_term(std::string_view text, const Synonym& synonym) {
+  const std::size_t at = text.find(synonym.word);
+  if (at == std::string_view::npos) return "";
+  const std::size_t end = at + synonym.word.size();
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  if (at > 0 && is_letter(text[at - 1])) return "";
+  if (end < text.size() && is_letter(text[end])) return "";
+  return std::string(text.substr(0, at)).append(synonym.term).append(text.substr(end));
+}
+
+/// The candidate that other programs call by the word; empty: none.
+std::string synonym_of(std::string_view word, std::span<const std::string> candidates) {
+  for (const Synonym& synonym : kSynonyms) {
+    const std::string term = with_term(word, synonym);
+    if (!term.empty() && std::find(candidates.begin(), candidates.end(), term) != candidates.end())
+      return term;
+  }
+  return "";
+}
+
 }  // namespace
 
 Error::Error(const ErrorParts& parts)
@@ -109,7 +182,8 @@ std::string closest_match(std::string_view word, std::span<const std::string> ca
   constexpr std::size_t kMaxWord_bytes = 100;  // the time is the product of both lengths
   if (word.size() > kMaxWord_bytes) return "";
   const std::string wanted = lower_case(word);
-  std::string best;
+  std::string best = synonym_of(wanted, candidates);
+  if (!best.empty()) return best;
   std::size_t min = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : candidates) {
     if (wanted.empty()) break;

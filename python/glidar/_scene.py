@@ -63,7 +63,7 @@ class Scene(SceneData):
         source: a scene file (.yaml, .yml), a model file, or "builtin:asteroid", "builtin:sphere",
             "builtin:box", "builtin:torus", "builtin:plane", optionally with sizes:
             "builtin:box:size=2,1,0.5", "builtin:sphere:radius=3"; None: an empty scene.
-        unit: unit of a model file: "m", "cm", "mm", "in", or metres per unit; None: the unit that the file
+        unit: unit of a model file: "m", "cm", "mm", "in", "ft", or metres per unit; None: the unit that the file
             declares, else "m".
         up: the axis of a model file that becomes z: "x", "y", "z"; None: the axis that the file declares,
             else unchanged axes.
@@ -419,7 +419,7 @@ def _metres(unit: str | float) -> float:
 
 
 def _axis(up: str | None) -> int | None:
-    return None if up is None else _AXES.index(one_of(up, "up", _AXES))
+    return None if up is None else _AXES.index(one_of(up.lower() if isinstance(up, str) else up, "up", _AXES))
 
 
 def _triangles(value: npt.ArrayLike, vertices: int) -> npt.NDArray[np.uint32]:

@@ -73,7 +73,40 @@ class Help(CliTest):
             self.assertIn(suffix, text)
 
 
+class Words(CliTest):
+    """Words that people know from other programs."""
+
+    def test_help_of_a_subcommand_is_its_help(self):
+        self.assertEqual(self.succeed("help", "info").stdout, self.succeed("info", "--help").stdout)
+        self.assertEqual(self.succeed("help").stdout, self.succeed("--help").stdout)
+        self.assertIn("did you mean --version?", self.refused("version"))
+
+    def test_h_with_a_number_is_not_the_height(self):
+        self.assertIn("--height 480", self.refused("render", "builtin:box", "-w", "640", "-h", "480", "-o", "a.pcd"))
+
+    def test_american_spellings_capitals_and_feet_are_accepted(self):
+        self.write("box.obj", BOX)
+        self.succeed("render", "box.obj", "--up", "Y", "--unit", "FT", "--center", "--color-by=range", "-o", "a.view.png")
+        self.succeed("render", "box.obj", "--up", "y", "--unit", "ft", "--centre", "--colour-by", "range", "-o", "b.view.png")
+        self.assertEqual(self.bytes_of("a.view.png"), self.bytes_of("b.view.png"))
+
+    def test_unknown_options_of_other_programs_name_ours(self):
+        for word, option in (("--pose", "--sensor-pose"), ("--frames", "--duration"), ("--fps", "--rate")):
+            self.assertIn(f"did you mean {option}?", self.refused("render", "builtin:box", word, "1", "-o", "a.pcd"))
+
+
 class Render(CliTest):
+    def test_implausible_numbers_of_a_sensor_are_warned_of_also_when_quiet(self):
+        self.write("s.yaml", "optics: {type: spinning, columns_per_turn: 90, elevation_deg: [-0.2, 0.2]}\n")
+        done = self.succeed("render", "builtin:box", "--sensor", "s.yaml", "--quiet", "-o", "a.pcd")
+        self.assertIn("optics.elevation_deg: from -0.2 to 0.2; usual: at least 1 between them; are these radians?", done.stderr)
+
+    def test_arrays_of_a_lidar_are_its_ranges(self):
+        self.succeed("render", "builtin:box", "--sensor", "VLP-16", "-o", "a.npy", "-o", "a.range.npy", "-o", "a.range.png")
+        self.assertEqual(self.bytes_of("a.npy"), self.bytes_of("a.range.npy"))
+        for name in ("a.npy.json", "a.range.npy.json", "a.range.png.json"):
+            self.assertTrue(json.loads(self.bytes_of(name))["cloud"]["image"]["pixels"].startswith("range along the beam"), name)
+
     def test_summary_and_files(self):
         done = self.succeed("render", "builtin:box", "-w", "40", "--height", "30",
                             "-o", "a.pcd", "-o", "b.ply", "-o", "c.png")

@@ -41,7 +41,7 @@ class Rigs(CliTest):
         self.write("rig.yaml", RIG[: RIG.index("  - name: camera")] + "  - {name: second, sensor: VLP-16}\n" + PLACED)
         reported = self.refused("render", "rig.yaml", "-o", "r.pcd", "-o", "r.depth.png")
         self.assertIn("fits none of the sensors on the rig: lidar: it has beams", reported)
-        self.assertIn("write .npy or .depth.tiff", reported)
+        self.assertIn("write .range.png", reported)
 
     def test_a_stream_leaves_the_same_output_out(self):
         self.succeed("stream", "rig.yaml", "--frames", "2", "-o", "r.depth.png", "--no-sidecar")

@@ -64,6 +64,21 @@ TEST(ClosestMatch, CountsTranspositionsOnceAndIgnoresCase) {
   EXPECT_EQ(closest_match("vlp-17", std::vector<std::string>{"VLP-16"}), "VLP-16");
 }
 
+TEST(ClosestMatch, KnowsTheWordsOfOtherPrograms) {
+  const std::vector<std::string> model = {"model", "pose", "class", "materials", "centre"};
+  EXPECT_EQ(closest_match("file", model), "model");
+  EXPECT_EQ(closest_match("label", model), "class");
+  EXPECT_EQ(closest_match("Color", model), "materials");
+  EXPECT_EQ(closest_match("position", model), "pose");
+  EXPECT_EQ(closest_match("rpy", std::vector<std::string>{"position", "euler_deg"}), "euler_deg");
+  EXPECT_EQ(closest_match("--color-by", std::vector<std::string>{"--colour-by"}), "--colour-by");
+  EXPECT_EQ(closest_match(".label.png", std::vector<std::string>{".png", ".class.png"}),
+            ".class.png");
+  EXPECT_EQ(closest_match("--pose", std::vector<std::string>{"--mode", "--sensor-pose"}),
+            "--sensor-pose");
+  EXPECT_EQ(closest_match("profile", std::vector<std::string>{"model"}), "");
+}
+
 TEST(ClosestMatch, DoesNotSuggestUnrelatedWords) {
   EXPECT_EQ(closest_match("w", std::vector<std::string>{"x", "y", "z"}), "");
   EXPECT_EQ(closest_match("up", std::vector<std::string>{"id", "optics"}), "");

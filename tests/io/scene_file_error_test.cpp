@@ -72,7 +72,17 @@ const BadFile kBadScenes[] = {
      "texture_folder, size, radius, tube_radius, scale, pose, id, class, materials, split, parts, "
      "visible_to, hidden_from, motion; did you mean 'scale'?"},
     {"UnknownUnit", model("unit: inch"),
-     "s.yaml:3:11: models[0].unit: 'inch'; allowed: mm, cm, m, in; did you mean 'in'?"},
+     "s.yaml:3:11: models[0].unit: 'inch'; allowed: mm, cm, m, in, ft; did you mean 'in'?"},
+    {"WordOfOtherPrograms", model("label: car"),
+     "s.yaml:3:5: models[0].label: unknown key 'label'; allowed: model, name, unit, up, centre, "
+     "texture_folder, size, radius, tube_radius, scale, pose, id, class, materials, split, parts, "
+     "visible_to, hidden_from, motion; did you mean 'class'?"},
+    {"TextForAList", model("pose: {position: \"1, 2, 3\"}"),
+     "s.yaml:3:22: models[0].pose.position: the text \"1, 2, 3\"; allowed: a list of 3 numbers; "
+     "write [1, 2, 3]"},
+    {"OneKeyInTwoSpellings", model("center: yes\n    centre: no"),
+     "s.yaml:4:5: models[0].centre: the key is given twice; allowed: each key once; remove one of "
+     "them"},
     {"UnknownAxis", model("up: w"), "s.yaml:3:9: models[0].up: 'w'; allowed: x, y, z"},
     {"ScaleZero", model("scale: 0"),
      "s.yaml:3:12: models[0].scale: a factor of 0, or nearly; allowed: " + kFactors},

@@ -12,7 +12,7 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
   const OptionGroup group(command, "Model");
   std::vector<std::pair<std::string, double>> units;
   for (const Named<double>& unit : kLengthUnits) units.emplace_back(unit.name, unit.value);
-  group.add("--unit", "UNIT", "Unit of the file: mm, cm, m or in [as the file declares, or m]",
+  group.add("--unit", "UNIT", "Unit: mm, cm, m, in or ft [as the file declares, or m]",
             options.metres_per_unit, one_of(units));
   group.add("--up", "AXIS", "Axis that points up: x, y or z [as the file declares, or z]",
             options.up, one_of<Axis>({{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}));

@@ -4,6 +4,7 @@
 
 #include <glidar/core/axis_angle.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/core/text.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -60,7 +61,11 @@ std::function<double(const std::string&)> number(double min, double max, std::st
 
 std::function<std::string(const std::string&)> one_of(std::vector<std::string> names) {
   return [names = std::move(names)](const std::string& text) {
-    if (std::find(names.begin(), names.end(), text) != names.end()) return text;
+    const auto same = [wanted = lower_case(text)](const std::string& name) {
+      return lower_case(name) == wanted;
+    };
+    const auto named = std::find_if(names.begin(), names.end(), same);
+    if (named != names.end()) return *named;
     constexpr std::size_t kMinLength = 3;  // shorter words are close to any name
     const std::string nearest = text.size() < kMinLength ? "" : closest_match(text, names);
     refuse_value(text, fmt::format("{}", fmt::join(names, ", ")),

@@ -251,6 +251,15 @@ bool straddles_zero(double min, double max) {
   return min < -part && max > part;
 }
 
+/// Wide, low, and of many triangles.
+bool looks_like_terrain(const Scene& scene, const Eigen::Vector3d& size_m) {
+  constexpr double kLow = 0.25;
+  constexpr std::size_t kFewTriangles = 500;
+  std::size_t triangles = 0;
+  for (const Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
+  return triangles > kFewTriangles && size_m.z() < kLow * std::min(size_m.x(), size_m.y());
+}
+
 }  // namespace
 
 FrameSummary summarise(const Frame& frame) {
@@ -269,11 +278,13 @@ FrameSummary summarise(const Frame& frame) {
   return summary;
 }
 
-std::vector<std::string> size_advice(const Scene& scene, bool sized) {
+std::vector<std::string> size_advice(const Scene& scene, bool sized, double far_m) {
   const Eigen::AlignedBox3d box = bounds(scene);
   if (sized || box.isEmpty() || !has_assumed_unit(scene)) return {};
   const double size_m = box.diagonal().norm();
-  if (size_m > kLargeModel_m) {
+  constexpr double kSitesPerRange = 10.0;  // a site may be surveyed in so many steps
+  const bool fits_range = std::isfinite(far_m) && size_m < kSitesPerRange * far_m;
+  if (size_m > kLargeModel_m && !fits_range && !looks_like_terrain(scene, box.sizes())) {
     return {
         fmt::format("the model is {:.6g} m across; if its file is in millimetres, give --unit mm "
                     "({:.6g} m), otherwise --unit m confirms the size",

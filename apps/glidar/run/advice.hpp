@@ -33,9 +33,10 @@ struct FrameSummary {
 
 FrameSummary summarise(const Frame& frame);
 
-/// Advice about models of implausible size. None if the unit or the scale is given (`sized`), or
-/// every model file declares its unit.
-std::vector<std::string> size_advice(const Scene& scene, bool sized);
+/// Advice about models of implausible size. None if the unit or the scale is given (`sized`), every
+/// model file declares its unit, or a large scene looks like terrain or fits the sensors' largest
+/// limit `far_m`.
+std::vector<std::string> size_advice(const Scene& scene, bool sized, double far_m);
 
 /// A hint at --up for formats that declare no up axis: the model is on or above zero along y and
 /// across zero along the other axes. Empty: none.

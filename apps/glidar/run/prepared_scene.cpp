@@ -10,6 +10,7 @@
 #include <glidar/core/time_text.hpp>
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/config/imu_file.hpp>
+#include <glidar/io/config/sensor_document.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
@@ -107,9 +108,18 @@ std::vector<ActiveSensor> make_active_sensors(const RenderFlags& flags,
     const Sensor* only = in_file.empty() ? nullptr : &in_file.front().sensor;
     return {{.sensor = make_sensor(flags.sensor, only)}};
   }
-  if (names_sensor(flags.sensor)) {
-    throw Error({"--sensor and camera options", "given for a scene file with a rig of sensors", "",
-                 "leave them out; --sensor-name NAME chooses one of " + names_of(in_file)});
+  const auto is_chosen = [&](const RigSensor& one) { return one.name == flags.sensor_name; };
+  const auto chosen = flags.sensor_name.empty()
+                          ? in_file.begin()
+                          : std::find_if(in_file.begin(), in_file.end(), is_chosen);
+  if (chosen == in_file.end()) {
+    throw Error({"--sensor-name", flags.sensor_name, names_of(in_file)});
+  }
+  if (names_sensor(flags.sensor)) {  // it replaces the rig's sensors, in the place of one of them
+    return {{.name = flags.sensor_name,
+             .id = static_cast<std::uint32_t>(chosen - in_file.begin()),
+             .sensor = make_sensor(flags.sensor, nullptr),
+             .rig_from_sensor = chosen->rig_from_sensor}};
   }
   if (!flags.sensor.calibration_files.empty()) {
     throw Error({"--calibration", "given for a scene file with a rig of sensors",
@@ -122,12 +132,6 @@ std::vector<ActiveSensor> make_active_sensors(const RenderFlags& flags,
                        .id = i,
                        .sensor = make_sensor(flags.sensor, &in_file[i].sensor),
                        .rig_from_sensor = in_file[i].rig_from_sensor});
-  }
-  const auto is_chosen = [&](const ActiveSensor& active) {
-    return active.name == flags.sensor_name;
-  };
-  if (!flags.sensor_name.empty() && std::none_of(sensors.begin(), sensors.end(), is_chosen)) {
-    throw Error({"--sensor-name", flags.sensor_name, names_of(in_file)});
   }
   return sensors;
 }
@@ -322,16 +326,22 @@ void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loa
   if (!is_scene_file(flags.input)) prepared.sensors = make_active_sensors(flags, {});
   SceneFile loaded = load(flags, console);
   prepared.sensors = make_active_sensors(flags, loaded.sensors);
-  for (const ActiveSensor& active : prepared.sensors)
+  for (const ActiveSensor& active : prepared.sensors) {
     for (const std::string& note : active.sensor.notes) console.info(note);
+    for (const std::string& sentence : implausible_numbers(active.sensor))
+      console.warn(active.sensor.name + ": " + sentence);
+  }
   prepared.files = files_read(flags, loaded, prepared.sensors);
   set_imus(flags, loaded, prepared);
   if (on_loaded) on_loaded();
   prepared.scene = std::move(loaded.scene);
   apply_surface_option(flags, prepared.sensors.front().sensor, prepared.scene);
   pose_model(flags.pose, prepared.scene);
-  print_advice(size_advice(prepared.scene, flags.model.metres_per_unit || flags.pose.scale),
-               console);
+  double far_m = 0.0;
+  for (const ActiveSensor& active : prepared.sensors)
+    far_m = std::max(far_m, active.sensor.limits.far_m);
+  const bool is_sized = flags.model.metres_per_unit || flags.pose.scale;
+  print_advice(size_advice(prepared.scene, is_sized, far_m), console);
   place_sensors(flags, loaded, console, prepared);
   const ProgressScope progress(console, "preparing the scene");
   make_renderers(flags, prepared);

@@ -5,6 +5,7 @@
 #include <glidar/sensor/sensor.hpp>
 
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -15,5 +16,9 @@ namespace glidar {
 /// sensor was read from.
 /// Throws Error naming the key when no number in the file's unit gives a number of the sensor.
 std::string sensor_document(const Sensor& sensor);
+
+/// A sentence for each number that no real sensor has, such as angles in radians or a reflectance
+/// in percent: its key, its value, what is usual, and what it could be.
+std::vector<std::string> implausible_numbers(const Sensor& sensor);
 
 }  // namespace glidar

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/yaml_field_reader.hpp>
 
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/provenance.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 
@@ -168,6 +169,12 @@ void FieldReader::words_or_count(const FieldInfo& field, std::span<const char* c
   if (!given) return;
   chosen.clear();
   if (!given->node.IsSequence()) {
+    const std::string word = given->node.IsScalar() ? given->node.Scalar() : "";
+    if (word.empty() || word.find_first_not_of("+-.0123456789") != std::string::npos) {
+      glidar::reject(*given, content_text(*given),
+                     "a list of " + comma_separated(words_of(words)) +
+                         "; or a whole number from 1 to " + std::to_string(max_size));
+    }
     count = glidar::whole_number(*given, 1, max_size);
     return;
   }

@@ -10,6 +10,7 @@
 #include <yaml-cpp/depthguard.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <set>
@@ -92,6 +93,10 @@ struct Entry {
   YamlField value;
 };
 
+[[noreturn]] void reject_second(const YamlField& key) {
+  reject(key, "the key is given twice", "each key once", "remove one of them");
+}
+
 std::vector<Entry> checked_entries(const YamlField& field) {
   if (!field.node.IsMap()) reject(field, content_text(field), "a map (key: value)");
   std::vector<Entry> result;
@@ -104,7 +109,7 @@ std::vector<Entry> checked_entries(const YamlField& field) {
                 child(field, child_path(field, key), pair.first.Mark(), pair.second)};
     if (!seen.insert(key).second) {
       entry.value.mark = entry.key_mark;
-      reject(entry.value, "the key is given twice", "each key once", "remove one of them");
+      reject_second(entry.value);
     }
     result.push_back(std::move(entry));
   }
@@ -125,6 +130,17 @@ std::optional<double> spelled_number(const YAML::Node& node) {
   if (end != word.data() + word.size() || word.empty()) return std::nullopt;
   if (problem == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
   return problem == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+/// The key in British English, as all keys are.
+std::string british(std::string key) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kSpellings = {
+      {{"color", "colour"}, {"center", "centre"}, {"gray", "grey"}}};
+  for (const auto& [american, spelled] : kSpellings) {
+    const std::size_t at = key.find(american);
+    if (at != std::string::npos) key.replace(at, american.size(), spelled);
+  }
+  return key;
 }
 
 /// The one map of a file; `name` is the file's.
@@ -196,10 +212,18 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
 }
 
 void require_map(const YamlField& field, const std::vector<std::string>& known) {
+  std::set<std::string> seen;
   for (const Entry& entry : checked_entries(field)) {
-    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     YamlField at_key = entry.value;
     at_key.mark = entry.key_mark;
+    const auto is_known = [&](const std::string& key) {
+      return std::find(known.begin(), known.end(), key) != known.end();
+    };
+    const std::string key = is_known(entry.key) ? entry.key : british(entry.key);
+    if (is_known(key)) {
+      if (!seen.insert(key).second) reject_second(at_key);
+      continue;
+    }
     reject(at_key, "unknown key '" + shown(entry.key) + "'", comma_separated(known),
            suggestion(entry.key, known));
   }
@@ -213,8 +237,14 @@ std::vector<std::pair<std::string, YamlField>> entries(const YamlField& field) {
   return result;
 }
 
+/// The remedy for a text such as "1, 2, 3" in the place of a list.
+std::string as_list(const YamlField& field) {
+  const bool is_text = field.node.IsScalar() && field.node.Scalar().find(',') != std::string::npos;
+  return is_text ? "write [" + shown(field.node.Scalar()) + "]" : "";
+}
+
 std::vector<YamlField> items(const YamlField& field) {
-  if (!field.node.IsSequence()) reject(field, content_text(field), "a list");
+  if (!field.node.IsSequence()) reject(field, content_text(field), "a list", as_list(field));
   std::vector<YamlField> result;
   for (const YAML::Node& item : field.node) {
     const std::string path = field.path + "[" + std::to_string(result.size()) + "]";
@@ -225,7 +255,8 @@ std::vector<YamlField> items(const YamlField& field) {
 
 std::optional<YamlField> find(const YamlField& map, std::string_view key) {
   for (const auto& pair : map.node) {
-    if (!pair.first.IsScalar() || pair.first.Scalar() != key) continue;
+    if (!pair.first.IsScalar()) continue;
+    if (pair.first.Scalar() != key && british(pair.first.Scalar()) != key) continue;
     return child(map, child_path(map, pair.first.Scalar()), pair.first.Mark(), pair.second);
   }
   return std::nullopt;
@@ -253,7 +284,12 @@ std::uint32_t whole_number(const YamlField& field, std::uint32_t min, std::uint3
 }
 
 bool boolean(const YamlField& field) {
-  return one_of(field, {"false", "true"}) == 1;
+  static const std::set<std::string> kYes = {"yes", "on"};
+  static const std::set<std::string> kNo = {"no", "off"};
+  const bool is_plain = field.node.IsScalar() && field.node.Tag() != "!";
+  const std::string word = is_plain ? lower_case(field.node.Scalar()) : "";
+  if (kYes.contains(word)) return true;
+  return !kNo.contains(word) && one_of(field, {"false", "true"}) == 1;
 }
 
 std::string text(const YamlField& field) {
@@ -276,7 +312,9 @@ std::string path_beside(const YamlField& field) {
 
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words) {
   const std::string word = field.node.IsScalar() ? field.node.Scalar() : "";
-  const auto at = std::find(words.begin(), words.end(), word);
+  const auto at = std::find_if(words.begin(), words.end(), [&](const std::string& allowed) {
+    return lower_case(allowed) == lower_case(word);
+  });
   if (at == words.end()) {
     reject(field, content_text(field), comma_separated(words),
            word.empty() ? "" : suggestion(word, words));
@@ -304,7 +342,7 @@ LookupTable table(const YamlField& field, const NumberRule& place, const NumberR
 
 Eigen::Vector3d triple(const YamlField& field, const NumberRule& rule) {
   if (!field.node.IsSequence() || field.node.size() != 3) {
-    reject(field, content_text(field), "a list of 3 numbers");
+    reject(field, content_text(field), "a list of 3 numbers", as_list(field));
   }
   const std::vector<YamlField> parts = items(field);
   return {number(parts[0], rule), number(parts[1], rule), number(parts[2], rule)};

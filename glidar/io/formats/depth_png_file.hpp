@@ -9,4 +9,7 @@ namespace glidar {
 /// Depth as 16-bit PNG.
 Format depth_png_format();
 
+/// Range along the beam as 16-bit PNG.
+Format range_png_format();
+
 }  // namespace glidar

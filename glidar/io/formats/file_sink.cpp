@@ -201,7 +201,10 @@ class FormatSink : public FileSink {
                                                       const Frame& frame) const {
     const bool has_depths =
         format_.content == Content::image && find_column(cloud, "depth") != nullptr;
-    if (!has_depths || !images_have_range(context_.sensor, context_.beams)) return std::nullopt;
+    const bool is_array = format_.info.suffix == ".npy";
+    const bool has_ranges = images_have_range(context_.sensor, context_.beams) ||
+                            (is_array && !std::holds_alternative<Pinhole>(context_.sensor.optics));
+    if (!has_depths || !has_ranges) return std::nullopt;
     PointCloud made = cloud;
     const auto is_named = [](const char* name) {
       return [name](const Column& column) { return column.name == name; };

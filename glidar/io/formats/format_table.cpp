@@ -42,7 +42,9 @@ const std::vector<Format>& formats() {
       kitti_format(),
       kitti_folder_format(),
       npy_format(),
+      range_npy_format(),
       depth_png_format(),
+      range_png_format(),
       woods2016_png_format(),
       preview_format(),
       transform_format(),
@@ -87,6 +89,27 @@ const Format* matching_format(const std::filesystem::path& path) {
   return best;
 }
 
+/// Refuses names such as a.dept.png, which would be a picture although another image was meant. The
+/// part before the suffix may be a number.
+void require_known_kind(const std::filesystem::path& path, const Format& format) {
+  const std::string& suffix = format.info.suffix;
+  std::string stem = without_separators(path).filename().string();
+  stem.resize(stem.size() - suffix.size());
+  const std::string kind = lower_case(std::filesystem::path(stem).extension().string());
+  const bool is_word = kind.size() > 1 && kind.find_first_not_of("abcdefghijklmnopqrstuvwxyz_",
+                                                                 1) == std::string::npos;
+  std::vector<std::string> known;
+  for (const Format& other : formats()) {
+    if (other.info.suffix.ends_with(suffix)) known.push_back(other.info.suffix);
+  }
+  if (!is_word || known.size() < 2) return;
+  const std::string nearest = closest_match(kind + suffix, known);
+  throw Error({path.string(), fmt::format("no format has the suffix {}", excerpt(kind + suffix)),
+               fmt::format("{}", fmt::join(known, " ")),
+               (nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest)) +
+                   "use another character than the dot for a name"});
+}
+
 }  // namespace
 
 std::filesystem::path output_path(const std::filesystem::path& path) {
@@ -96,6 +119,7 @@ std::filesystem::path output_path(const std::filesystem::path& path) {
 const Format& find_format(const std::filesystem::path& path) {
   const Format* format = matching_format(path);
   if (format == nullptr) refuse_suffix(path, {});
+  require_known_kind(path, *format);
   return *format;
 }
 

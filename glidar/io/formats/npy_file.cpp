@@ -10,6 +10,19 @@
 #include <vector>
 
 namespace glidar {
+namespace {
+
+std::vector<PointField> range_fields(const PointCloud& cloud) {
+  return {{"range", find_column(cloud, "range"), 0, Stored::f32}};
+}
+
+void write_image(const CloudFile& job, AtomicFile& file) {
+  const std::array<std::size_t, 2> shape = {job.cloud.rows, job.cloud.cols};
+  file.write(npy_header("<f4", shape));
+  write_binary_rows(job.fields, job.cloud.size(), file);
+}
+
+}  // namespace
 
 std::string npy_header(std::string_view type, std::span<const std::size_t> shape) {
   constexpr std::size_t kAlignment = 64;
@@ -33,19 +46,24 @@ std::vector<PointField> depth_fields(const PointCloud& cloud) {
   return {{column.name, &column, 0, Stored::f32}};
 }
 
-void write_depth_npy(const CloudFile& job, AtomicFile& file) {
-  const std::array<std::size_t, 2> shape = {job.cloud.rows, job.cloud.cols};
-  file.write(npy_header("<f4", shape));
-  write_binary_rows(job.fields, job.cloud.size(), file);
+Format npy_format() {
+  return {.info = {.suffix = ".npy",
+                   .description = "NumPy depth image (LiDAR: range), metres",
+                   .columns = {"depth"}},
+          .content = Content::image,
+          .fields = depth_fields,
+          .write = write_image,
+          .pixels = "depth in metres as 32-bit float; NaN: no return"};
 }
 
-Format npy_format() {
-  return {
-      .info = {.suffix = ".npy", .description = "NumPy depth image, metres", .columns = {"depth"}},
-      .content = Content::image,
-      .fields = depth_fields,
-      .write = write_depth_npy,
-      .pixels = "depth in metres as 32-bit float; NaN: no return"};
+Format range_npy_format() {
+  return {.info = {.suffix = ".range.npy",
+                   .description = "NumPy range image, metres",
+                   .columns = {"range"}},
+          .content = Content::image,
+          .fields = range_fields,
+          .write = write_image,
+          .pixels = "range along the beam in metres as 32-bit float; NaN: no return"};
 }
 
 }  // namespace glidar

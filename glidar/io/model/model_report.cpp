@@ -90,8 +90,8 @@ std::string guess_unit(double longest_side_m) {
     return "very large: " + across + "; a planet, or millimetres of something large?";
   }
   if (longest_side_m > kLarge) {
-    return fmt::format("looks like millimetres: {}; as millimetres it would be {:.4g} m", across,
-                       longest_side_m / 1000.0);
+    return fmt::format("large: {}; a site or terrain, or millimetres of an object of {:.4g} m",
+                       across, longest_side_m / 1000.0);
   }
   if (longest_side_m < kSmall) {
     return "very small: " + across + "; a tiny part, or kilometres or inches taken for metres?";

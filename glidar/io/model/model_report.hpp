@@ -72,8 +72,8 @@ struct ModelReport {
 ModelReport inspect(const Model& model);
 
 /// A guess from the longest side of the bounding box, because scenes have sizes of centimetres to a
-/// hundred metres: from 0.02 to 200 metres are plausible; up to 200,000 millimetres are likely;
-/// otherwise no unit is likely.
+/// hundred metres: from 0.02 to 200 metres are plausible; up to 200,000 it may be terrain or an
+/// object in millimetres; otherwise no unit is likely.
 std::string guess_unit(double longest_side_m);
 
 }  // namespace glidar

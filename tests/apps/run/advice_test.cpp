@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace glidar::app {
 namespace {
 
@@ -19,6 +21,8 @@ TEST(UpAdvice, IsEmptyForFormatsThatDeclareTheirUpAxis) {
   }
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 Scene square_of(double side_m, bool unit_known) {
   Scene scene;
   Mesh mesh;
@@ -32,12 +36,20 @@ Scene square_of(double side_m, bool unit_known) {
   return scene;
 }
 
+TEST(SizeAdvice, IsNotGivenForSitesThatASensorReachesNorForTerrain) {
+  Scene scene = square_of(1500.0, false);
+  EXPECT_EQ(size_advice(scene, false, 100.0).size(), 1U);
+  EXPECT_TRUE(size_advice(scene, false, 300.0).empty());
+  scene.meshes.front().triangles.resize(1000, {0, 1, 2});
+  EXPECT_TRUE(size_advice(scene, false, kInfinity).empty());
+}
+
 TEST(SizeAdvice, IsGivenForAssumedUnitsOnly) {
-  EXPECT_EQ(size_advice(square_of(5000.0, false), false).size(), 1U);
-  EXPECT_TRUE(size_advice(square_of(5000.0, false), true).empty());
-  EXPECT_TRUE(size_advice(square_of(5000.0, true), false).empty());
-  EXPECT_EQ(size_advice(square_of(1e-4, false), false).size(), 1U);
-  EXPECT_TRUE(size_advice(square_of(1e-4, true), false).empty());
+  EXPECT_EQ(size_advice(square_of(5000.0, false), false, kInfinity).size(), 1U);
+  EXPECT_TRUE(size_advice(square_of(5000.0, false), true, kInfinity).empty());
+  EXPECT_TRUE(size_advice(square_of(5000.0, true), false, kInfinity).empty());
+  EXPECT_EQ(size_advice(square_of(1e-4, false), false, kInfinity).size(), 1U);
+  EXPECT_TRUE(size_advice(square_of(1e-4, true), false, kInfinity).empty());
 }
 
 TEST(UpAdvice, SuggestsYForModelsOnOrAboveZeroAlongYOnly) {

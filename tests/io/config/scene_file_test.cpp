@@ -127,12 +127,28 @@ TEST(SceneFile, DefaultsOfAModel) {
 
 TEST(SceneFile, UnitsAreMetresPerUnit) {
   const TestFolder folder;
-  const ScenePlan scene = plan(folder,
-                               "models: [{model: a, unit: mm}, {model: a, unit: cm}, "
-                               "{model: a, unit: m}, {model: a, unit: in}]\n");
-  const std::array<double, 4> expected = {0.001, 0.01, 1.0, 0.0254};
-  for (std::size_t i = 0; i < 4; ++i) {
+  const ScenePlan scene =
+      plan(folder,
+           "models: [{model: a, unit: mm}, {model: a, unit: cm}, "
+           "{model: a, unit: m}, {model: a, unit: in}, {model: a, unit: FT}]\n");
+  const std::array<double, 5> expected = {0.001, 0.01, 1.0, 0.0254, 0.3048};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(scene.instances[i].options.metres_per_unit, expected[i]);
+  }
+}
+
+TEST(SceneFile, AmericanSpellingsCapitalsAndAllWordsOfYamlForYesAreAccepted) {
+  const TestFolder folder;
+  for (const char* word : {"true", "True", "yes", "YES", "on"}) {
+    const ScenePlan scene =
+        plan(folder, "models: [{model: a, center: " + std::string(word) + ", up: Y}]\n");
+    EXPECT_TRUE(scene.instances[0].options.centre) << word;
+    EXPECT_EQ(scene.instances[0].options.up, Axis::y);
+  }
+  for (const char* word : {"false", "No", "off"}) {
+    const ScenePlan scene =
+        plan(folder, "models: [{model: a, centre: " + std::string(word) + "}]\n");
+    EXPECT_FALSE(scene.instances[0].options.centre) << word;
   }
 }
 

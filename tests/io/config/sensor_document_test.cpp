@@ -10,6 +10,7 @@
 
 #include "io/yaml_files.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -223,6 +224,33 @@ TEST(ExactUnit, NumberThatIsNoProductIsRefusedNotRounded) {
     EXPECT_THROW(exact_in(inside, kRadian), Error);
   }
   EXPECT_GT(missed, 0);
+}
+
+TEST(ImplausibleNumbers, OfPresetsThereAreNone) {
+  for (const SensorPreset& preset : sensor_presets()) {
+    EXPECT_THAT(implausible_numbers(load_sensor_file(preset.reference)), ::testing::IsEmpty())
+        << preset.name;
+  }
+}
+
+TEST(ImplausibleNumbers, AreNamedWithTheirKeyAndAGuess) {
+  Spinning spinning;
+  spinning.channels.resize(2);
+  spinning.channels[0].elevation_rad = -0.0045;
+  spinning.channels[1].elevation_rad = 0.0045;
+  spinning.channels[1].ring = 1;
+  spinning.columns_per_turn = 900;
+  Sensor sensor;
+  sensor.optics = spinning;
+  sensor.lidar_equation = LidarEquation{.reference_reflectance = 80.0};
+  sensor.noise = {RangeGaussian{.sigma_m = 30.0}};
+  EXPECT_THAT(implausible_numbers(sensor),
+              ::testing::UnorderedElementsAre(
+                  "optics.elevation_deg: from -0.257831 to 0.257831; usual: at least 1 between "
+                  "them; are these radians?",
+                  "lidar_equation.reference_reflectance: 80; usual: 0.001 to 1.5; is this in "
+                  "percent?",
+                  "noise[0].sigma_m: 30; usual: 0 to 3; is this in millimetres?"));
 }
 
 }  // namespace

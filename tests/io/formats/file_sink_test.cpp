@@ -29,6 +29,10 @@ TEST(FileFormats, TheLongestSuffixSelectsTheFormat) {
   EXPECT_EQ(format_for("a.depth.png").suffix, ".depth.png");
   EXPECT_EQ(format_for("a.framebuffer.png").suffix, ".framebuffer.png");
   EXPECT_EQ(format_for("out.d/scan.2.pcd").suffix, ".pcd");
+  EXPECT_EQ(format_for("a.range.png").suffix, ".range.png");
+  EXPECT_EQ(format_for("scan.0012.png").suffix, ".png");
+  EXPECT_EQ(format_for("scan.v2.npy").suffix, ".npy");
+  EXPECT_EQ(format_for("scan.dept.pcd").suffix, ".pcd");
   EXPECT_EQ(format_for("A.PCD").suffix, ".pcd");
 }
 
@@ -44,6 +48,16 @@ TEST(FileFormats, AnUnknownSuffixIsReportedWithAllSuffixesAndTheNearest) {
                     ".exr")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
+}
+
+TEST(FormatFor, RefusesUnknownKindsOfImagesInsteadOfWritingAPicture) {
+  EXPECT_THAT(error_text([] { format_for("a.dept.png"); }),
+              AllOf(HasSubstr("no format has the suffix .dept.png; allowed: "),
+                    HasSubstr(" .range.png "), HasSubstr("did you mean .depth.png?")));
+  EXPECT_THAT(error_text([] { format_for("a.label.png"); }), HasSubstr("mean .class.png?"));
+  EXPECT_THAT(error_text([] { format_for("a.Rnage.npy"); }), HasSubstr("mean .range.npy?"));
+  EXPECT_THAT(error_text([] { format_for("my.rock.png"); }),
+              HasSubstr("use another character than the dot"));
 }
 
 TEST(FileSink, RejectsInvalidPathsImmediately) {
@@ -294,6 +308,7 @@ TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
   CloudFixture other = make_fixture(31, 17);
   FileSinkOptions options;
   options.pcd = PcdEncoding::binary_compressed;
+  options.depth_png_units_per_m = 10.0;  // the fixture has ranges of kilometres
   fixture::add_image_columns(made.cloud);
   fixture::add_image_columns(other.cloud);
   for (const FileFormat& format : file_formats()) {
