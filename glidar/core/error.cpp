@@ -139,7 +139,7 @@ constexpr std::array kSynonyms = {Synonym{"color", "colour"},
                                   Synonym{"frequency", "rate_hz"},
                                   Synonym{"version", "--version"}};
 
-/// The text with the term in the place of the word, which has no letters beside it; empty: it does
+/// The text with the term instead of the word, which has no letters beside it; empty: it does
 /// not have the word.
 std::string with_term(std::string_view text, const Synonym& synonym) {
   const std::size_t at = text.find(synonym.word);

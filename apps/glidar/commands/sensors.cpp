@@ -223,7 +223,7 @@ void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
 Summary summarise_sensor(const Datasheet& sheet, const Beams& beams) {
   Summary summary;
   summary.kind = kind_of(sheet.sensor.optics);
-  summary.rows = beams.rows;
+  summary.rows = beams.rows / beams.returns;
   summary.cols = beams.cols;
   summary.points_per_s = static_cast<double>(beams.size()) * sheet.sensor.rate_hz;
   measure_view(sheet.sensor, beams, summary);

@@ -115,7 +115,7 @@ std::vector<ActiveSensor> make_active_sensors(const RenderFlags& flags,
   if (chosen == in_file.end()) {
     throw Error({"--sensor-name", flags.sensor_name, names_of(in_file)});
   }
-  if (names_sensor(flags.sensor)) {  // it replaces the rig's sensors, in the place of one of them
+  if (names_sensor(flags.sensor)) {  // it replaces the rig's sensors, where one of them is
     return {{.name = flags.sensor_name,
              .id = static_cast<std::uint32_t>(chosen - in_file.begin()),
              .sensor = make_sensor(flags.sensor, nullptr),

@@ -237,7 +237,7 @@ std::vector<std::pair<std::string, YamlField>> entries(const YamlField& field) {
   return result;
 }
 
-/// The remedy for a text such as "1, 2, 3" in the place of a list.
+/// The remedy for a text such as "1, 2, 3" instead of a list.
 std::string as_list(const YamlField& field) {
   const bool is_text = field.node.IsScalar() && field.node.Scalar().find(',') != std::string::npos;
   return is_text ? "write [" + shown(field.node.Scalar()) + "]" : "";
