@@ -40,10 +40,10 @@ class SceneObject:
     def _info(self) -> dict[str, Any]:
         return self._scene._core.object(self._index)
 
-    def _others(self, attribute: str) -> set[Any]:
-        """The values of an attribute of all other objects."""
-        core = self._scene._core
-        return {core.object(index)[attribute] for index in range(len(core)) if index != self._index}
+    def _is_taken(self, attribute: str, value: Any) -> bool:
+        """Whether another object has the name or id."""
+        recipe = self._scene._recipe
+        return recipe.register(len(recipe.core)).is_taken(attribute, value, self._index)
 
     def _set(self, **changes: Any) -> None:
         self._scene._recipe.set_object(self._index, changes)
@@ -60,7 +60,7 @@ class SceneObject:
 
     @name.setter
     def name(self, name: str) -> None:
-        if text_of(name, "name") in self._others("name"):
+        if self._is_taken("name", text_of(name, "name")):
             raise Error("name", f"{name!r}, which another object has", "a name that is unique in the scene")
         self._set(name=name)
 
@@ -71,7 +71,7 @@ class SceneObject:
 
     @id.setter
     def id(self, number: int) -> None:
-        if whole(number, "id", 2**32 - 2) in self._others("id"):
+        if self._is_taken("id", whole(number, "id", 2**32 - 2)):
             raise Error("id", f"{number}, which another object has", "an id that is unique in the scene")
         self._set(id=number)
 

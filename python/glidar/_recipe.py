@@ -5,12 +5,15 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import os
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
@@ -21,6 +24,58 @@ _BUILTIN = "builtin:"
 
 #: A step: its name and its arguments.
 Step = tuple[str, dict[str, Any]]
+
+
+class _Register:
+    """Names and ids of a scene's first objects, so that finding a free one does not take longer in large scenes."""
+
+    def __init__(self, core: _core.Scene, count: int) -> None:
+        self._objects: list[dict[str, Any]] = []
+        self._count: dict[str, Counter[Any]] = {"name": Counter(), "id": Counter()}
+        self._next_number: dict[str, int] = {}  # of a base name: all smaller ones are taken
+        for index in range(count):
+            self.set(index, core.object(index))
+
+    def __len__(self) -> int:
+        return len(self._objects)
+
+    def set(self, index: int, info: dict[str, Any]) -> None:
+        """Replaces the attributes of an object, or adds those of the next."""
+        if index < len(self._objects):
+            self._remove(index)
+        else:
+            self._objects.append({})
+        self._objects[index] = {key: info[key] for key in self._count}
+        for key, value in self._objects[index].items():
+            self._count[key][value] += 1
+
+    def drop_last(self) -> None:
+        """Removes the last object."""
+        self._remove(len(self._objects) - 1)
+        self._objects.pop()
+
+    def _remove(self, index: int) -> None:
+        self._next_number.clear()
+        for key, value in self._objects[index].items():
+            self._count[key][value] -= 1
+
+    def is_taken(self, key: str, value: Any, index: int = -1) -> bool:
+        """Whether an object other than this one has the name or id."""
+        own = 0 <= index < len(self._objects) and self._objects[index][key] == value
+        return self._count[key][value] > own
+
+    def free_names(self, base: str, count: int) -> list[str]:
+        """The first names of base, base_2, base_3 ... that no object has."""
+        first = self._next_number.get(base, 1)
+        numbered = ((n, base if n == 1 else f"{base}_{n}") for n in itertools.count(first))
+        free = list(itertools.islice(((n, name) for n, name in numbered if not self.is_taken("name", name)), count))
+        if free:
+            self._next_number[base] = free[0][0]  # the caller may not use it
+        return [name for _, name in free]
+
+    def free_ids(self, least: int, count: int) -> list[int]:
+        """The smallest ids from this one that no object has."""
+        return list(itertools.islice((n for n in itertools.count(least) if not self.is_taken("id", n)), count))
 
 
 class Recipe:
@@ -34,6 +89,7 @@ class Recipe:
         self._steps = steps
         self._latest: dict[int, dict[str, Any]] = {}  # the last changes of each object, which later ones may join
         self._files: dict[str, str] = {}  # names of the files that were read, and their absolute paths
+        self._register: _Register | None = None  # of all objects, or all but the last one
         self.before_change: Callable[[], object] | None = None  # releases what depends on the scene as it is
         self._note_files()
 
@@ -75,6 +131,12 @@ class Recipe:
             self.before_change()
         return self.core
 
+    def register(self, count: int) -> _Register:
+        """Names and ids of the first objects of the scene."""
+        if self._register is None or len(self._register) != count:
+            self._register = _Register(self.core, count)
+        return self._register
+
     def _add(self, name: str, **arguments: Any) -> None:
         self._steps.append((name, arguments))
         self._latest.clear()
@@ -98,6 +160,15 @@ class Recipe:
         self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)
         return index
 
+    def add_instances(self, of: int, poses: npt.NDArray[np.float64], names: list[str], ids: list[int]) -> None:
+        """Adds further instances of an object's mesh; poses (N, 4, 4)."""
+        first = len(self.core)
+        self._editable().add_instances(of, poses, names, ids)
+        self._add("copies", of=of, poses=np.array(poses), names=names, ids=ids)
+        if self._register is not None and len(self._register) == first:
+            for index, (name, number) in enumerate(zip(names, ids)):
+                self._register.set(first + index, {"name": name, "id": number})
+
     def add_instance(self, of: int) -> int:
         """Adds another instance of an object's mesh; returns its index."""
         index = self._editable().add_instance(of)
@@ -108,10 +179,14 @@ class Recipe:
         """Removes the last object."""
         self._editable().drop_last()
         self._add("drop")
+        if self._register is not None and len(self._register) > len(self.core):
+            self._register.drop_last()
 
     def set_object(self, index: int, changes: dict[str, Any]) -> None:
         """Sets attributes of an object."""
         self._editable().set_object(index, changes)
+        if self._register is not None and index <= len(self._register) and ("name" in changes or "id" in changes):
+            self._register.set(index, self.core.object(index))
         kept = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in changes.items()}
         if index in self._latest:
             self._latest[index].update(kept)
@@ -178,7 +253,7 @@ class Recipe:
         return recipe
 
     def _replay(self, name: str, arguments: dict[str, Any]) -> None:
-        one_of(name, "pickled Scene, step", ("model", "models", "mesh", "copy", "drop", "set", "materials"))
+        one_of(name, "pickled Scene, step", ("model", "models", "mesh", "copy", "copies", "drop", "set", "materials"))
         if name == "model":
             self.add_model(_resolved_path(arguments), part(arguments, "options", dict))
         elif name == "models":
@@ -188,6 +263,9 @@ class Recipe:
             self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)
         elif name == "copy":
             self.add_instance(self._checked_index(arguments["of"]))
+        elif name == "copies":
+            of, poses = self._checked_index(arguments["of"]), np.ascontiguousarray(part(arguments, "poses", np.ndarray))
+            self.add_instances(of, poses, part(arguments, "names", list), part(arguments, "ids", list))
         elif name == "drop":
             self.drop_last()
         elif name == "set":

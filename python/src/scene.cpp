@@ -26,6 +26,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -452,6 +453,40 @@ std::size_t add_instance(SceneHandle& handle, std::size_t of) {
   return scene.instances.size() - 1;
 }
 
+/// Throws Error unless the pose and the names of an instance of a scene are valid; what its mesh
+/// and materials require is known. The time does not depend on the scene.
+void validate_placing(const Scene& scene, Instance instance) {
+  Scene alone;
+  alone.meshes.emplace_back();
+  alone.sources.emplace_back();
+  alone.materials.emplace_back();
+  alone.class_names.resize(std::max<std::size_t>(scene.class_names.size(), 1));
+  instance.mesh = 0;
+  instance.materials = {0};
+  alone.instances.push_back(std::move(instance));
+  validate(alone);
+}
+
+/// An instance of an object's mesh for each pose (N, 4, 4); changes nothing when it throws.
+void add_instances(SceneHandle& handle, std::size_t of, const PoseArray& poses,
+                   const std::vector<std::string>& names, const std::vector<std::uint32_t>& ids) {
+  if (poses.shape(0) != names.size() || ids.size() != names.size())
+    throw Error({"add_instances", "poses, names and ids of different numbers", "one of each"});
+  Scene& scene = handle.change();
+  std::vector<Instance> added;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Instance instance = scene.instances.at(of);
+    instance.name = names[i];
+    instance.id = ids.at(i);
+    instance.world_from_object = pose_of(poses, i, "poses");
+    validate_placing(scene, instance);
+    added.push_back(std::move(instance));
+  }
+  scene.instances.insert(scene.instances.end(), std::make_move_iterator(added.begin()),
+                         std::make_move_iterator(added.end()));
+  add_still(handle);
+}
+
 std::uint32_t class_number(Scene& scene, const std::string& name) {
   const auto found = std::find(scene.class_names.begin(), scene.class_names.end(), name);
   const auto number = static_cast<std::uint32_t>(found - scene.class_names.begin());
@@ -478,7 +513,7 @@ void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes)
   changed.hidden_from = entry<Ids>(changes, "hidden_from").value_or(changed.hidden_from);
   std::swap(scene.instances[index], changed);
   try {
-    validate(scene);
+    validate_placing(scene, scene.instances[index]);
     if (const auto scale = entry<Scale>(changes, "scale")) {
       set_scale(scene, index, {(*scale)[0], (*scale)[1], (*scale)[2]});
     }
@@ -643,6 +678,8 @@ void bind_scene(nb::module_& module) {
       .def("restore_mesh", restore_mesh, nb::arg("state"),
            nb::sig("def restore_mesh(self, state: dict[str, typing.Any]) -> int"))
       .def("add_instance", add_instance, nb::arg("of"))
+      .def("add_instances", add_instances, nb::arg("of"), nb::arg("poses"), nb::arg("names"),
+           nb::arg("ids"))
       .def("set_object", set_object, nb::arg("index"), nb::arg("changes"),
            nb::sig("def set_object(self, index: int, changes: dict[str, typing.Any]) -> None"))
       .def("mesh", mesh_of, nb::arg("index"),

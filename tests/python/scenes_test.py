@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scenes from files, models and arrays."""
 
+import copy
+
 import numpy as np
 import pytest
-from conftest import ROOT, same
+from conftest import ROOT, again, same
 
 import glidar
 
@@ -278,8 +280,8 @@ def test_unknown_objects_and_invalid_settings_raise_an_error():
     assert scene.objects[0].scale == 1.0
     with pytest.raises(glidar.Error, match="argument: 'colour'"):
         scene.add_model("builtin:box", colour="red")
-    with pytest.raises(glidar.Error, match="unit: 'ft'"):
-        glidar.Scene("builtin:box", unit="ft")
+    with pytest.raises(glidar.Error, match="unit: 'yd'"):
+        glidar.Scene("builtin:box", unit="yd")
     with pytest.raises(glidar.Error, match="sensor: the scene file has no sensor"):
         glidar.simulate(scene)
 
@@ -363,3 +365,71 @@ def test_recursive_descriptions_raise_an_error():
     endless["models"] = endless
     with pytest.raises(glidar.Error, match="levels deep"):
         glidar.Scene.from_dict(endless)
+
+
+def poses_along_x(count):
+    poses = np.tile(np.eye(4), (count, 1, 1))
+    poses[:, 0, 3] = 3.0 * np.arange(count)
+    return poses
+
+
+def test_instances_from_an_array_of_poses_are_those_added_one_by_one(camera):
+    scenes = []
+    for at_once in (True, False):
+        scene = glidar.Scene()
+        box = scene.add_mesh(BOX, FACES, name="box", class_name="crate")
+        scene.add_instance(box, name="box_3", id=3)
+        poses = poses_along_x(4)
+        added = scene.add_instances(box, poses) if at_once else [scene.add_instance(box, pose=pose) for pose in poses]
+        assert [one.name for one in added] == ["box_2", "box_4", "box_5", "box_6"]
+        assert [one.id for one in added] == [4, 5, 6, 7]
+        assert {one.class_name for one in added} == {"crate"}
+        assert len({one.id for one in scene.objects}) == 6
+        scenes.append(scene)
+    assert scenes[0] == again(scenes[0]) == copy.copy(scenes[0])
+    assert same(*(glidar.simulate(scene, camera, POSE) for scene in scenes))
+
+
+def test_invalid_instances_leave_the_scene_unchanged():
+    scene = glidar.Scene()
+    box = scene.add_mesh(BOX, FACES)
+    before = copy.copy(scene)
+    wrong = poses_along_x(3)
+    wrong[2, 0, 0] = 2.0
+    for poses, words in ((wrong, "poses"), (np.zeros((2, 3, 4)), "poses"), (np.full((1, 4, 4), np.nan), "poses")):
+        with pytest.raises(glidar.Error, match=words):
+            scene.add_instances(box, poses)
+    with pytest.raises(glidar.Error, match="belongs to another scene"):
+        before.add_instances(box, poses_along_x(1))
+    assert scene == before
+
+
+def test_adding_and_moving_instances_takes_time_that_does_not_depend_on_the_scene():
+    """Counts reads of other objects, of which adding by comparing needs one for each object before."""
+    scene = glidar.Scene()
+    box = scene.add_mesh(BOX, FACES)
+    scene.add_instances(box, poses_along_x(5000))
+    reads = []
+    core = scene._recipe.core
+    scene._recipe.core = type("Counting", (), {
+        "__getattr__": lambda self, name: getattr(core, name),
+        "__len__": lambda self: len(core),
+        "object": lambda self, index: reads.append(index) or core.object(index)})()
+    for number in range(10):
+        scene.add_instance(box, pose=np.eye(4), name=f"new {number}")
+        scene.objects[-1].name = f"renamed {number}"
+    assert len(reads) < 100
+
+
+def test_names_and_ids_that_were_given_up_are_free_again():
+    scene = glidar.Scene()
+    box = scene.add_mesh(BOX, FACES, name="box")
+    second = scene.add_instance(box)
+    assert (second.name, second.id) == ("box_2", 2)
+    second.name, second.id = "other", 9
+    assert [(one.name, one.id) for one in (scene.add_instance(box), scene.add_instance(box))] == [("box_2", 3), ("box_3", 4)]
+    with pytest.raises(glidar.Error, match="another object has"):
+        second.name = "box_3"
+    with pytest.raises(glidar.Error, match="another object has"):
+        second.id = 4
+    second.name, second.id = "other", 9
