@@ -134,19 +134,22 @@ int report_error(const std::string& message) {
 }
 
 /// The words of the command line as the options have them: `help render` is `render --help`, and
-/// options may be spelled in American English. Throws Error for `-h 480`.
-std::vector<std::string> tidied(std::vector<std::string> words) {
+/// options may be spelled in American English. A word after --help goes to `section`. Throws Error
+/// for `-h 480`.
+std::vector<std::string> tidied(std::vector<std::string> words, std::string& section) {
   if (!words.empty() && words.front() == "help") {
     words.erase(words.begin());
-    words.emplace_back("--help");
+    words.insert(words.begin() + (words.empty() ? 0 : 1), "--help");
   }
   for (std::size_t i = 0; i < words.size(); ++i) {
     std::string& word = words[i];
-    const std::string height = word == "-h" && i + 1 < words.size() ? words[i + 1] : "";
-    if (!height.empty() && height.find_first_not_of("0123456789") == std::string::npos) {
-      throw Error({"-h " + height, "-h prints the help", "",
-                   "the height of an image is --height " + height});
+    const std::string next = i + 1 < words.size() ? words[i + 1] : "";
+    const bool is_help = i > 0 && (word == "-h" || word == "--help") && !next.starts_with('-');
+    if (is_help && !next.empty() && next.find_first_not_of("0123456789") == std::string::npos) {
+      throw Error(
+          {"-h " + next, "-h prints the help", "", "the height of an image is --height " + next});
     }
+    if (is_help) section = next;
     if (!word.starts_with("--")) continue;
     const std::size_t end = std::min(word.find('='), word.size());
     word =
@@ -158,11 +161,13 @@ std::vector<std::string> tidied(std::vector<std::string> words) {
 }
 
 int parse_and_run(CLI::App& program, const Commands& commands,
-                  const std::vector<std::string>& arguments) {
+                  const std::vector<std::string>& arguments, const std::string& section) {
   try {
     program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& help_or_version) {
-    return program.exit(help_or_version);
+    if (section.empty()) return program.exit(help_or_version);
+    print_lines(stdout, section_help(chosen(program), section));
+    return kDone;
   } catch (const CLI::ArgumentMismatch& error) {
     return report_error(explain_mismatch(chosen(program), error.what()));
   } catch (const CLI::ExcludesError& error) {
@@ -226,7 +231,8 @@ std::vector<Subcommand> all_subcommands() {
           subcommand("stereo", add_stereo),
           subcommand("structured-light", add_structured_light),
           subcommand("tof", add_tof),
-          subcommand("verify", add_verify)};
+          subcommand("verify", add_verify),
+          subcommand("completion", add_completion)};
 }
 
 constexpr const char* kExamples = R"(Examples:
@@ -238,7 +244,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar sensors
   glidar verify
 More: glidar help render; also for view, stream, replay, decode, explain, info, campaign,
-sensors, schema, filter, align, stereo, structured-light, tof and verify)";
+sensors, schema, filter, align, stereo, structured-light, tof, verify and completion)";
 
 /// Parses the command line and runs the chosen subcommand; returns the exit code.
 int run_program(int argc, char** argv) {
@@ -248,12 +254,14 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", version_text(), "Print the version and the optional parts");
   program.require_subcommand(1);
   program.footer(kExamples);
-  const std::vector<std::string> arguments = tidied({argv + std::min(argc, 1), argv + argc});
+  std::string section;
+  const std::vector<std::string> arguments =
+      tidied({argv + std::min(argc, 1), argv + argc}, section);
   Commands commands;
   for (const Subcommand& one : all_subcommands()) {
     commands.emplace_back(one.name, one.add(program, arguments));
   }
-  return parse_and_run(program, commands, arguments);
+  return parse_and_run(program, commands, arguments, section);
 }
 
 }  // namespace

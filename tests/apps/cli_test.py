@@ -81,6 +81,28 @@ class Words(CliTest):
         self.assertEqual(self.succeed("help").stdout, self.succeed("--help").stdout)
         self.assertIn("did you mean --version?", self.refused("version"))
 
+    def test_help_of_a_section_lists_its_options_only(self):
+        text = self.succeed("help", "render", "fisher").stdout
+        self.assertEqual(text, self.succeed("render", "--help", "Fisher").stdout)
+        self.assertIn("--range-sigma M", text)
+        self.assertNotIn("--sensor", text)
+        self.assertIn("allowed: Options, Output", self.refused("help", "render", "nothing"))
+
+    def test_completions_know_commands_options_and_presets(self):
+        self.write("glidar.bash", self.succeed("completion", "bash").stdout)
+        for words, expected in ((["st"], "stream stereo structured-light"), (["render", "--col"], "--columns --colour-by --columns-per-turn"),
+                                (["render", "--sensor", "VLP-1"], "VLP-16"), (["help", "sch"], "schema")):
+            script = f"source glidar.bash; COMP_WORDS=(glidar {' '.join(words)}); COMP_CWORD={len(words)}; _glidar; echo ${{COMPREPLY[@]}}"
+            done = subprocess.run(["bash", "-c", script], cwd=self.folder, capture_output=True, text=True, check=True)
+            self.assertEqual(done.stdout.strip(), expected)
+
+    def test_other_shells_accept_their_completions_and_groff_the_manual_page(self):
+        for kind, program in (("zsh", ["zsh", "-n"]), ("fish", ["fish", "-n"]), ("man", ["groff", "-man", "-ww", "-z"])):
+            self.write(f"glidar.{kind}", self.succeed("completion", kind).stdout)
+            if shutil.which(program[0]):
+                done = subprocess.run([*program, f"glidar.{kind}"], cwd=self.folder, capture_output=True, text=True, check=False)
+                self.assertEqual((done.returncode, done.stderr), (0, ""), kind)
+
     def test_h_with_a_number_is_not_the_height(self):
         self.assertIn("--height 480", self.refused("render", "builtin:box", "-w", "640", "-h", "480", "-o", "a.pcd"))
 

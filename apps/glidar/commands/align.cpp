@@ -36,7 +36,7 @@ void add_align_options(CLI::App& command, AlignFlags& flags) {
   const OptionGroup cameras(command, "Cameras");
   cameras.add("--cameras", "FILE", "Both cameras and their poses (YAML)", flags.cameras);
   const OptionGroup run(command, "Run");
-  run.add_flag("--quiet", "No summary, only warnings", flags.quiet);
+  run.add_flag("-q,--quiet", "No summary, only warnings", flags.quiet);
 }
 
 constexpr const char* kAlignExamples =

@@ -30,5 +30,7 @@ Command add_stereo(CLI::App& program);
 Command add_structured_light(CLI::App& program);
 Command add_tof(CLI::App& program);
 Command add_verify(CLI::App& program);
+/// Call it last: it prints all subcommands of the program, which must outlive it.
+Command add_completion(CLI::App& program);
 
 }  // namespace glidar::app

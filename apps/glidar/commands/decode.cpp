@@ -274,7 +274,7 @@ Command add_decode(CLI::App& program) {
   command.remove_option(command.get_option("--no-sidecar"));
   command.remove_option(command.get_option("--livox-data-type"));
   remove_message_options(command);
-  OptionGroup(command, "Run").add_flag("--quiet", "No summary, only warnings", flags->quiet);
+  OptionGroup(command, "Run").add_flag("-q,--quiet", "No summary, only warnings", flags->quiet);
   return [flags] { return run_decode(*flags); };
 }
 

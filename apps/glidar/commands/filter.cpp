@@ -48,7 +48,7 @@ void add_filter_options(CLI::App& command, FilterFlags& flags) {
   camera.add("--depth-unit-mm", "MM", "Unit of the images [1]", flags.files.unit_mm,
              number(kAboveZero, kFinite, "a finite number above 0"));
   const OptionGroup run(command, "Run");
-  run.add_flag("--quiet", "No summary, only warnings", flags.quiet);
+  run.add_flag("-q,--quiet", "No summary, only warnings", flags.quiet);
 }
 
 constexpr const char* kFilterExamples =

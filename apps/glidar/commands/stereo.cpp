@@ -177,9 +177,9 @@ void add_stereo_options(CLI::App& command, StereoFlags& flags) {
   add_search_options(command, flags.options);
   add_test_options(command, flags.options);
   const OptionGroup run(command, "Run");
-  run.add("--threads", "N", "Number of threads; 0: one per processor [0]", flags.threads,
+  run.add("-j,--threads", "N", "Number of threads; 0: one per processor [0]", flags.threads,
           whole<unsigned>(0, 4096));
-  run.add_flag("--quiet", "No summary, only warnings", flags.quiet);
+  run.add_flag("-q,--quiet", "No summary, only warnings", flags.quiet);
 }
 
 constexpr const char* kSample = "builtin:dots";

@@ -184,9 +184,9 @@ void add_structured_light_options(CLI::App& command, StructuredLightFlags& flags
   output.add("--patterns", "FOLDER", "Write the images to be projected: pattern_00.png ...",
              flags.pattern_folder);
   const OptionGroup run(command, "Run");
-  run.add("--threads", "N", "Number of threads; 0: one per processor [0]", flags.threads,
+  run.add("-j,--threads", "N", "Number of threads; 0: one per processor [0]", flags.threads,
           whole<unsigned>(0, 4096));
-  run.add_flag("--quiet", "No summary, only warnings", flags.quiet);
+  run.add_flag("-q,--quiet", "No summary, only warnings", flags.quiet);
 }
 
 constexpr const char* kStructuredLightExamples =

@@ -169,9 +169,9 @@ void add_tof_options(CLI::App& command, TofFlags& flags) {
   output.add("--explain", "X,Y", "Print the phases and tests of a pixel (column, row)",
              flags.explained, parse_pixel);
   const OptionGroup run(command, "Run");
-  run.add("--threads", "N", "Number of threads; 0: one per processor [0]", flags.threads,
+  run.add("-j,--threads", "N", "Number of threads; 0: one per processor [0]", flags.threads,
           whole<unsigned>(0, 4096));
-  run.add_flag("--quiet", "No summary, only warnings", flags.quiet);
+  run.add_flag("-q,--quiet", "No summary, only warnings", flags.quiet);
 }
 
 constexpr const char* kTofSample = "builtin:disc";

@@ -2,10 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/options/help_text.hpp>
 
+#include <glidar/core/error.hpp>
+#include <glidar/core/text.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace glidar::app {
 namespace {
@@ -43,6 +50,23 @@ std::string indented(std::string_view words) {
     line += word;
   }
   return text + line + "\n";
+}
+
+std::string section_help(const CLI::App& command, const std::string& words) {
+  const auto& layout = dynamic_cast<const CLI::Formatter&>(*command.get_formatter());
+  std::vector<std::string> headings;
+  std::string text;
+  for (const CLI::Option* one : command.get_options()) {
+    const std::string& heading = one->get_group();
+    const auto is_under = [&](const CLI::Option* other) { return other->get_group() == heading; };
+    if (heading.empty() || std::ranges::find(headings, heading) != headings.end()) continue;
+    headings.push_back(heading);
+    if (lower_case(heading).find(lower_case(words)) == std::string::npos) continue;
+    text += layout.make_group(heading, false, command.get_options(is_under));
+  }
+  if (!text.empty()) return text;
+  throw Error({"--help " + words, "no options have such a heading",
+               fmt::format("{}", fmt::join(headings, ", "))});
 }
 
 void use_help_layout(CLI::App& program) {

@@ -44,7 +44,7 @@ void add_run_options(CLI::App& command, RendererOptions& options, const std::str
 
 void add_threads_option(const OptionGroup& group, RendererOptions& options) {
   constexpr unsigned kMaxThreads = 1024;
-  group.add("--threads", "N", "Number of threads; 0: one per processor [0]", options.threads,
+  group.add("-j,--threads", "N", "Number of threads; 0: one per processor [0]", options.threads,
             whole(0U, kMaxThreads));
 }
 
@@ -74,7 +74,7 @@ void add_render_options(CLI::App& command, RenderFlags& flags) {
   run.add("--duration", "S", "Write numbered frames, NAME_000000 ..., for S seconds",
           flags.duration_s, parse_number);
   forbid_together(command, {"--duration"}, {"--to"});
-  run.add_flag("--quiet", "No summary and no progress, only warnings", flags.quiet);
+  run.add_flag("-q,--quiet", "No summary and no progress, only warnings", flags.quiet);
   add_legacy_output_option(command, flags.output);
   add_woods2016_pose_options(command, flags.pose);
   OptionGroup(command, kWoods2016Heading)

@@ -298,7 +298,7 @@ void add_replay_options(CLI::App& command, StreamFlags& flags) {
   add_limit_option(command, flags);
   const OptionGroup run(command, "Run");
   add_threads_option(run, flags.render.renderer);
-  run.add_flag("--quiet", "No summary and no progress, only warnings", flags.render.quiet);
+  run.add_flag("-q,--quiet", "No summary and no progress, only warnings", flags.render.quiet);
 }
 
 void check(const CLI::App& command, const StreamFlags& flags) {

@@ -29,7 +29,9 @@ std::vector<std::string> without(const std::vector<std::string>& arguments, Name
   std::vector<std::string> kept;
   bool is_value = false;
   for (const std::string& argument : arguments) {
-    const std::string_view name = std::string_view(argument).substr(0, argument.find('='));
+    const bool is_attached = argument.size() > 2 && argument[0] == '-' && argument[1] != '-';  // -j4
+    const std::size_t end = is_attached ? 2 : argument.find('=');
+    const std::string_view name = std::string_view(argument).substr(0, end);
     const bool is_option = !is_value && (has(flags, name) || has(with_value, name));
     if (!is_option && !is_value) kept.push_back(argument);
     is_value = is_option && has(with_value, argument);
@@ -40,7 +42,7 @@ std::vector<std::string> without(const std::vector<std::string>& arguments, Name
 }  // namespace
 
 std::vector<std::string> reproducible_arguments(const std::vector<std::string>& arguments) {
-  return without(arguments, {"--quiet", "--no-cache"}, {"--threads", "--cache-folder"});
+  return without(arguments, {"-q", "--quiet", "--no-cache"}, {"-j", "--threads", "--cache-folder"});
 }
 
 void set_start_time(const std::string& value, CommandRecord& command) {

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/option_values.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/printing.hpp>
+#include <glidar/core/version.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  glidar completion bash > ~/.local/share/bash-completion/completions/glidar
+  glidar completion zsh > ~/.zfunc/_glidar        # a folder of $fpath
+  glidar completion fish > ~/.config/fish/completions/glidar.fish
+  glidar completion man > ~/.local/share/man/man1/glidar.1
+
+`./dev install` and the packages install all of them.
+Exit codes: 0 done, 2 no such shell.)";
+
+std::vector<const CLI::App*> commands_of(const CLI::App& program) {
+  return program.get_subcommands([](const CLI::App*) { return true; });
+}
+
+/// The options that have a name, not the hidden ones.
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+  return command.get_options([](const CLI::Option* option) {
+    return !option->get_lnames().empty() && !option->get_group().empty();
+  });
+}
+
+bool takes_value(const CLI::Option& option) {
+  return option.get_expected_max() > 0 && !option.get_type_name().empty();
+}
+
+/// The names with their hyphens.
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view between = " ") {
+  return fmt::format("{}", fmt::join(words, between));
+}
+
+std::string preset_names() {
+  std::vector<std::string> names;
+  for (const SensorPreset& preset : sensor_presets()) names.push_back(preset.name);
+  return joined(names);
+}
+
+std::vector<std::string> all_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options_of(command)) {
+    for (const std::string& name : names_of(*option)) names.push_back(name);
+  }
+  return names;
+}
+
+/// The text with a backslash before each of these characters.
+std::string escaped(std::string_view text, std::string_view characters) {
+  std::string result;
+  for (const char c : text) {
+    if (characters.find(c) != std::string_view::npos) result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+/// For zsh: in quotes, without what ends a description.
+std::string zsh_text(std::string_view text) {
+  std::string result;
+  for (const char c : escaped(text, "[]:")) {
+    result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return result;
+}
+
+std::string bash_script(const CLI::App& program) {
+  std::string cases;
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(program)) {
+    names.push_back(command->get_name());
+    cases +=
+        fmt::format("    {}) words='{}' ;;\n", command->get_name(), joined(all_names(*command)));
+  }
+  return fmt::format(R"(# bash completion of glidar {}
+_glidar() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words=''
+  COMPREPLY=()
+  if ((COMP_CWORD == 1)); then
+    COMPREPLY=($(compgen -W '{} help --help --version' -- "$current"))
+    return
+  fi
+  case ${{COMP_WORDS[1]}} in
+    help) words='{}' ;;
+{}  esac
+  if [[ $previous == --sensor ]]; then
+    COMPREPLY=($(compgen -W '{}' -- "$current"))
+  elif [[ $current == -* || ${{COMP_WORDS[1]}} == help ]]; then
+    COMPREPLY=($(compgen -W "$words" -- "$current"))
+  fi
+}}
+complete -o default -F _glidar glidar
+)",
+                     version(), joined(names), joined(names), cases, preset_names());
+}
+
+std::string zsh_script(const CLI::App& program) {
+  std::string commands;
+  std::string cases;
+  for (const CLI::App* command : commands_of(program)) {
+    commands += fmt::format(" '{}:{}'", command->get_name(), zsh_text(command->get_description()));
+    cases += fmt::format("    {}) _arguments -S", command->get_name());
+    for (const CLI::Option* option : options_of(*command)) {
+      const std::string help = zsh_text(option->get_description());
+      const std::string value = !takes_value(*option)           ? ""
+                                : option->check_lname("sensor") ? ":sensor:(" + preset_names() + ")"
+                                                                : ":value:_files";
+      for (const std::string& name : names_of(*option)) {
+        cases += fmt::format(" \\\n      '*{}[{}]{}'", name, help, value);
+      }
+    }
+    cases += " \\\n      '*:file:_files' ;;\n";
+  }
+  return fmt::format(R"(#compdef glidar
+# zsh completion of glidar {}
+_glidar() {{
+  local -a commands=({})
+  if ((CURRENT == 2)); then
+    _describe command commands
+    return
+  fi
+  local command=$words[2]
+  shift words
+  ((CURRENT--))
+  case $command in
+{}  esac
+}}
+_glidar "$@"
+)",
+                     version(), commands, cases);
+}
+
+std::string fish_script(const CLI::App& program) {
+  std::string text = fmt::format("# fish completion of glidar {}\n", version());
+  for (const CLI::App* command : commands_of(program)) {
+    text += fmt::format("complete -c glidar -n __fish_use_subcommand -f -a {} -d '{}'\n",
+                        command->get_name(), escaped(command->get_description(), "'\\"));
+    for (const CLI::Option* option : options_of(*command)) {
+      text += fmt::format("complete -c glidar -n '__fish_seen_subcommand_from {}'",
+                          command->get_name());
+      for (const std::string& name : option->get_snames()) text += " -s " + name;
+      for (const std::string& name : option->get_lnames()) text += " -l " + name;
+      if (takes_value(*option)) text += " -r";
+      if (option->check_lname("sensor")) text += " -a '" + preset_names() + "'";
+      text += fmt::format(" -d '{}'\n", escaped(option->get_description(), "'\\"));
+    }
+  }
+  return text;
+}
+
+/// Text of a manual page: hyphens are minus signs, and no line begins with a control character.
+std::string roff(std::string_view text) {
+  std::string result;
+  bool is_line_start = true;
+  for (const char c : text) {
+    if (is_line_start && (c == '.' || c == '\'')) result += "\\&";
+    if (c == '-' || c == '\\') result += c == '-' ? "\\" : "\\e";
+    if (c != '\\') result += c;
+    is_line_start = c == '\n';
+  }
+  return result;
+}
+
+std::string manual(const CLI::App& program) {
+  std::string text = fmt::format(
+      ".TH GLIDAR 1 \"\" \"glidar {}\" \"User Commands\"\n.SH NAME\nglidar \\- {}\n.SH SYNOPSIS\n"
+      ".B glidar\nCOMMAND [OPTIONS] ...\n.SH COMMANDS\n",
+      version(), roff(program.get_description()));
+  for (const CLI::App* command : commands_of(program)) {
+    text += fmt::format(".SS \"glidar {}\"\n{}\n", roff(command->get_name()),
+                        roff(command->get_description()));
+    for (const CLI::Option* option : options_of(*command)) {
+      const std::string value = takes_value(*option) ? " " + option->get_type_name() : "";
+      text += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", roff(joined(names_of(*option), ", ")),
+                          roff(value), roff(option->get_description()));
+    }
+    text += ".PP\n.nf\n" + roff(command->get_footer()) + "\n.fi\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+Command add_completion(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("completion", "Print completions for a shell, or the manual page");
+  const auto shell = std::make_shared<std::string>("bash");
+  command.footer(kExamples);
+  command.add_option("SHELL", *shell, "bash (default), zsh, fish; or man: the manual page");
+  return [shell, &program] {
+    using Make = std::string (*)(const CLI::App&);
+    const auto parse = one_of<Make>(
+        {{"bash", bash_script}, {"zsh", zsh_script}, {"fish", fish_script}, {"man", manual}});
+    Make make = nullptr;
+    with_option_name("SHELL", [&] { make = parse(*shell); });
+    print_lines(stdout, make(program));
+    return kDone;
+  };
+}
+
+}  // namespace glidar::app
