@@ -49,4 +49,39 @@ inline bool has_sidecar(const Format& format) {
   return format.content != Content::per_beam && !format.info.is_folder;
 }
 
+// The formats, each in a file of its own. LAS 1.4: ASPRS, LAS Specification 1.4 R15.
+
+Format pcd_format();
+Format ply_format();
+Format npz_format();
+Format csv_format();            ///< a line of field names, then a line per point
+Format las_format();            ///< point record format 6, without misses
+Format kitti_format();          ///< see kitti_cloud()
+Format kitti_folder_format();   ///< frames that are written one by one, see stage_kitti_scan()
+Format npy_format();            ///< depth, of LiDARs range, in metres
+Format range_npy_format();      ///< range in metres, for every sensor
+Format depth_png_format();      ///< 16-bit
+Format range_png_format();      ///< 16-bit
+Format depth_tiff_format();     ///< 32-bit floats
+Format woods2016_png_format();  ///< the quantized framebuffer
+Format preview_format();        ///< depth and intensity in colours
+Format transform_format();      ///< the pose of the first object as text
+Format bird_eye_format();       ///< picture of a cloud from above
+Format perspective_format();    ///< picture of a cloud in perspective
+Format rgb_png_format();        ///< ground truth; like the next three 0 where beams hit nothing
+Format normal_png_format();     ///< ground truth, 16-bit
+Format instance_png_format();   ///< ground truth, 16-bit
+Format class_png_format();      ///< ground truth, 8-bit or 16-bit
+/// OpenEXR image with a channel for each number of a pixel: depth as Z, and all columns of the
+/// cloud as 32-bit float or unsigned integer. Columns of 64-bit integers are omitted, as the
+/// format has no type for them.
+Format exr_format();
+Format ir_left_png_format();       ///< Frame::raw_images "ir_left"
+Format ir_right_png_format();      ///< Frame::raw_images "ir_right"
+Format ir_reference_png_format();  ///< Frame::raw_images "ir_reference"
+Format ir_png_format();            ///< Frame::tof_amplitude, rounded
+Format tof_npy_format();  ///< Frame::tof_images: frequencies x phase steps x rows x columns
+/// Frame::raw_images "pattern_00" ... as uint8 or uint16: images x rows x columns.
+Format patterns_npy_format();
+
 }  // namespace glidar

@@ -5,24 +5,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/formats/cloud_picture_file.hpp>
-#include <glidar/io/formats/csv_file.hpp>
-#include <glidar/io/formats/depth_png_file.hpp>
-#include <glidar/io/formats/depth_tiff_file.hpp>
-#include <glidar/io/formats/exr_file.hpp>
-#include <glidar/io/formats/kitti_file.hpp>
-#include <glidar/io/formats/kitti_folder.hpp>
-#include <glidar/io/formats/las_file.hpp>
-#include <glidar/io/formats/npy_file.hpp>
-#include <glidar/io/formats/npz_file.hpp>
-#include <glidar/io/formats/pcd_file.hpp>
-#include <glidar/io/formats/ply_file.hpp>
-#include <glidar/io/formats/preview_file.hpp>
-#include <glidar/io/formats/raw_image_file.hpp>
-#include <glidar/io/formats/tof_image_file.hpp>
-#include <glidar/io/formats/transform_file.hpp>
-#include <glidar/io/formats/truth_images.hpp>
-#include <glidar/io/formats/woods2016_png_file.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -41,6 +41,4 @@ std::filesystem::path labels_path(const std::filesystem::path& path);
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files);
 
-Format kitti_format();
-
 }  // namespace glidar

@@ -34,7 +34,4 @@ void stage_kitti_scan(const KittiScan& scan, const std::filesystem::path& folder
 /// Adds a whole text file.
 void stage_text(const std::filesystem::path& path, const std::string& text, StagedFiles& files);
 
-/// A folder for frames that are written one by one; NNNNNN is the frame's number.
-Format kitti_folder_format();
-
 }  // namespace glidar

@@ -19,10 +19,4 @@ std::string npy_header(std::string_view type, std::span<const std::size_t> shape
 /// The field of a depth image: depth as float.
 std::vector<PointField> depth_fields(const PointCloud& cloud);
 
-/// Depth in metres, of LiDARs range, as a NumPy array rows x cols of float32, NaN for no return.
-Format npy_format();
-
-/// The same of the range for every sensor.
-Format range_npy_format();
-
 }  // namespace glidar

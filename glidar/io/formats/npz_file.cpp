@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/npz_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 #include <glidar/io/formats/npz_archive.hpp>
 #include <glidar/io/formats/stored_columns.hpp>

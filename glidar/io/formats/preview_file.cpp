@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/preview_file.hpp>
+#include <glidar/io/formats/format.hpp>
 
 #include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
