@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/simulate.hpp>
 
-#include <glidar/motion/beam_poses.hpp>
+#include <glidar/math/thread_pool.hpp>
+#include <glidar/motion/motion.hpp>
 #include <glidar/motion/radial_velocity.hpp>
 #include <glidar/simulate/depth_from_images.hpp>
 #include <glidar/simulate/object_boxes.hpp>
@@ -10,10 +11,35 @@
 #include <glidar/simulate/pulse_cast.hpp>
 #include <glidar/simulate/waveforms.hpp>
 
+#include <limits>
 #include <vector>
 
 namespace glidar {
 namespace {
+
+/// If `wanted`, fills frame.beam_poses with the poses of the sensor and of the instance hit
+/// (frame.ground_truth.instance) at each beam's firing time; else clears it.
+void record_beam_poses(const Motion& motion, const Beams& beams, bool wanted,
+                       ThreadPool& thread_pool, Frame& frame) {
+  constexpr std::size_t kBeamsPerTask = 1024;
+  Frame::BeamPoses& poses = frame.beam_poses;
+  poses.world_from_sensor.resize(wanted ? beams.size() : 0);
+  poses.world_from_object.resize(wanted ? beams.size() : 0);
+  if (!wanted) return;
+  const auto place_beam = [&](std::size_t i) {
+    const std::int64_t t_ns = frame.stamp_ns + (beams.times_ns.empty() ? 0 : beams.times_ns[i]);
+    const std::uint32_t instance = frame.ground_truth.instance[i];
+    poses.world_from_sensor[i] = to_xyz_wxyz(pose_at(motion.world_from_sensor, t_ns));
+    if (instance == kInvalidId) {
+      poses.world_from_object[i].setConstant(std::numeric_limits<double>::quiet_NaN());
+    } else {
+      poses.world_from_object[i] = to_xyz_wxyz(pose_at(motion.world_from_instance[instance], t_ns));
+    }
+  };
+  thread_pool.parallel_for(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) place_beam(i);
+  });
+}
 
 /// Sizes the columns, empties those that not every frame has, and places the sensor and all
 /// objects.

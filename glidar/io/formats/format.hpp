@@ -84,4 +84,11 @@ Format tof_npy_format();  ///< Frame::tof_images: frequencies x phase steps x ro
 /// Frame::raw_images "pattern_00" ... as uint8 or uint16: images x rows x columns.
 Format patterns_npy_format();
 
+/// All of them, in the order in which they are listed to users.
+const std::vector<Format>& formats();
+
+/// The format with the longest suffix that matches the name; trailing separators of the path are
+/// ignored. Throws Error naming all formats and the nearest one.
+const Format& find_format(const std::filesystem::path& given);
+
 }  // namespace glidar

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/formats/format_table.hpp>
+#include <glidar/io/formats/format.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
