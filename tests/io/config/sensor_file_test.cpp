@@ -274,8 +274,8 @@ const BadFile kBadFiles[] = {
      "s.yaml:2:8: light: given beside 'lidar_equation'; allowed: one "
      "of "
      "light, lidar_equation; remove one of them"},
-    {"NotABoolean", with_good_optics("cull_back_faces: yes\n"),
-     "s.yaml:2:18: cull_back_faces: 'yes'; allowed: false, true"},
+    {"NotABoolean", with_good_optics("cull_back_faces: maybe\n"),
+     "s.yaml:2:18: cull_back_faces: 'maybe'; allowed: false, true"},
     {"NameIsAList", with_good_optics("name: [a]\n"),
      "s.yaml:2:7: name: a list of 1; allowed: a text that is not empty"},
     {"NameIsEmpty", with_good_optics("name: \"\"\n"),

@@ -40,12 +40,10 @@ TEST(FileFormats, AnUnknownSuffixIsReportedWithAllSuffixesAndTheNearest) {
   const std::string text = error_text([] { format_for("a.pdc"); });
   EXPECT_THAT(
       text,
-      AllOf(
-          HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
-          HasSubstr(".pcd .ply .npz .csv .las .bin .kitti .npy .depth.png .framebuffer.png .png "
-                    ".transform "
-                    ".bev.png .view.png .depth.tiff .rgb.png .normal.png .instance.png .class.png "
-                    ".exr")));
+      AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
+            HasSubstr(".pcd .ply .npz .csv .las .bin .kitti .npy .range.npy .depth.png .range.png "
+                      ".framebuffer.png .png .transform .bev.png .view.png .depth.tiff .rgb.png "
+                      ".normal.png .instance.png .class.png .exr")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
 }
