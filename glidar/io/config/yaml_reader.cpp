@@ -224,6 +224,7 @@ std::vector<YamlField> items(const YamlField& field) {
 }
 
 std::optional<YamlField> find(const YamlField& map, std::string_view key) {
+  if (!map.node.IsMap()) return std::nullopt;  // elements of a list have no keys
   for (const auto& pair : map.node) {
     if (!pair.first.IsScalar() || pair.first.Scalar() != key) continue;
     return child(map, child_path(map, pair.first.Scalar()), pair.first.Mark(), pair.second);
