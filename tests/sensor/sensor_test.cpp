@@ -12,11 +12,13 @@ namespace {
 TEST(MakeBeams, ErrorsNameTheSensor) {
   Sensor sensor;
   sensor.name = "front";
-  sensor.optics = RayTable{.rows = 1,
-                           .cols = 1,
-                           .directions = {Eigen::Vector3d::UnitX()},
-                           .times_ns = {7.0},
-                           .period_ns = 5.0};
+  RayTable table;
+  table.rows = 1;
+  table.cols = 1;
+  table.directions = {Eigen::Vector3d::UnitX()};
+  table.times_ns = {7.0};
+  table.period_ns = 5.0;
+  sensor.optics = table;
   EXPECT_EQ(error_text([&] { make_beams(sensor); }),
             "sensor 'front': optics, times: 7; allowed: from 0 to half a nanosecond before the "
             "period's end");

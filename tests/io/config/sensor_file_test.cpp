@@ -286,7 +286,7 @@ const BadFile kBadFiles[] = {
     {"TooSmallForItsUnit",
      with_good_optics("lidar_equation: {reference_reflectance: 0.8, reference_range_m: 100}\n"
                       "receiver: {pulse_ns: 1e-320}\n"),
-     "s.yaml:3:22: receiver.pulse_ns: 1e-320; allowed: a finite number above 0"},
+     "s.yaml:3:22: receiver.pulse_ns: 1e-320; allowed: nanoseconds above 0, up to 1e6"},
     {"KeyIsAList", "[a, b]: 1\n", "s.yaml:1:1: a key that is no word; allowed: words as keys"},
     {"Empty", "", "s.yaml: the file is empty; allowed: a YAML map (key: value); see docs/files.md"},
     {"OnlyAComment", "# nothing\n",
