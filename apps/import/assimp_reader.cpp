@@ -9,6 +9,7 @@
 #include <import/polygons.hpp>
 #include <import/skin.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 
 #include <assimp/importerdesc.h>
@@ -64,6 +65,7 @@ std::string importer_name(const Assimp::Importer& importer) {
     if (why.find(empty) != std::string::npos) throw no_triangles("");
   }
   std::replace(why.begin(), why.end(), '\n', ' ');
+  why = excerpt(why);  // it may quote much of the file
   for (const std::string& note : log.notes) why += "; " + note;
   if (why.find("No suitable reader") != std::string::npos) {
     throw Refusal{"not a model file of a known format",

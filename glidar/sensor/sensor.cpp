@@ -3,6 +3,7 @@
 #include <glidar/sensor/sensor.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/math/constants.hpp>
@@ -194,10 +195,16 @@ FrameInterval frame_interval(const Sensor& sensor, std::uint32_t frame) {
 }
 
 Beams make_beams(const Sensor& sensor, const FrameInterval& interval) {
-  Beams beams =
-      std::visit([&](const auto& optics) { return make_beams(optics, interval); }, sensor.optics);
-  repeat_for_returns(sensor.receiver.returns.size(), beams);
-  return beams;
+  try {
+    Beams beams =
+        std::visit([&](const auto& optics) { return make_beams(optics, interval); }, sensor.optics);
+    repeat_for_returns(sensor.receiver.returns.size(), beams);
+    return beams;
+  } catch (const Error& error) {
+    ErrorParts parts = error.parts();
+    parts.where = "sensor '" + excerpt(sensor.name) + "': " + parts.where;
+    throw Error(parts);
+  }
 }
 
 Beams make_beams(const Sensor& sensor) {

@@ -5,6 +5,7 @@
 PATH."""
 
 import fcntl
+import itertools
 import json
 import os
 import pty
@@ -119,14 +120,17 @@ class Failures(CliTest):
 
     def test_a_full_disk_names_the_bag_and_not_its_hidden_folder(self):
         limit = 400_000  # bytes of one file
-        for name in ("a.rosbag2", "a.mcap"):
+        for command, name in itertools.product((("render", "--duration", "1"), ("stream", "--frames", "10")),
+                                               ("a.rosbag2", "a.mcap")):
             done = subprocess.run(
-                ["glidar", "render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--duration", "1", "-o", name],
+                ["glidar", *command, "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "-o", name],
                 cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=MAX_WAIT_S, check=False,
                 preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))  # fmt: skip
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn(f"{name}: cannot ", done.stderr)
+            self.assertIn("raise the limit on the size of files", done.stderr)
+            self.assertNotIn("misuse", done.stderr)
             self.assertNotIn(".glidar-", done.stderr)
             self.assertEqual(self.files(), [])
 

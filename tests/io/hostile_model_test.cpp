@@ -126,6 +126,19 @@ TEST(HostileModels, TheTiniestTriangleKeepsItsCorners) {
   EXPECT_EQ(model.mesh.positions_m.at(1).x(), 1e-42F);
 }
 
+TEST(HostileModels, ErrorsQuoteLittleOfAFile) {
+  const testing::TestFolder folder;
+  const fs::path file = folder.write("a.fbx",
+                                     "; FBX 7.4.0 project file\n"
+                                     "FBXHeaderExtension: {\n\tFBXVersion: 7400\n}\n"
+                                     "Objects: {\n\tGeometry: \"" +
+                                         std::string(5000, 'x') + "\" {\n\t}\n}\n");
+  const std::string text = testing::load_error(file.string());
+  EXPECT_THAT(text, HasSubstr("cannot be read"));
+  EXPECT_THAT(text, HasSubstr("xxx"));
+  EXPECT_LT(text.size(), file.string().size() + 400);
+}
+
 TEST(HostileModels, ACrashIsReportedWithItsSignal) {
   GLIDAR_SKIP_SANITIZED();
   GLIDAR_NEEDS_DATA();

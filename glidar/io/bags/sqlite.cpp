@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -296,8 +297,10 @@ void Database::fail() const {
     throw Error({path_, std::string("cannot be read by SQLite: ") + reason, "a complete bag",
                  "copy the bag again: it may be damaged"});
   }
+  const bool is_limited = database_ && sqlite3_system_errno(database_.get()) == EFBIG;
   throw Error({path_, std::string("cannot be written by SQLite: ") + reason, "",
-               "free space on the disk, or write to another folder"});
+               is_limited ? "raise the limit on the size of files (ulimit -f)"
+                          : "free space on the disk, or write to another folder"});
 }
 
 Statement::Statement(const Database& database, std::string_view sql) : database_(&database) {
@@ -328,8 +331,8 @@ void Statement::bind(int parameter, std::span<const std::byte> bytes) {
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
+  reset();  // also after an error, which stays that of the database
   if (code != SQLITE_DONE) database_->fail();
-  reset();
   return false;
 }
 

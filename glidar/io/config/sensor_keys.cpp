@@ -43,12 +43,26 @@ void set_defaults(Sensor& sensor) {
   sensor.rate_hz = spinning != nullptr ? spinning->rotation_hz : kDefaultLidarRate_hz;
 }
 
+/// Runs a check of the sensor. Its error gets the place of a key in the file, and `in` after what
+/// was found.
+template <class Check>
+void check_in_file(const FieldVisitor& visitor, const char* key, const char* in,
+                   const Check& check) {
+  if (!visitor.is_reading()) return;
+  try {
+    check();
+  } catch (const Error& error) {
+    const ErrorParts& parts = error.parts();
+    visitor.reject(key, parts.found + in, parts.allowed, parts.remedy);
+  }
+}
+
 void visit_scan(Sensor& sensor, FieldVisitor& visitor) {
   visitor.number(
       {"rate_hz", "frames per second; of a spinning sensor turns, of a line scanner scans",
        kUnitHertz, false, "30 for cameras, 10 for others, `ouster`: as in its metadata"},
       kAboveZero, sensor.rate_hz);
-  if (visitor.is_reading()) set_rate(sensor, sensor.rate_hz);
+  check_in_file(visitor, "rate_hz", "", [&] { set_rate(sensor, sensor.rate_hz); });
   visitor.number({"wavelength_nm", "of the light", kUnitNanometre, false, "unknown"},
                  {100.0, 20000.0, false, "nanometres from 100 to 20000"}, sensor.wavelength_m);
   visit_object(visitor, {"limits", "distances that are reported"}, sensor.limits);
@@ -73,20 +87,6 @@ void visit_light(Sensor& sensor, FieldVisitor& visitor) {
       sensor.footprint);
   const auto receiver = [&](FieldVisitor& nested) { describe(sensor.receiver, nested); };
   visitor.object({"receiver", "echoes of pulses"}, is_pulsed, FieldVisitor::Describe(receiver));
-}
-
-/// Runs a check of the sensor. Its error gets the place of a key in the file, and `in` after what
-/// was found.
-template <class Check>
-void check_in_file(const FieldVisitor& visitor, const char* key, const char* in,
-                   const Check& check) {
-  if (!visitor.is_reading()) return;
-  try {
-    check();
-  } catch (const Error& error) {
-    const ErrorParts& parts = error.parts();
-    visitor.reject(key, parts.found + in, parts.allowed, parts.remedy);
-  }
 }
 
 void visit_weather(Sensor& sensor, FieldVisitor& visitor) {

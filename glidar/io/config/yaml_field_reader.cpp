@@ -7,12 +7,22 @@
 #include <glidar/io/model/builtin_models.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace glidar {
 namespace {
 
 std::vector<std::string> words_of(std::span<const char* const> words) {
   return {words.begin(), words.end()};
+}
+
+/// A number in metres, seconds or radians. Rejects one that becomes zero or infinite in them.
+double scaled(const YamlField& field, const NumberRule& rule, const FieldUnit& unit) {
+  const double given = number(field, rule);
+  const double value = given * unit.size;
+  if ((value == 0.0) != (given == 0.0) || std::isfinite(value) != std::isfinite(given))
+    reject(field, content_text(field), rule.allowed);
+  return value;
 }
 
 /// The alternative that a map selects.
@@ -57,7 +67,7 @@ class FieldReader final : public FieldVisitor {
   [[nodiscard]] Mode mode() const override { return Mode::read; }
 
   void number(const FieldInfo& field, const NumberRule& rule, double& value) override {
-    if (const auto given = value_of(field)) value = glidar::number(*given, rule) * field.unit.size;
+    if (const auto given = value_of(field)) value = scaled(*given, rule, field.unit);
   }
   void whole_number(const FieldInfo& field, const WholeRule& rule, std::uint32_t& value) override {
     if (const auto given = value_of(field))

@@ -254,6 +254,7 @@ std::vector<YamlField> items(const YamlField& field) {
 }
 
 std::optional<YamlField> find(const YamlField& map, std::string_view key) {
+  if (!map.node.IsMap()) return std::nullopt;  // elements of a list have no keys
   for (const auto& pair : map.node) {
     if (!pair.first.IsScalar()) continue;
     if (pair.first.Scalar() != key && british(pair.first.Scalar()) != key) continue;

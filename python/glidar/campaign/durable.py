@@ -11,14 +11,16 @@ from pathlib import Path
 from glidar import Error
 
 THREADS = 8  # a journal commits the syncs of several threads together
-NO_SPACE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+#: What makes room for a file, by the error of a write.
+NO_SPACE = {errno.ENOSPC: "make room", errno.EDQUOT: "make room",
+            errno.EFBIG: "raise the limit on the size of files (ulimit -f)"}
 #: POSIX lets a file system reject the sync of a folder (EINVAL); FUSE and network file systems do (ENOTSUP). The
 #: durability of their names depends on the file system.
 FOLDER_SYNC_UNSUPPORTED = {errno.EINVAL, errno.ENOTSUP}
 
 
 def _failure(path, error):
-    remedy = ("make room and run the same command again to resume" if error.errno in NO_SPACE else
+    remedy = (f"{NO_SPACE[error.errno]} and run the same command again to resume" if error.errno in NO_SPACE else
               "check the disk and run the same command again to resume; --no-durable does not sync")
     return Error(str(path), f"it cannot be synced to the disk: {error.strerror}", "", remedy)
 

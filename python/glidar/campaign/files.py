@@ -44,7 +44,7 @@ def write_error(path, error):
     if error.errno in disk.NO_SPACE:
         return Error(str(path), f"it cannot be written: {os.strerror(error.errno)}",
                      "a disk with room for all outputs",
-                     "make room and run the same command again to resume")
+                     f"{disk.NO_SPACE[error.errno]} and run the same command again to resume")
     return Error(str(path), f"it cannot be written: {error.strerror or error}", "", "")
 
 

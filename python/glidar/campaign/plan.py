@@ -127,9 +127,12 @@ def _auto_shard_trials(beams):
     return min(MAX_SHARD_TRIALS, max(MIN_SHARD_TRIALS, trials))
 
 
-def _read_sensor(name, folder, loaded, mode):
-    path, variant = sensor_files.find(name, folder)
-    return inputs.read(name, path, loaded, variant, mode or "")
+def _read_sensor(name, spec, loaded):
+    try:
+        path, variant = sensor_files.find(name, spec.file.resolve().parent)
+    except Error as error:
+        raise Error(f"{spec.file}: {error.where}", error.found, error.allowed, error.remedy) from None
+    return inputs.read(name, path, loaded, variant, spec.mode or "")
 
 
 def make_plan(spec):
@@ -137,7 +140,7 @@ def make_plan(spec):
     folder = spec.file.resolve().parent
     loaded = {}
     scenes = tuple(inputs.read(name, folder / name, loaded) for name in spec.scenes.names)
-    sensors = tuple(_read_sensor(name, folder, loaded, spec.mode) for name in spec.sensors.names)
+    sensors = tuple(_read_sensor(name, spec, loaded) for name in spec.sensors.names)
     _require_some(scenes, f"{spec.file}: scene")
     _require_some(sensors, f"{spec.file}: sensor")
     _check_variations(spec, scenes, "scene")

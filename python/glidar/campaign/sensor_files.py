@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sensor files of a campaign, and the sensor properties that a plan needs."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,9 +19,10 @@ class SensorProperties:
 def find(name, folder):
     """The path of a sensor file and the name of its variant or "": relative to the campaign file, or of a preset."""
     beside, mark, variant = name.rpartition("#")
-    if mark and not (Path(folder) / name).is_file() and beside.endswith((".yaml", ".yml")):
+    is_file = os.path.isfile(Path(folder) / name)  # false too for names that the system refuses, such as long ones
+    if mark and not is_file and beside.endswith((".yaml", ".yml")):
         return Path(folder) / beside, variant
-    if (Path(folder) / name).is_file() or name.endswith((".yaml", ".yml")):
+    if is_file or name.endswith((".yaml", ".yml")):
         return Path(folder) / name, ""
     path, variant = _core.sensor_file(name)
     return Path(path), variant

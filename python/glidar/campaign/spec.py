@@ -63,13 +63,13 @@ class Spec:
 def _read_source(field):
     """A name; {choice: [names], weights: [..]}; or {grid: [names]}: one after the other."""
     if isinstance(field.node, yaml.ScalarNode):
-        return Source((yf.text(field),), Constant(0))
+        return Source((yf.name(field),), Constant(0))
     found = yf.entries(field)
     if "grid" in found:
         yf.require_keys(field, ["grid"])
-        names = tuple(yf.text(item) for item in yf.items(found["grid"]))
+        names = tuple(yf.name(item) for item in yf.items(found["grid"]))
         return Source(names, Grid(tuple(range(len(names)))))
-    distribution = read_choice(field, yf.text)
+    distribution = read_choice(field, yf.name)
     indices = tuple(range(len(distribution.values)))
     return Source(distribution.values, Choice(indices, distribution.weights))
 

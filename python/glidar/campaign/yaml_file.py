@@ -16,6 +16,7 @@ from glidar.campaign import files
 MAX_BYTES = 2 << 20
 MAX_NODES = 1_000_000  # of a file with expanded aliases, plus NODES_PER_BYTE for each byte
 NODES_PER_BYTE = 2
+MAX_NAME_BYTES = 4096  # of a path: the limit of Linux
 MAX_WORD_LENGTH = 200  # for which a similar key is suggested
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
@@ -242,6 +243,14 @@ def text(field):
     if not isinstance(node, yaml.ScalarNode) or node.value == "":
         reject(field, describe(field), "a text")
     return node.value
+
+
+def name(field):
+    """The path of a file, or a name that is looked up."""
+    found = text(field)
+    if len(found.encode()) > MAX_NAME_BYTES:
+        reject(field, describe(field), f"a text of at most {MAX_NAME_BYTES} bytes")
+    return found
 
 
 def one_of(field, words):

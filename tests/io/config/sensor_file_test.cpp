@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::EndsWith;
+using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 Sensor load(const std::string& content) {
@@ -280,6 +281,12 @@ const BadFile kBadFiles[] = {
      "s.yaml:2:7: name: a list of 1; allowed: a text that is not empty"},
     {"NameIsEmpty", with_good_optics("name: \"\"\n"),
      "s.yaml:2:7: name: the text \"\"; allowed: a text that is not empty"},
+    {"RateOutOfRange", with_good_optics("rate_hz: 1e15\n"),
+     "s.yaml:2:10: rate_hz: 1e+15; allowed: frames per second from 1e-6 to 1e9"},
+    {"TooSmallForItsUnit",
+     with_good_optics("lidar_equation: {reference_reflectance: 0.8, reference_range_m: 100}\n"
+                      "receiver: {pulse_ns: 1e-320}\n"),
+     "s.yaml:3:22: receiver.pulse_ns: 1e-320; allowed: nanoseconds above 0, up to 1e6"},
     {"KeyIsAList", "[a, b]: 1\n", "s.yaml:1:1: a key that is no word; allowed: words as keys"},
     {"Empty", "", "s.yaml: the file is empty; allowed: a YAML map (key: value); see docs/files.md"},
     {"OnlyAComment", "# nothing\n",
@@ -307,6 +314,16 @@ const BadFile kBadFiles[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SensorFileError, ::testing::ValuesIn(kBadFiles), bad_file_name);
+
+TEST(SensorFile, AListWhereAMapBelongsHasAPlace) {
+  const TestFolder folder;
+  for (const char* key : {"limits", "light", "lidar_equation", "footprint", "receiver", "weather",
+                          "doppler", "depth_camera"}) {
+    const auto file = folder.write("s.yaml", with_good_optics(std::string(key) + ": [[1]]\n"));
+    EXPECT_THAT(error_of(folder, [&] { load_sensor_file(file); }),
+                AllOf(StartsWith("s.yaml:2:"), HasSubstr(key), HasSubstr("allowed: ")));
+  }
+}
 
 // The words between are those of yaml-cpp, which depend on its version.
 TEST(SensorFile, BrokenSyntaxHasAPlaceAndACure) {

@@ -224,7 +224,7 @@ def test_a_full_disk_is_reported_and_the_campaign_can_resume(campaign):
         resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
 
     printed = campaign.run("out", code=2, preexec_fn=limit)
-    assert "cannot be written" in printed and "again to resume" in printed
+    assert "cannot be written" in printed and "ulimit -f) and run the same command again to resume" in printed
     assert "Traceback" not in printed
     campaign.run("out")
     campaign.run("whole")

@@ -103,6 +103,8 @@ outputs:
     ("trials: 10", "trials: 10\noutputs: {pcd: {columns: [ranges]}}", ["'ranges'", "xyz, true_xyz"]),
     ("trials: 10", "trials: 10\noutputs: {kitti: 1}", ["1", "true or false"]),
     ("trials: 10", "trials: [", ["expected"]),
+    ("camera.yaml", "x" * 4097, ["2:9", "sensor", "at most 4096 bytes"]),
+    ("scene: scene.yaml", f"scene: {{grid: [a, {'x' * 4097}]}}", ["1:19", "grid[1]", "at most 4096 bytes"]),
 ])
 def test_errors_state_their_line_and_column(tmp_path, old, new, words):
     assert old in BASE
@@ -122,6 +124,14 @@ def test_files_that_are_not_campaigns_are_rejected(tmp_path, data, words):
     path.write_bytes(data)
     with pytest.raises(Error, match=words):
         spec.read_spec(path)
+
+
+@pytest.mark.parametrize("name", ["VLP-61", "x" * 300])  # 255 bytes are the limit of a name in most file systems
+def test_an_unknown_sensor_is_rejected_with_the_file_that_names_it(tmp_path, name):
+    (tmp_path / "scene.yaml").write_text("models: [{model: 'builtin:box'}]\n")
+    with pytest.raises(Error, match="is neither a file nor the name of a sensor") as caught:
+        plan.make_plan(read(tmp_path, BASE.replace("camera.yaml", name)))
+    assert caught.value.where == f"{tmp_path / 'campaign.yaml'}: sensor"
 
 
 def test_a_missing_file_is_rejected(tmp_path):
