@@ -62,7 +62,7 @@ std::uint64_t key(const VisibleCluster& cluster, std::uint32_t index) {
 class RasterRenderer final : public Renderer {
  public:
   explicit RasterRenderer(std::shared_ptr<CpuBase> base)
-      : base_(std::move(base)), triangles_(scene(), "raster") {
+      : base_(std::move(base)), triangles_(scene()) {
     for (std::size_t i = 0; i < scene().meshes.size(); ++i) {
       const Mesh& mesh = scene().meshes[i];
       packed_.emplace_back(mesh, base_->resolver.distinct(i));
