@@ -338,49 +338,48 @@ void enter_four(uint node, bool is_in_tree) {
 }
 
 // Visits the frames of a range one after the other, or those that the tree over the instances
-// finds. In one loop, because drivers copy a function to each of its calls.
+// finds. Loops of their own for frames, nodes and triangles let the threads of a group, and the
+// lanes of a vector of the processor, do the same work at a time (T. Aila and S. Laine,
+// "Understanding the Efficiency of Ray Traversal on GPUs", 2009).
 void trace(uint first, uint end, uint tree) {
   bool is_in_tree = tree != kNone;
-  bool is_new = true;  // the frame is entered at its root
   uint entered = is_in_tree ? tree : first < end ? first++ : kNone;
-  if (entered == kNone) return;
-  other_low = kFar;
-  nearest_slot = kNone;
-  for (;;) {
-    if (entered != kNone) {
-      leave_frame();
-      enter_frame(entered);
-      if (is_new) next = mesh.x;
-      entered = kNone;
+  bool is_new = true;  // the frame is entered at its root
+  while (entered != kNone) {
+    enter_frame(entered);
+    entered = kNone;
+    if (is_new) next = mesh.x;
+    for (;;) {
+      pop();
+      while (next < kLeafBit) {
+        uint visited = next;
+        next = kNone;
+        enter_four(16u * visited, is_in_tree);
+        enter_four(16u * visited + 1u, is_in_tree);
+        pop();
+      }
+      if (next == kNone || is_in_tree) break;
+      uint slot = next & 0x1ffffffu;
+      uint last = slot + (next >> 25 & 63u);
+      for (; slot <= last; ++slot) test_triangle(slot);
+      next = kNone;
+      if (other_low <= -kFar) break;
     }
-    pop();
-    if (other_low <= -kFar || others_low <= -kFar_m) break;  // it is undecided
-    if (next == kNone) {
-      if (is_in_tree) break;
+    leave_frame();
+    if (others_low <= -kFar_m) break;  // it is undecided
+    if (is_in_tree && next != kNone) {
+      entered = first + (next & ~kLeafBit);
+      next = kNone;
+      is_in_tree = false;
+      is_new = true;
+      base = count;
+    } else if (!is_in_tree) {
       is_new = tree == kNone;
       is_in_tree = !is_new;
       entered = is_in_tree ? tree : first < end ? first++ : kNone;
       base = 0u;
-      if (entered == kNone) break;
-      continue;
-    }
-    uint visited = next;
-    next = kNone;
-    if ((visited & kLeafBit) == 0u) {
-      enter_four(16u * visited, is_in_tree);
-      enter_four(16u * visited + 1u, is_in_tree);
-    } else if (is_in_tree) {
-      entered = first + (visited & ~kLeafBit);
-      is_in_tree = false;
-      is_new = true;
-      base = count;
-    } else {
-      uint slot = visited & 0x1ffffffu;
-      uint last = slot + (visited >> 25 & 63u);
-      for (; slot <= last; ++slot) test_triangle(slot);
     }
   }
-  leave_frame();
 }
 
 dvec3 beam_vector(uint index) {
