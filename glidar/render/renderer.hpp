@@ -106,7 +106,7 @@ struct RendererOptions {
 /// Names of all renderers.
 const std::vector<std::string>& renderer_kinds();
 
-/// The kind that a name stands for: "opengl" is another name of "gpu".
+/// The kind of this name: "opengl" is another name of "gpu".
 std::string renderer_kind(const std::string& name);
 
 /// Builds a renderer over a valid scene, which must outlive it. Poses may change with every cast.

@@ -65,16 +65,16 @@ TEST_P(Rasterizer, EqualsRaysOnTheBunny) {
   }
 }
 
-TEST_P(Rasterizer, DrawsImagesLargerThanOneTile) {
+TEST_P(Rasterizer, DrawsImagesOfManyTiles) {
   const Scene scene = builtin_scene("torus");
-  PinholeIntrinsics k{.width = 2500, .height = 2100, .fx = 9000.0, .fy = 7000.0};
-  k.cx = 1100.25;
-  k.cy = 1300.75;
+  PinholeIntrinsics k{.width = 900, .height = 500, .fx = 3200.0, .fy = 1700.0};
+  k.cx = 400.25;
+  k.cy = 310.75;
   const Pose pose = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Beams large = pinhole_beams(k);
   EXPECT_GT(expect_bits_of_rays(
                 scene, {.beams = large, .world_from_sensor = pose, .hit_columns = kAllHitColumns}),
-            500'000U);
+            40'000U);
 }
 
 TEST_P(Rasterizer, AcceptsAnyPrincipalPointFocalLengthsAndPixelCentre) {

@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kUndecided = 0xfffffffeU;
 struct FoundHits {
   /// Per beam the primitive, kNone or kUndecided; with has_instances its instance follows.
   std::span<const std::uint32_t> ids;
-  std::span<const double> range_m;  ///< of decided hits; empty: was not asked for
+  std::span<const double> range_m;  ///< of decided hits; empty: not requested
   bool has_instances = false;
   std::uint32_t instance = kNone;  ///< of all hits, without has_instances
 };

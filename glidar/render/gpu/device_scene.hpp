@@ -57,7 +57,7 @@ class DeviceScene {
 
   void bind() const;
   [[nodiscard]] const DeviceMesh& mesh(std::uint32_t mesh) const { return meshes_[mesh]; }
-  /// A bit for each slot of an instance whose material has an alpha mask; 31 stands for the rest.
+  /// A bit for each slot of an instance whose material has an alpha mask; 31 is that of the rest.
   [[nodiscard]] std::uint32_t masked_slots(std::uint32_t instance) const {
     return masked_slots_[instance];
   }

@@ -43,6 +43,41 @@ bool are_alike(const CastRequest& a, const CastRequest& b) {
          b.targets.empty() && needs_range_only(a.hit_columns) == needs_range_only(b.hit_columns);
 }
 
+// Short loops over plain arrays, so that they become vectors.
+
+/// Copies ids; returns whether the device decided all beams. For undecided beams, `primitive` is
+/// kUndecided and `instance` unspecified.
+bool copy_ids(const gpu::FoundHits& found, BeamRange run, Hits& hits) {
+  const std::uint32_t* const ids = found.ids.data();
+  std::uint32_t* const primitive = hits.primitive.data();
+  std::uint32_t* const instance = hits.instance.data();
+  std::uint32_t undecided = 0;
+  if (found.has_instances) {
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      primitive[i] = ids[2 * i];
+      instance[i] = ids[2 * i + 1];
+      undecided |= static_cast<std::uint32_t>(ids[2 * i] == gpu::kUndecided);
+    }
+  } else {
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      primitive[i] = ids[i];
+      instance[i] = ids[i] == kInvalidId ? kInvalidId : found.instance;
+      undecided |= static_cast<std::uint32_t>(ids[i] == gpu::kUndecided);
+    }
+  }
+  return undecided == 0;
+}
+
+/// Copies ranges; the device leaves those of misses unset.
+void copy_ranges(const gpu::FoundHits& found, BeamRange run, Hits& hits) {
+  const double* const from = found.range_m.data();
+  const std::uint32_t* const instance = hits.instance.data();
+  double* const range_m = hits.range_m.data();
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    range_m[i] = instance[i] == kInvalidId ? kNaN : from[i];
+  }
+}
+
 /// Takes over what the device found for a request, and casts what it did not decide.
 class FoundHitsReader {
  public:
@@ -51,17 +86,8 @@ class FoundHitsReader {
       : base_(base), request_(request), found_(found), hits_(hits) {}
 
   void operator()(BeamRange run) const {
-    bool is_decided = true;
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      const std::uint32_t primitive = found_.ids[found_.has_instances ? 2 * i : i];
-      const bool is_hit = primitive < gpu::kUndecided;
-      is_decided = is_decided && primitive != gpu::kUndecided;
-      hits_.primitive[i] = is_hit ? primitive : kInvalidId;
-      hits_.instance[i] = !is_hit                ? kInvalidId
-                          : found_.has_instances ? found_.ids[2 * i + 1]
-                                                 : found_.instance;
-      if (has_ranges()) hits_.range_m[i] = is_hit ? found_.range_m[i] : kNaN;
-    }
+    const bool is_decided = copy_ids(found_, run, hits_);
+    if (has_ranges()) copy_ranges(found_, run, hits_);
     if (!is_decided) decide(run);
     if (!has_ranges() || !request_.hit_columns.depth) return;
     for (std::size_t i = run.begin; i < run.end; ++i) {
@@ -72,18 +98,20 @@ class FoundHitsReader {
  private:
   [[nodiscard]] bool has_ranges() const { return !found_.range_m.empty(); }
 
+  /// Casts the undecided beams.
   void decide(BeamRange run) const {
     HitBatch batch;
     unsigned used = 0;
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      if (found_.ids[found_.has_instances ? 2 * i : i] != gpu::kUndecided) continue;
+      if (hits_.primitive[i] != gpu::kUndecided) continue;
+      write_misses({}, i, 1, hits_);
       batch.block.beam[used++] = i;
       if (used == kLanes) find(batch, std::exchange(used, 0));
     }
     if (used > 0) find(batch, used);
   }
 
-  /// Casts up to kLanes beams; unused lanes repeat the first.
+  /// Casts up to kLanes beams and writes what they hit over misses; unused lanes repeat the first.
   void find(HitBatch& batch, unsigned used) const {
     const Beams& beams = request_.beams;
     HitBlock& block = batch.block;
@@ -100,7 +128,7 @@ class FoundHitsReader {
       hits_.instance[block.beam[lane]] = block.instance[lane];
       hits_.primitive[block.beam[lane]] = block.primitive[lane];
     });
-    if (has_ranges()) base_.resolver.write_batch(beams, request_.hit_columns, batch, hits_);
+    if (has_ranges()) base_.resolver.write_batch(beams, {}, batch, hits_);
   }
 
   const CpuBase& base_;

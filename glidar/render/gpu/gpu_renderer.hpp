@@ -10,8 +10,8 @@
 namespace glidar {
 
 /// Ray casting in compute shaders of OpenGL 4.3, on a GPU or in software, without a display. Hits
-/// have the bits of rays for every request: the device finds the triangle and, if nothing else is
-/// asked for, the range of all beams for which it can prove the result; the processor casts the
+/// have the bits of rays for every request: the device finds the triangle and, if no more is
+/// requested, the range of all beams for which it can prove the result; the processor casts the
 /// others. See docs/internals/gpu.md. Throws Error where the device cannot do this exactly.
 std::unique_ptr<Renderer> make_gpu_renderer(const Scene& scene, const RendererOptions& options);
 
