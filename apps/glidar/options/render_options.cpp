@@ -26,6 +26,12 @@ void add_fisher_options(CLI::App& command, FisherFlags& flags) {
 
 }  // namespace
 
+RendererOptions hit_renderer(const RenderFlags& flags) {
+  RendererOptions options = flags.renderer;
+  if (flags.quantized_framebuffer) options.kind = "auto";
+  return options;
+}
+
 std::string renderer_name(const RenderFlags& flags) {
   return flags.renderer.kind + (flags.quantized_framebuffer ? ", quantized framebuffer" : "");
 }

@@ -303,7 +303,7 @@ void set_imus(const RenderFlags& flags, const SceneFile& loaded, PreparedScene& 
 void make_renderers(const RenderFlags& flags, PreparedScene& prepared) {
   std::optional<SilencedLibraries> silenced;
   if (renderer_kind(flags.renderer.kind) == "gpu") silenced.emplace();
-  prepared.renderer = make_renderer(prepared.scene, flags.renderer);
+  prepared.renderer = make_renderer(prepared.scene, hit_renderer(flags));
   if (flags.quantized_framebuffer) {
     prepared.woods2016_camera = make_woods2016_camera(prepared.scene, flags.renderer);
   }

@@ -72,18 +72,14 @@ std::vector<std::uint32_t> append_triangles(const Mesh& mesh, const MeshTree& tr
 void append_nodes(const MeshTree& tree, const std::vector<std::uint32_t>& first,
                   std::vector<TreeNode>& nodes) {
   const auto root = static_cast<std::uint32_t>(nodes.size());
+  const auto convert = [&](std::int32_t child) {
+    if (child == rays::kNoChild) return kNone;
+    if (child >= 0) return root + static_cast<std::uint32_t>(child);
+    const auto leaf = static_cast<std::uint32_t>(~child);
+    return kLeafBit | (tree.clusters[leaf].count - 1) << kLeafCountShift | first[leaf];
+  };
   for (TreeNode node : tree.nodes) {
-    for (std::int32_t& child : node.child) {
-      if (child == rays::kNoChild) {
-        child = std::bit_cast<std::int32_t>(kNone);
-      } else if (child >= 0) {
-        child = static_cast<std::int32_t>(root + static_cast<std::uint32_t>(child));
-      } else {
-        const auto leaf = static_cast<std::uint32_t>(~child);
-        child = std::bit_cast<std::int32_t>(
-            kLeafBit | (tree.clusters[leaf].count - 1) << kLeafCountShift | first[leaf]);
-      }
-    }
+    for (std::int32_t& child : node.child) child = std::bit_cast<std::int32_t>(convert(child));
     nodes.push_back(node);
   }
 }
@@ -166,7 +162,7 @@ DeviceScene::DeviceScene(const Resolver& resolver, ThreadPool& thread_pool) {
   for (const Instance& instance : scene.instances) {
     masked_slots_.push_back(masked_slots_of(scene, instance));
   }
-  static_assert(sizeof(TreeNode) == 16 * 4 * sizeof(float));
+  static_assert(sizeof(TreeNode) == std::size_t{64} * sizeof(float));
   static_assert(sizeof(TrianglePlane) == 4 * sizeof(double));
   fill<TreeNode>(buffers_[0], arrays.nodes, GL_STATIC_DRAW);
   fill<DeviceTriangle>(buffers_[1], arrays.triangles, GL_STATIC_DRAW);

@@ -25,6 +25,9 @@ constexpr std::size_t kUnderWay = 3;
 /// hits is small.
 constexpr std::size_t kMaxBeams = std::size_t{1} << 22U;
 
+/// Instances of all views of a part, unless a single request has more.
+constexpr std::size_t kMaxInstances = std::size_t{1} << 17U;
+
 /// Consecutive requests that the device casts together, or one that the host casts.
 struct Part {
   std::size_t first;
@@ -182,7 +185,7 @@ class GpuRenderer final : public Renderer {
         : program(opengl::make_compute_program(
               {opengl::shader_text("arithmetic.glsl"), opengl::shader_text("cast.comp.glsl")},
               {base.resolver.scene().instances.size() > 1 ? "STACK 24u" : "STACK 16u",
-               "GROUP 64u"})),
+               "GROUP 64"})),
           scene(base.resolver, base.thread_pool) {}
     opengl::Program program;
     gpu::DeviceScene scene;
@@ -192,9 +195,11 @@ class GpuRenderer final : public Renderer {
 
   void divide(std::span<const CastRequest> requests) {
     parts_.clear();
+    const std::size_t instances = base_.resolver.scene().instances.size();
     for (std::size_t i = 0; i < requests.size(); ++i) {
       const bool joins = !parts_.empty() && are_alike(requests[parts_.back().first], requests[i]) &&
-                         (parts_.back().count + 1) * requests[i].beams.size() <= kMaxBeams;
+                         (parts_.back().count + 1) * requests[i].beams.size() <= kMaxBeams &&
+                         (parts_.back().count + 1) * instances <= kMaxInstances;
       if (joins) {
         ++parts_.back().count;
       } else {
