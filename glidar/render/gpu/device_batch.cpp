@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/gpu/device_batch.hpp>
 
+#include <glidar/render/opengl/program.hpp>
 #include <glidar/render/rays/beam_search.hpp>
 
 #include <algorithm>
@@ -48,6 +49,12 @@ double max_reach_m(const CastRequest& request, const rays::SceneTrees& trees, st
 }
 
 }  // namespace
+
+opengl::Program make_cast_program(const Scene& scene) {
+  return opengl::make_compute_program(
+      {opengl::shader_text("arithmetic.glsl"), opengl::shader_text("cast.comp.glsl")},
+      {scene.instances.size() > 1 ? "STACK 24u" : "STACK 16u", "GROUP 64"});
+}
 
 DeviceBatch::~DeviceBatch() {
   if (done_ != nullptr) glDeleteSync(done_);

@@ -26,6 +26,9 @@ struct FoundHits {
   std::uint32_t instance = kNone;  ///< of all hits, without has_instances
 };
 
+/// The program that casts beams into a scene.
+opengl::Program make_cast_program(const Scene& scene);
+
 /// Views that the device casts together: requests with the same beams, culling and columns.
 class DeviceBatch {
  public:

@@ -7,7 +7,6 @@
 #include <glidar/render/gpu/device_check.hpp>
 #include <glidar/render/opengl/draw_state.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
-#include <glidar/render/opengl/program.hpp>
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/rays/tile_cast.hpp>
 
@@ -182,10 +181,7 @@ class GpuRenderer final : public Renderer {
   /// Objects in the memory of the graphics device.
   struct GpuResources {
     explicit GpuResources(CpuBase& base)
-        : program(opengl::make_compute_program(
-              {opengl::shader_text("arithmetic.glsl"), opengl::shader_text("cast.comp.glsl")},
-              {base.resolver.scene().instances.size() > 1 ? "STACK 24u" : "STACK 16u",
-               "GROUP 64"})),
+        : program(gpu::make_cast_program(base.resolver.scene())),
           scene(base.resolver, base.thread_pool) {}
     opengl::Program program;
     gpu::DeviceScene scene;
