@@ -72,7 +72,7 @@ void register_model(const Model* model, std::uint32_t side, double goal,
   };
   const std::string at = model->name + " " + std::to_string(side) + " ";
   add<Woods2016Pipeline>(at + "Woods 2016", model, side);
-  for (const Ours& ours : {Ours{"rays", "rays", false}, Ours{"opengl", "opengl", false},
+  for (const Ours& ours : {Ours{"rays", "rays", false}, Ours{"gpu", "gpu", false},
                            Ours{"opengl, quantized framebuffer", "rays", true}}) {
     add<Clouds>(at + ours.name, model, ours.kind, ours.is_quantized, side);
     ratios.push_back({at + ours.name + " / Woods 2016", at + "Woods 2016", at + ours.name, goal});

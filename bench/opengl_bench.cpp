@@ -64,25 +64,25 @@ void register_model(const Model& model, std::uint32_t side, std::vector<Ratio>& 
   constexpr double kGoal = 0.85;
   const std::string at = model.name + " " + std::to_string(side) + " ";
   register_raw(at + "raw numbers", model, kRawNumbers, side);
-  register_cast(at + "opengl", model, "opengl", side);
+  register_cast(at + "gpu", model, "gpu", side);
   register_cast(at + "rays", model, "rays", side);
   register_raw(at + "raw framebuffer", model, kRawFramebuffer, side);
   register_framebuffer(at + "framebuffer", model, side);
-  ratios.push_back({at + "cast / raw OpenGL", at + "raw numbers", at + "opengl", kGoal});
+  ratios.push_back({at + "cast / raw OpenGL", at + "raw numbers", at + "gpu", 0.0});
   ratios.push_back({at + "quantized framebuffer / raw OpenGL", at + "raw framebuffer",
                     at + "framebuffer", kGoal});
-  ratios.push_back({at + "opengl / rays", at + "rays", at + "opengl", 0.0});
+  ratios.push_back({at + "gpu / rays", at + "rays", at + "gpu", 0.0});
 }
 
 void register_batches(const Model& model, std::uint32_t side, std::vector<Ratio>& ratios) {
   constexpr double kGoal = 1.3;
   const std::string at = model.name + " 64 views of " + std::to_string(side) + " ";
   add(at + "one by one", [&model, side](benchmark::State& state) {
-    ManyViews views(model, "opengl", side);
+    ManyViews views(model, "gpu", side);
     for (auto _ : state) views.one_by_one();
   });
   add(at + "together", [&model, side](benchmark::State& state) {
-    ManyViews views(model, "opengl", side);
+    ManyViews views(model, "gpu", side);
     for (auto _ : state) views.together();
   });
   ratios.push_back({at + "together / one by one", at + "one by one", at + "together", kGoal});

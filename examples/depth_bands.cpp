@@ -138,7 +138,7 @@ void show_bands(const char* path) {
   glidar::Hits truth;
   glidar::Hits drawn;
   glidar::make_renderer(scene, {.kind = "rays"})->cast(request, truth);
-  glidar::make_renderer(scene, {.kind = "opengl"})->cast(request, drawn);
+  glidar::make_renderer(scene, {.kind = "gpu"})->cast(request, drawn);
 
   const auto camera = glidar::make_woods2016_camera(scene, {});
   Woods2016Framebuffer picture;

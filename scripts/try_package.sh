@@ -92,7 +92,7 @@ try_program() {
   check "an installed example renders" \
     as_user bash -c 'cd /usr/share/doc/glidar && glidar render examples/two_rocks.yaml -o ~/rocks.png'
   check "OpenGL draws with the recommended drivers" \
-    as_user glidar render builtin:sphere --renderer opengl -o sphere.pcd
+    as_user glidar render builtin:sphere --renderer gpu -o sphere.pcd
   check "glidar campaign says which package it lacks" campaign_names_what_it_lacks
   check "every link in the installed documentation works" links_work
   check "the programs name no folder of the build" programs_are_clean

@@ -62,7 +62,7 @@ class Pages(unittest.TestCase):
         self.run_page("docs/troubleshooting.md")
 
     def test_figures_of_the_paper(self):
-        try_opengl = ["glidar", "render", "builtin:box", "--renderer", "opengl", "-o", "-", "--format", "npy"]
+        try_opengl = ["glidar", "render", "builtin:box", "--renderer", "gpu", "-o", "-", "--format", "npy"]
         done = subprocess.run(try_opengl, capture_output=True, timeout=MAX_WAIT_S, check=False)
         if done.returncode != 0 and b"OpenGL: " in done.stderr:
             self.skipTest(done.stderr.decode())

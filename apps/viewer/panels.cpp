@@ -252,7 +252,8 @@ void show_sensor(Viewer& viewer) {
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 7.0F);
   constexpr std::uint64_t kStep = 1;
   if (ImGui::InputScalar("seed", ImGuiDataType_U64, &seed, &kStep)) viewer.set_seed(seed);
-  if (choose("renderer", viewer.request().flags->renderer.kind, renderer_kinds(), chosen)) {
+  if (choose("renderer", renderer_kind(viewer.request().flags->renderer.kind), renderer_kinds(),
+             chosen)) {
     viewer.use_renderer(renderer_kinds()[chosen]);
   }
   if (viewer.snapshot() == nullptr) return;

@@ -219,7 +219,7 @@ void Viewer::use_sensor(const std::string& preset) {
 void Viewer::use_renderer(const std::string& kind) {
   RenderFlags flags = *request_.flags;
   flags.renderer.kind = kind;
-  if (kind != "opengl") flags.quantized_framebuffer = false;
+  if (renderer_kind(kind) != "gpu") flags.quantized_framebuffer = false;
   request_measurement(flags);
 }
 

@@ -46,18 +46,6 @@ std::uint32_t reported_primitive(const HitWriter& w, const PrimitiveRef& ref) {
                                    : w.resolver.canonical_primitive(ref.instance, ref.primitive);
 }
 
-/// The lanes that hit one of the close triangles.
-std::uint32_t close_lanes(const HitWriter& w, const HitBlock& block) {
-  std::uint32_t lanes = 0;
-  for_lanes(block.mask, [&](unsigned lane) {
-    const std::uint32_t instance = block.instance[lane];
-    const std::uint32_t primitive = w.resolver.canonical_primitive(instance, block.primitive[lane]);
-    const bool is_close = w.close_triangles->is_close(instance, primitive);
-    lanes |= static_cast<std::uint32_t>(is_close) << lane;
-  });
-  return lanes;
-}
-
 /// Re-tests these lanes by the hit rule; true when that changed the block.
 bool recast_lanes(const HitWriter& w, std::uint32_t lanes, const BeamBlock& beams,
                   HitBlock& block) {
@@ -157,12 +145,9 @@ void decode_instance(const HitWriter& w, std::uint32_t instance, PixelBatch& bat
     block.instance[i] = instance;
     block.primitive[i] = (batch.triangle_id[i] & kTriangleIdMask) - first;
   }
-  const auto replace = [&block](const std::uint32_t* by) {
-    if (by == nullptr) return;
-    for (std::uint32_t& primitive : block.primitive) primitive = by[primitive];
-  };
-  replace(w.triangles.order(instance));
-  if (!w.request.cull_back_faces) replace(w.resolver.first_coincident(instance));
+  const std::uint32_t* reported = w.resolver.first_coincident(instance);
+  if (w.request.cull_back_faces || reported == nullptr) return;
+  for (std::uint32_t& primitive : block.primitive) primitive = reported[primitive];
 }
 
 /// Sets instance and primitive of a lane from its triangle id.
@@ -194,7 +179,6 @@ void decode_triangles(const HitWriter& w, PixelBatch& batch) {
       w.resolver.prefetch(block, lane);
     }
   }
-  if (w.close_triangles != nullptr) batch.contested |= close_lanes(w, block);
 }
 
 /// Decodes the collected batch, prefetches the corners of the batch before, and finishes the
@@ -310,34 +294,6 @@ void collect_row(const HitWriter& w, std::uint32_t row, PixelQueues& queues) {
   write_misses_until(w.written.cols);
 }
 
-/// Overwrites pixels by the hits of cast beams. Beams of the range in columns outside of `written`
-/// are not among them.
-void write_cast_hits(const HitWriter& w, const BeamRange& beams) {
-  const auto first =
-      std::lower_bound(w.cast_hits.begin(), w.cast_hits.end(), beams.begin,
-                       [](const CastHit& hit, std::size_t beam) { return hit.beam < beam; });
-  PixelBatch batch;
-  batch.certain = 0xffffffffU;
-  batch.block.mask = 0;
-  for (auto hit = first; hit != w.cast_hits.end() && hit->beam < beams.end; ++hit) {
-    if (hit->primitive.instance == kInvalidId) {
-      write_misses(w.request.hit_columns, hit->beam, 1, w.hits);
-      continue;
-    }
-    const unsigned lane = batch.used++;
-    batch.x[lane] = w.points.x[hit->beam % w.request.beams.cols];
-    batch.y[lane] = w.points.y[hit->beam / w.request.beams.cols];
-    batch.block.beam[lane] = hit->beam;
-    batch.block.instance[lane] = hit->primitive.instance;
-    batch.block.primitive[lane] = reported_primitive(w, hit->primitive);
-    batch.block.mask |= 1U << lane;
-    if (batch.used < kLanes) continue;
-    finish(w, batch);
-    batch.block.mask = 0;
-  }
-  finish(w, batch);
-}
-
 }  // namespace
 
 DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
@@ -359,24 +315,8 @@ void write_rows(const HitWriter& w, std::uint32_t begin, std::uint32_t end) {
   for (PixelBatchQueue* queue : {&queues.runs, &queues.others}) {
     for (std::size_t i = 0; i < queue->batches.size(); ++i) advance(w, *queue);
   }
-  if (!w.cast_hits.empty())
-    write_cast_hits(w, {beams_of(w, begin).begin, beams_of(w, end - 1).end});
   if (!w.request.on_tile_done) return;
   for (std::uint32_t row = begin; row < end; ++row) w.request.on_tile_done(beams_of(w, row));
-}
-
-void write_image(const HitWriter& writer, ThreadPool& thread_pool, ProgressCounter& count) {
-  constexpr std::uint32_t kBeamsPerTask = 1024;
-  const PixelRect& written = writer.written;
-  const std::uint32_t rows_per_task = std::max(1U, kBeamsPerTask / written.cols);
-  thread_pool.parallel_for(written.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
-    const auto last = static_cast<std::uint32_t>(end);
-    for (auto row = static_cast<std::uint32_t>(begin); row < last; row += rows_per_task) {
-      const std::uint32_t next = std::min(row + rows_per_task, last);
-      write_rows(writer, row, next);
-      count.add(std::size_t{next - row} * written.cols);
-    }
-  });
 }
 
 }  // namespace glidar

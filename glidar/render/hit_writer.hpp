@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/progress_counter.hpp>
-#include <glidar/render/close_triangles.hpp>
 #include <glidar/render/depth_range.hpp>
 #include <glidar/render/overlaps.hpp>
 #include <glidar/render/plane_points.hpp>
-#include <glidar/render/primitive_ref.hpp>
 #include <glidar/render/rays/beam_search.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/triangle_ids.hpp>
@@ -16,12 +13,6 @@
 #include <span>
 
 namespace glidar {
-
-/// The result of casting one beam; instance kInvalidId: a miss.
-struct CastHit {
-  std::size_t beam;
-  PrimitiveRef primitive;
-};
 
 /// Inputs for converting a visibility buffer (triangle ids per pixel), or a tile of one, into hits.
 struct HitWriter {
@@ -35,11 +26,6 @@ struct HitWriter {
   Hits& hits;
   const rays::BeamSearch& search;  ///< casts uncertain beams
   const Overlaps& overlaps;
-  /// Beams that hit these triangles are cast, because the rasterizer may show the wrong one;
-  /// nullptr: none.
-  const CloseTriangles* close_triangles = nullptr;
-  /// Beams that were cast, in rising order: their hits replace the drawn ones.
-  std::span<const CastHit> cast_hits = {};
 };
 
 /// Tight near and far planes around all enabled instances; the resolver has the cast's poses. One
@@ -49,8 +35,5 @@ DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
 
 /// Writes the hits of rows [begin, end) of `written` and reports them to the request.
 void write_rows(const HitWriter& writer, std::uint32_t begin, std::uint32_t end);
-
-/// Writes all hits of `written`, distributing rows among threads.
-void write_image(const HitWriter& writer, ThreadPool& thread_pool, ProgressCounter& count);
 
 }  // namespace glidar

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/render/auto_renderer.hpp>
-#include <glidar/render/opengl/opengl_renderer.hpp>
+#include <glidar/render/gpu/gpu_renderer.hpp>
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
 #include <glidar/render/rays/rays_renderer.hpp>
@@ -26,7 +26,7 @@ const std::array<Kind, 4>& kinds() {
   static const std::array<Kind, 4> all = {{{"auto", make_auto_renderer},
                                            {"rays", make_rays_renderer},
                                            {"raster", make_raster_renderer},
-                                           {"opengl", make_opengl_renderer}}};
+                                           {"gpu", make_gpu_renderer}}};
   return all;
 }
 
@@ -104,6 +104,10 @@ void Renderer::cast_batch(std::span<const CastRequest> requests, std::span<Hits*
   for (std::size_t i = 0; i < requests.size(); ++i) cast(requests[i], *hits[i]);
 }
 
+std::string renderer_kind(const std::string& name) {
+  return name == "opengl" ? "gpu" : name;
+}
+
 const std::vector<std::string>& renderer_kinds() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
@@ -117,7 +121,7 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOption
   std::string names;
   const auto found = std::find_if(kinds().begin(), kinds().end(), [&](const Kind& kind) {
     names += (names.empty() ? "" : ", ") + kind.name;
-    return kind.name == options.kind;
+    return kind.name == renderer_kind(options.kind);
   });
   if (found == kinds().end()) {
     const std::string nearest = closest_match(options.kind, renderer_kinds());

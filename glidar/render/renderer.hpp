@@ -92,12 +92,12 @@ class Renderer {
   virtual void cast(const CastRequest& request, Hits& hits) = 0;
 
   /// Casts a batch: *hits[i] becomes bit-identical to cast(requests[i]). The default implementation
-  /// loops; GPU renderers draw small casts together and overlap drawing with reading.
+  /// loops; a GPU casts small requests together, while the hits of those before are written.
   virtual void cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits);
 };
 
 struct RendererOptions {
-  std::string kind = "auto";  ///< one of renderer_kinds()
+  std::string kind = "auto";  ///< one of renderer_kinds(), or another name of one
   unsigned threads = 0;       ///< 0: all processors
   /// Index of the graphics device; empty: the first that has a context.
   std::optional<std::uint32_t> graphics_device = {};
@@ -105,6 +105,9 @@ struct RendererOptions {
 
 /// Names of all renderers.
 const std::vector<std::string>& renderer_kinds();
+
+/// The kind of this name: "opengl" is another name of "gpu".
+std::string renderer_kind(const std::string& name);
 
 /// Builds a renderer over a valid scene, which must outlive it. Poses may change with every cast.
 /// Throws Error for an unknown kind and lists the valid ones.

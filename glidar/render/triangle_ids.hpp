@@ -33,17 +33,11 @@ inline constexpr std::uint32_t kNoTriangleId = kTriangleIdMask;
 /// Consecutive ids for the triangles of all instances, so that 30 bits store both.
 class TriangleIds {
  public:
-  /// Throws Error, naming the renderer, when the scene has more triangles than ids.
-  TriangleIds(const Scene& scene, const char* renderer);
+  /// Throws Error when the scene has more triangles than ids.
+  explicit TriangleIds(const Scene& scene);
 
   /// The id of an instance's first triangle.
   [[nodiscard]] std::uint32_t first(std::uint32_t instance) const { return first_[instance]; }
-
-  /// For renderers that draw an instance's triangles in another order: `drawn[k]` is the triangle
-  /// with the k-th id. The vector must not move.
-  void set_order(std::uint32_t instance, const std::vector<std::uint32_t>& drawn) {
-    drawn_[instance] = drawn.data();
-  }
 
   /// The instance of an id, without flags, of a triangle.
   [[nodiscard]] std::uint32_t instance_of(std::uint32_t id) const {
@@ -57,23 +51,16 @@ class TriangleIds {
     return instance + 1 < first_.size() ? first_[instance + 1] : kNoTriangleId;
   }
 
-  /// See set_order(); nullptr: in the mesh's order.
-  [[nodiscard]] const std::uint32_t* order(std::uint32_t instance) const {
-    return drawn_[instance];
-  }
-
   /// The triangle of an id; kNoTriangleId: none.
   [[nodiscard]] PrimitiveRef decode(std::uint32_t id) const {
     if (id == kNoTriangleId) return {};
     id &= kTriangleIdMask;
     const std::uint32_t instance = instance_of(id);
-    const std::uint32_t index = id - first_[instance];
-    return {instance, drawn_[instance] == nullptr ? index : drawn_[instance][index]};
+    return {instance, id - first_[instance]};
   }
 
  private:
-  std::vector<std::uint32_t> first_;         ///< per instance
-  std::vector<const std::uint32_t*> drawn_;  ///< per instance; nullptr: in the mesh's order
+  std::vector<std::uint32_t> first_;  ///< per instance
 };
 
 }  // namespace glidar

@@ -116,7 +116,7 @@ std::vector<AccuracyCase> verify(const RendererOptions& options, const ProgressC
 }
 
 BeamKind beams_of_renderer(std::string_view kind) {
-  return kind == "opengl" || kind == "raster" ? BeamKind::pinhole : BeamKind::any;
+  return kind == "raster" ? BeamKind::pinhole : BeamKind::any;
 }
 
 bool all_passed(const std::vector<AccuracyCase>& rows) {

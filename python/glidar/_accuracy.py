@@ -78,14 +78,14 @@ def verify(*, renderer: str = "auto", threads: int = 0) -> AccuracyReport:
     every distance from 0.1 m to 10 km, and difficult cases, compared with closed forms.
 
     Args:
-        renderer: "auto", "rays", "raster" or "opengl". "raster" and "opengl" cast pinhole cameras only; rows
-            without such beams are not applicable to them.
+        renderer: "auto", "rays", "raster" or "gpu" ("opengl"). "raster" casts pinhole cameras only; rows
+            without such beams are not applicable to it.
         threads: number of threads; 0: one per processor.
 
     Raises:
         Error: an unknown renderer or an invalid number of threads.
     """
-    one_of(renderer, "renderer", ("auto", "rays", "raster", "opengl"))
+    one_of(renderer, "renderer", ("auto", "rays", "raster", "gpu", "opengl"))
     names = AccuracyCase.__dataclass_fields__
     rows = _core.verify(renderer, whole(threads, "threads", 4096))
     return AccuracyReport(tuple(AccuracyCase(**{name: getattr(row, name) for name in names}) for row in rows))

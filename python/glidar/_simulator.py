@@ -24,7 +24,7 @@ from ._trajectory import PoseLike, object_trajectories, trajectories
 #: The number of the sensor, and the start of the run.
 _RunKeys: TypeAlias = "tuple[int, int | None]"
 
-_RENDERERS = ("auto", "rays", "raster", "opengl")
+_RENDERERS = ("auto", "rays", "raster", "gpu", "opengl")
 
 
 def _run_keys(sensor_id: int, start_ns: int | None) -> _RunKeys:
@@ -45,7 +45,7 @@ class Simulator(Immutable):
         scene: the ``Scene`` to measure.
         sensor: the sensor; None: that of the scene file.
         renderer: "auto": "raster" for pinhole cameras where it is faster, else "rays"; both run on the
-            processor. "opengl" renders on a graphics device (cameras without distortion only).
+            processor. "gpu" casts on a graphics device, with the same results; "opengl" is another name of it.
         threads: number of threads of the renderer; 0: one per processor.
 
     Raises:

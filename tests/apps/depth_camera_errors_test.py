@@ -63,11 +63,7 @@ class WrongUses(CliTest):
     def test_renderers_without_rays_are_refused_with_the_one_that_works(self):
         for name, text in (("s.yaml", STEREO), ("t.yaml", TOF)):
             sensor = ("--sensor", self.write(name, text))
-            for renderer in ("opengl", "raster"):
-                error = self.run_program(*BOX, *sensor, "--renderer", renderer, "-o", "a.pcd")
-                if re.search("no OpenGL|EGL", error.stderr):
-                    continue  # machines without OpenGL report this first
-                self.refuse("use --renderer rays", *sensor, "--renderer", renderer, "-o", "a.pcd")
+            self.refuse("use --renderer rays", *sensor, "--renderer", "raster", "-o", "a.pcd")
 
 
 class Sizes(CliTest):

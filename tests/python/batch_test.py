@@ -112,16 +112,16 @@ def test_threads_can_measure_one_scene_concurrently(asteroid, noisy):
     assert all(same(a, b) for a, b in zip(expected, found, strict=True))
 
 
-def test_opengl_renders_from_any_thread(asteroid, camera):
+def test_gpu_renders_from_any_thread(asteroid, camera):
     try:
-        first = glidar.simulate(asteroid, camera, renderer="opengl")
+        first = glidar.simulate(asteroid, camera, renderer="gpu")
     except glidar.Error as error:
         pytest.skip(str(error))
     cast = glidar.simulate(asteroid, camera)
     assert abs(first.hits - cast.hits) <= 3
     found = []
     threads = [
-        threading.Thread(target=lambda: found.append(glidar.simulate(asteroid, camera, renderer="opengl")))
+        threading.Thread(target=lambda: found.append(glidar.simulate(asteroid, camera, renderer="gpu")))
         for _ in range(3)
     ]
     for thread in threads:

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Drawing in a context that the application created, uses and changes.
+#include <glidar/render/gpu/gpu_renderer.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
-#include <glidar/render/opengl/opengl_renderer.hpp>
 #include <glidar/render/woods2016_camera.hpp>
 #include <render/renderer_suite.hpp>
 #include <support/error_text.hpp>
@@ -43,7 +43,7 @@ class NoContext final : public opengl::Context {
 class OpenglContext : public ::testing::Test {
  protected:
   void SetUp() override {
-    GLIDAR_NEEDS_OPENGL();
+    GLIDAR_NEEDS_GPU();
     scene_ = builtin_scene("torus");
     pose_ = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
     window_ = std::make_unique<opengl::EglContext>(std::nullopt);
@@ -56,11 +56,11 @@ class OpenglContext : public ::testing::Test {
     return std::make_unique<SharedContext>(*window_, uses_);
   }
   std::unique_ptr<Renderer> renderer() {
-    return make_opengl_renderer(scene_, {.threads = 1}, shared());
+    return make_gpu_renderer(scene_, {.threads = 1}, shared());
   }
   [[nodiscard]] std::vector<std::uint32_t> expected() const {
     Hits hits;
-    make_opengl_renderer(scene_, {.threads = 1})->cast(request(), hits);
+    make_gpu_renderer(scene_, {.threads = 1})->cast(request(), hits);
     return hits.primitive;
   }
 
@@ -104,7 +104,7 @@ TEST_F(OpenglContext, ThePreviousContextAndSurfaceAreRestored) {
   }
   Hits hits;
   {
-    const std::unique_ptr<Renderer> own = make_opengl_renderer(scene_, {.threads = 1});
+    const std::unique_ptr<Renderer> own = make_gpu_renderer(scene_, {.threads = 1});
     own->cast(request(), hits);
     renderer()->cast(request(), hits);
     EXPECT_EQ(eglGetCurrentContext(), context);
@@ -173,10 +173,9 @@ TEST_F(OpenglContext, DrawingResetsTheStateThatItChanges) {
 }
 
 TEST_F(OpenglContext, AContextThatCannotBeCurrentIsAnError) {
-  EXPECT_EQ(error_text([&] {
-              make_opengl_renderer(scene_, {.threads = 1}, std::make_unique<NoContext>());
-            }),
-            "window: it is closed");
+  EXPECT_EQ(
+      error_text([&] { make_gpu_renderer(scene_, {.threads = 1}, std::make_unique<NoContext>()); }),
+      "window: it is closed");
 }
 
 TEST_F(OpenglContext, ReportsDeviceResetsIfTheDriverDoes) {

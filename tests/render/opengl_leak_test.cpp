@@ -54,7 +54,7 @@ class OpenglLeak : public ::testing::Test {
 };
 
 TEST_F(OpenglLeak, MemoryStaysConstantOverTenThousandFrames) {
-  const auto renderer = make_renderer(scene_, {.kind = "opengl", .threads = 1});
+  const auto renderer = make_renderer(scene_, {.kind = "gpu", .threads = 1});
   Hits hits;
   expect_flat(1000, 10'000, 1.0, [&](int /*frame*/) {
     renderer->cast({.beams = beams_, .world_from_sensor = pose_, .hit_columns = kAllHitColumns},
@@ -63,7 +63,7 @@ TEST_F(OpenglLeak, MemoryStaysConstantOverTenThousandFrames) {
 }
 
 TEST_F(OpenglLeak, MemoryStaysConstantOverBatchesAndResizes) {
-  const auto renderer = make_renderer(scene_, {.kind = "opengl", .threads = 1});
+  const auto renderer = make_renderer(scene_, {.kind = "gpu", .threads = 1});
   const Beams wide = camera_beams(40, 10, 12.0);
   std::vector<Hits> all(6);
   std::vector<Hits*> hits;
@@ -90,7 +90,7 @@ constexpr double kPerContext_MiB = 0.03;
 TEST_F(OpenglLeak, MemoryStaysConstantOverAHundredRenderers) {
   Hits hits;
   expect_flat(10, 100, 100 * kPerContext_MiB, [&](int /*frame*/) {
-    make_renderer(scene_, {.kind = "opengl", .threads = 1})
+    make_renderer(scene_, {.kind = "gpu", .threads = 1})
         ->cast({.beams = beams_, .world_from_sensor = pose_, .hit_columns = {}}, hits);
   });
 }

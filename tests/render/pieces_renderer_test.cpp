@@ -171,7 +171,7 @@ TEST_P(PiecesSuite, ATargetIncludesAllPieces) {
   Hits hits;
   EXPECT_THROW(device->cast(request, hits), Error) << "targets for pixels";
   beams.pinhole.reset();
-  if (GetParam() == "opengl" || GetParam() == "raster") {
+  if (GetParam() == "raster") {
     EXPECT_THROW(device->cast(request, hits), Error) << "no pinhole";
     return;
   }

@@ -147,6 +147,59 @@ TEST(RandomScenes, CamerasSeeTheSameBitsByEveryRenderer) {
   EXPECT_GT(hits, 100'000U);
 }
 
+// Most scenes have several instances, and beams that only the processor can decide. Drivers compile
+// shaders for every renderer, so there are fewer scenes.
+TEST(RandomScenes, AGpuSeesTheSameBitsForEveryKindOfRequest) {
+  GLIDAR_NEEDS_GPU();
+  constexpr std::uint64_t kGpuScenes = 16;
+  std::size_t hits = 0;
+  for (std::uint64_t seed = 1; seed <= kGpuScenes; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    const auto [scene, beams, pose] = random_camera_view(seed);
+    Draws draws(seed);
+    Beams loose = beams;  // as the beams of a moving scanner
+    loose.pinhole.reset();
+    loose.rows = 1;
+    loose.cols = static_cast<std::uint32_t>(beams.size());
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      loose.origins_m.push_back(1e-3 * draws.next() * draws.direction());
+    }
+    std::vector<InstanceRange> targets;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      const std::uint32_t begin = below(draws, scene.instances.size());
+      targets.push_back({begin, begin + 1 + below(draws, scene.instances.size() - begin)});
+    }
+    std::vector<Pose> moved;
+    for (const Instance& instance : scene.instances) moved.push_back(instance.world_from_object);
+    moved[0] = moved[0] * turned(0.1, draws.direction(), 0.1 * draws.direction());
+    const std::vector<CastRequest> requests = {
+        {.beams = beams, .world_from_sensor = pose, .hit_columns = kAllHitColumns},
+        {.beams = beams, .world_from_sensor = pose, .hit_columns = {.depth = true}},
+        {.beams = beams, .world_from_sensor = pose, .world_from_instance = moved},
+        {.beams = beams, .world_from_sensor = pose, .cull_back_faces = true},
+        {.beams = loose, .world_from_sensor = pose, .hit_columns = {.depth = true}},
+        {.beams = loose, .world_from_sensor = pose, .targets = targets},
+        {.beams = loose,
+         .world_from_sensor = pose,
+         .hit_columns = {.normal = true},
+         .cull_back_faces = true,
+         .targets = targets}};
+    std::vector<Hits> found(requests.size());
+    std::vector<Hits*> all;
+    for (Hits& one : found) all.push_back(&one);
+    make_renderer(scene, {.kind = "gpu", .threads = 2})->cast_batch(requests, all);
+    const auto rays = make_renderer(scene, {.kind = "rays", .threads = 2});
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      SCOPED_TRACE(::testing::Message() << "request " << i);
+      Hits expected;
+      rays->cast(requests[i], expected);
+      hits += expect_same_hits(found[i], expected);
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(hits, 100'000U);
+}
+
 // Without corners, planes are stored; with them, planes are computed from corners.
 TEST(RandomScenes, ColumnsHaveTheSameBitsAloneAndWithAllOthers) {
   std::size_t hits = 0;

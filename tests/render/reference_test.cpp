@@ -172,8 +172,8 @@ TEST_P(ReferenceCase, StableBeamsHitTheReferenceTriangleAtTheReferenceDepth) {
   const Reference reference = read_reference(folder, is_pinhole);
   ASSERT_EQ(reference.distance_m.size(), beams.size());
   for (const std::string& kind : renderer_kinds()) {
-    if (!is_pinhole && (kind == "raster" || kind == "opengl")) continue;  // they refuse such beams
-    if (kind == "opengl" && !testing::missing_opengl().empty()) continue;
+    if (!is_pinhole && kind == "raster") continue;  // they refuse such beams
+    if (kind == "gpu" && !testing::missing_gpu().empty()) continue;
     SCOPED_TRACE(kind);
     Hits hits;
     make_renderer(scene, {.kind = kind})

@@ -107,10 +107,28 @@ inline const std::string& missing_opengl() {
   if (const std::string missing = ::glidar::testing::missing_opengl(); !missing.empty()) \
   GTEST_SKIP() << missing
 
+/// Why the gpu renderer is not available; empty if it is.
+inline const std::string& missing_gpu() {
+  static const std::string kReason = [] {
+    try {
+      make_renderer(Scene(), {.kind = "gpu", .threads = 1});
+      return std::string();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  }();
+  return kReason;
+}
+
+/// Skips the test on a machine where it is not available, with the reason.
+#define GLIDAR_NEEDS_GPU()                                                            \
+  if (const std::string missing = ::glidar::testing::missing_gpu(); !missing.empty()) \
+  GTEST_SKIP() << missing
+
 class RendererSuite : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (GetParam() == "opengl") GLIDAR_NEEDS_OPENGL();
+    if (GetParam() == "gpu") GLIDAR_NEEDS_GPU();
   }
 
   static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {

@@ -31,7 +31,6 @@ constexpr double kRangeTolerance = 1e-12;
 /// Half the width, in pixels, of the band around an edge where a renderer may report the neighbour:
 /// twice the step of a rasterizer's grid.
 double border_px(const std::string& renderer) {
-  if (renderer == "opengl") return 1.0 / 128.0;
   return renderer == "raster" || renderer == "auto" ? 1.0 / 2048.0 : 0.0;
 }
 
@@ -367,14 +366,19 @@ TEST_P(RendererSuite, ResultsDoNotDependOnTheNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(All, RendererSuite, ::testing::ValuesIn(renderer_kinds()),
                          [](const auto& test) { return test.param; });
-INSTANTIATE_TEST_SUITE_P(All, AnyBeamsSuite, ::testing::Values("auto", "rays"),
+INSTANTIATE_TEST_SUITE_P(All, AnyBeamsSuite, ::testing::Values("auto", "rays", "gpu"),
                          [](const auto& test) { return test.param; });
 
 TEST(MakeRenderer, ListsTheKindsOnAnUnknownOne) {
   const Scene scene;
-  EXPECT_EQ(error_text([&] { make_renderer(scene, {.kind = "opengel"}); }),
-            "renderer: 'opengel' is not known; allowed: auto, rays, raster, opengl; did you mean "
-            "'opengl'?");
+  EXPECT_EQ(error_text([&] { make_renderer(scene, {.kind = "ray"}); }),
+            "renderer: 'ray' is not known; allowed: auto, rays, raster, gpu; did you mean 'rays'?");
+}
+
+TEST(MakeRenderer, OpenglIsAnotherNameOfGpu) {
+  GLIDAR_NEEDS_GPU();
+  const Scene scene;
+  EXPECT_EQ(make_renderer(scene, {.kind = "opengl", .threads = 1})->name(), "gpu");
 }
 
 TEST(MakeRenderer, RejectsAnInvalidScene) {

@@ -4,7 +4,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <simulate/velocity_stage.hpp>
 #include <support/data.hpp>
@@ -291,7 +290,7 @@ class RadialVelocityWith : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     try {
-      if (GetParam() == "opengl") const opengl::EglContext context({});
+      if (GetParam() == "gpu") make_renderer(Scene(), {.kind = "gpu"});
     } catch (const Error& error) {
       GTEST_SKIP() << error.what();
     }

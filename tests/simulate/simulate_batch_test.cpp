@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/simulate/simulator.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
@@ -19,7 +18,7 @@ class SimulateBatch : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     try {
-      if (GetParam() == "opengl") const opengl::EglContext context({});
+      if (GetParam() == "gpu") make_renderer(Scene(), {.kind = "gpu"});
     } catch (const Error& error) {
       GTEST_SKIP() << error.what();
     }
@@ -78,8 +77,7 @@ TEST_P(SimulateBatch, FramesAreIdenticalToSimulate) {
 }
 
 TEST_P(SimulateBatch, PointingErrorsOfAFrameDoNotAffectAnother) {
-  if (GetParam() == "opengl" || GetParam() == "raster")
-    GTEST_SKIP() << "casts pinhole beams only; nothing to do";
+  if (GetParam() == "raster") GTEST_SKIP() << "casts pinhole beams only; nothing to do";
   sensor_.noise.push_back(PointingJitter{.sigma_azimuth_rad = 1e-3, .sigma_elevation_rad = 1e-3});
   expect_as_one_by_one(sensor_);
 }
@@ -89,7 +87,8 @@ TEST_P(SimulateBatch, SensorsMayCullBackFacesAndHaveProjectors) {
   culling.cull_back_faces = true;
   culling.limits.far_m = 7.0;
   expect_as_one_by_one(culling);
-  if (GetParam() != "rays") return;  // beams from a projector have origins of their own
+  if (GetParam() == "raster" || GetParam() == "auto")
+    return;  // beams from a projector have origins of their own
   Sensor shadowed = sensor_;
   shadowed.projector_origin_m = Eigen::Vector3d(0.3, 0.0, 0.0);
   expect_as_one_by_one(shadowed);

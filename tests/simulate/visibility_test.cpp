@@ -3,7 +3,6 @@
 // Objects that some sensors of a rig do not see.
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <glidar/simulate/simulator.hpp>
 #include <simulate/scanner_stage.hpp>
@@ -229,7 +228,7 @@ class VisibilityInRenderer : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     try {
-      if (GetParam() == "opengl") const opengl::EglContext context({});
+      if (GetParam() == "gpu") make_renderer(Scene(), {.kind = "gpu"});
     } catch (const Error& error) {
       GTEST_SKIP() << error.what();
     }

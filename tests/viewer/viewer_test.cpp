@@ -124,8 +124,8 @@ TEST_F(ViewerTest, NoiseCanBeSwitchedAndTheSeedChangesIt) {
 TEST_F(ViewerTest, ChangesSensorAndRenderer) {
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
-  viewer.use_renderer("opengl");
-  EXPECT_EQ(snapshot_of(viewer).prepared->renderer->name(), "opengl");
+  viewer.use_renderer("gpu");
+  EXPECT_EQ(snapshot_of(viewer).prepared->renderer->name(), "gpu");
   viewer.use_renderer("rays");
   viewer.use_sensor("VLP-16");
   EXPECT_EQ(snapshot_of(viewer).beams->rows, 16U);
@@ -137,7 +137,7 @@ TEST_F(ViewerTest, ReportsErrorsAndKeepsThePreviousSession) {
   snapshot_of(viewer);
   viewer.use_sensor("VLP-16");
   snapshot_of(viewer);
-  viewer.use_renderer("opengl");  // scanners are not a central projection
+  viewer.use_renderer("raster");  // scanners are not a central projection
   ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.errors.empty(); }));
   EXPECT_THAT(viewer.errors.front(), HasSubstr("--renderer rays"));
   viewer.open((folder_ / "missing.obj").string());

@@ -263,10 +263,10 @@ class ScreenshotTest(DisplayTest):
         with Image.open(os.path.join(HERE, "asteroid_views.png")) as expected:
             self.assertLess(difference(views, expected.convert("RGB")), 2.0)
 
-    def test_the_opengl_renderer_shows_the_same(self):
+    def test_the_gpu_renderer_shows_the_same(self):
         cast, _ = self.shoot("builtin:torus")
-        opengl, _ = self.shoot("builtin:torus", "--renderer", "opengl")
-        self.assertLess(difference(cast.crop(SENSOR_BOX), opengl.crop(SENSOR_BOX)), 0.5)
+        gpu, _ = self.shoot("builtin:torus", "--renderer", "gpu")
+        self.assertLess(difference(cast.crop(SENSOR_BOX), gpu.crop(SENSOR_BOX)), 0.5)
 
     def test_frames_are_the_sensors_frames_and_repeatable(self):
         arguments = ("builtin:asteroid", "--object-rate", "0,2,0", "--frames", "7")

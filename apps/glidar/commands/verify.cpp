@@ -37,7 +37,7 @@ With "one shape at rest" rays that pass an edge at less than 2e-6 of the shape's
 compared.
 Bounds: range within 0.001 ulp of float32, normals within 1e-6 rad, no wrong hit, miss or id. The
 column "other" is the largest error of all other quantities, as a share of its bound: at most 1.
-opengl and raster support pinhole cameras only: cases with other beams do not apply.
+raster supports pinhole cameras only: cases with other beams do not apply.
 A known failure is a documented limit of a renderer, up to a known number of wrong rays and a known
 range error; anything worse is a failure. FIXED: a known failure passes on this machine.
 Exit codes: 0 all passed or known, 1 a failure, 2 bad input.)";

@@ -26,19 +26,27 @@ void add_fisher_options(CLI::App& command, FisherFlags& flags) {
 
 }  // namespace
 
+RendererOptions hit_renderer(const RenderFlags& flags) {
+  RendererOptions options = flags.renderer;
+  if (flags.quantized_framebuffer) options.kind = "auto";
+  return options;
+}
+
 std::string renderer_name(const RenderFlags& flags) {
   return flags.renderer.kind + (flags.quantized_framebuffer ? ", quantized framebuffer" : "");
 }
 
 void add_run_options(CLI::App& command, RendererOptions& options, const std::string& heading) {
   const OptionGroup group(command, heading);
-  group.add(
-      "--renderer", "NAME",
-      fmt::format("How beams are cast: {} [{}]", fmt::join(renderer_kinds(), ", "), options.kind),
-      options.kind, one_of(renderer_kinds()));
+  std::vector<std::string> names = renderer_kinds();
+  names.emplace_back("opengl");  // another name of gpu
+  group.add("--renderer", "NAME",
+            fmt::format("How beams are cast: {} [{}]; opengl is gpu",
+                        fmt::join(renderer_kinds(), ", "), options.kind),
+            options.kind, one_of(std::move(names)));
   add_threads_option(group, options);
   constexpr unsigned kMaxDevice = 63;
-  group.add("--graphics-device", "N", "Device for opengl [the first that works]",
+  group.add("--graphics-device", "N", "Device for gpu [the first that works]",
             options.graphics_device, whole(0U, kMaxDevice));
 }
 

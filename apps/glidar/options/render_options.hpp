@@ -48,6 +48,10 @@ inline bool is_sequence(const RenderFlags& flags) {
   return flags.duration_s || flags.motion.to;
 }
 
+/// The renderer of exact hits. With the quantized framebuffer it is auto, which has the hits of all
+/// others and needs no OpenGL 4.3.
+RendererOptions hit_renderer(const RenderFlags& flags);
+
 /// The renderer as sidecars name it.
 std::string renderer_name(const RenderFlags& flags);
 

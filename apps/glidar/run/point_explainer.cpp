@@ -134,7 +134,7 @@ std::size_t PointExplainer::entry_of(const PublishedPoint& point, std::size_t se
 
 Simulator& PointExplainer::simulator_of(std::size_t sensor_index) {
   if (!renderer_) {
-    RendererOptions options = flags_.renderer;
+    RendererOptions options = hit_renderer(flags_);
     options.threads = 1;  // leaves the others to the measurement
     renderer_ = make_renderer(prepared_.scene, options);
     if (flags_.quantized_framebuffer) {

@@ -265,10 +265,10 @@ void check_target(const RenderFlags& flags) {
                  .allowed = "this output with --quantized-framebuffer",
                  .remedy = "add --renderer opengl --quantized-framebuffer"});
   }
-  if (!flags.quantized_framebuffer || flags.renderer.kind == "opengl") return;
+  if (!flags.quantized_framebuffer || renderer_kind(flags.renderer.kind) == "gpu") return;
   throw Error({.where = "--quantized-framebuffer",
                .found = "the renderer " + flags.renderer.kind,
-               .allowed = "opengl",
+               .allowed = "gpu, or its other name opengl",
                .remedy = "add --renderer opengl"});
 }
 
@@ -306,8 +306,8 @@ void set_imus(const RenderFlags& flags, const SceneFile& loaded, PreparedScene& 
 /// Drivers print messages of their own before the error that none of them gives a context.
 void make_renderers(const RenderFlags& flags, PreparedScene& prepared) {
   std::optional<SilencedLibraries> silenced;
-  if (flags.renderer.kind == "opengl") silenced.emplace();
-  prepared.renderer = make_renderer(prepared.scene, flags.renderer);
+  if (renderer_kind(flags.renderer.kind) == "gpu") silenced.emplace();
+  prepared.renderer = make_renderer(prepared.scene, hit_renderer(flags));
   if (flags.quantized_framebuffer) {
     prepared.woods2016_camera = make_woods2016_camera(prepared.scene, flags.renderer);
   }

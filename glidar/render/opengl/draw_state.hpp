@@ -3,8 +3,9 @@
 #pragma once
 
 #include <glidar/core/material.hpp>
+#include <glidar/render/draw_order.hpp>
 #include <glidar/render/opengl/context.hpp>
-#include <glidar/render/opengl/scene_buffers.hpp>
+#include <glidar/render/opengl/gl_object.hpp>
 #include <glidar/render/renderer.hpp>
 
 namespace glidar::opengl {

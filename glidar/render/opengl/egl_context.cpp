@@ -111,8 +111,11 @@ EGLContext make_context_of_version(EGLDisplay display, EGLint major, EGLint mino
 
 /// Some drivers return exactly the requested version, not the latest compatible one.
 EGLContext make_context_of_api(EGLDisplay display) {
-  EGLContext context = make_context_of_version(display, 4, 5);
-  return context != EGL_NO_CONTEXT ? context : make_context_of_version(display, 3, 3);
+  for (const auto& [major, minor] : {std::pair{4, 5}, {4, 3}}) {
+    EGLContext context = make_context_of_version(display, major, minor);
+    if (context != EGL_NO_CONTEXT) return context;
+  }
+  return make_context_of_version(display, 3, 3);
 }
 
 /// A context without config and surface; EGL_NO_CONTEXT if not supported. A display stays

@@ -16,9 +16,9 @@ namespace {
                .remedy = "update the driver, or use --renderer rays"});
 }
 
-std::string joined(std::initializer_list<std::string_view> texts,
+std::string joined(const char* version, std::initializer_list<std::string_view> texts,
                    std::initializer_list<std::string_view> macros) {
-  std::string text = "#version 330 core\n";
+  std::string text = "#version " + std::string(version) + " core\n";
   for (const std::string_view macro : macros) text += "#define " + std::string(macro) + "\n";
   for (const std::string_view part : texts) text += part;
   return text;
@@ -42,26 +42,40 @@ void attach(const Program& program, GLenum stage, const std::string& text) {
   glAttachShader(program.name(), shader);
   glDeleteShader(shader);
   if (good == GL_FALSE) {
-    refuse(stage == GL_VERTEX_SHADER ? "a vertex shader" : "a fragment shader", log);
+    refuse(stage == GL_VERTEX_SHADER     ? "a vertex shader"
+           : stage == GL_FRAGMENT_SHADER ? "a fragment shader"
+                                         : "a compute shader",
+           log);
   }
+}
+
+void link(const Program& program) {
+  glLinkProgram(program.name());
+  GLint good = GL_FALSE;
+  glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
+  if (good == GL_TRUE) return;
+  GLint length = 0;
+  glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), ' ');
+  glGetProgramInfoLog(program.name(), length, nullptr, log.data());
+  refuse("a program", log);
 }
 
 }  // namespace
 
 Program make_program(const ProgramSource& source) {
   Program program;
-  attach(program, GL_VERTEX_SHADER, joined(source.vertex, source.macros));
-  attach(program, GL_FRAGMENT_SHADER, joined(source.fragment, source.macros));
-  glLinkProgram(program.name());
-  GLint good = GL_FALSE;
-  glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
-  if (good == GL_FALSE) {
-    GLint length = 0;
-    glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
-    std::string log(static_cast<std::size_t>(length), ' ');
-    glGetProgramInfoLog(program.name(), length, nullptr, log.data());
-    refuse("a program", log);
-  }
+  attach(program, GL_VERTEX_SHADER, joined("330", source.vertex, source.macros));
+  attach(program, GL_FRAGMENT_SHADER, joined("330", source.fragment, source.macros));
+  link(program);
+  return program;
+}
+
+Program make_compute_program(std::initializer_list<std::string_view> texts,
+                             std::initializer_list<std::string_view> macros) {
+  Program program;
+  attach(program, GL_COMPUTE_SHADER, joined("430", texts, macros));
+  link(program);
   return program;
 }
 

@@ -9,7 +9,8 @@
 
 namespace glidar::opengl {
 
-/// Text of a file of shaders/, embedded in the library; throws std::out_of_range for unknown names.
+/// Text of a file of a folder shaders/, embedded in the library; throws std::out_of_range for
+/// unknown names.
 std::string_view shader_text(std::string_view file);
 
 /// Texts of each stage, which are concatenated, and macros for their compilation.
@@ -21,5 +22,9 @@ struct ProgramSource {
 
 /// Compiles and links for GLSL 3.30. Throws Error with the driver's log on failure.
 Program make_program(const ProgramSource& source);
+
+/// The same for a compute shader and GLSL 4.30.
+Program make_compute_program(std::initializer_list<std::string_view> texts,
+                             std::initializer_list<std::string_view> macros);
 
 }  // namespace glidar::opengl

@@ -12,6 +12,13 @@
 namespace glidar::opengl {
 namespace {
 
+template <class Value>
+void fill(const Buffer& buffer, GLenum target, const std::vector<Value>& values) {
+  glBindBuffer(target, buffer.name());
+  glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(Value)), values.data(),
+               GL_STATIC_DRAW);
+}
+
 /// Uploads an attribute of the bound vertex array, if the mesh has it.
 template <class Vector>
 void give(GLuint attribute, const DrawOrder& order, const std::vector<Vector>& values,

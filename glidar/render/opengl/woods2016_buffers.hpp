@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/opengl/scene_buffers.hpp>
+#include <glidar/core/scene.hpp>
+#include <glidar/render/draw_order.hpp>
+#include <glidar/render/opengl/gl_object.hpp>
 
 #include <vector>
 

@@ -28,6 +28,10 @@ bool last_is_alpha(const Scene& scene, const TextureUse& use) {
   return channels == 2 || channels == 4;
 }
 
+bool has_mask(const Material& material) {
+  return material.alpha_cutoff > 0.0F;
+}
+
 /// False if interpolated normals and the material's own colours suffice.
 bool needs_textures(const Material& material, const Mesh& mesh, const DrawRange& range) {
   return !is_smooth(range) || material.diffuse_texture.used() || material.specular_texture.used() ||

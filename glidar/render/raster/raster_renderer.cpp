@@ -11,7 +11,7 @@
 #include <glidar/render/raster/packed_mesh.hpp>
 #include <glidar/render/raster/tile_grid.hpp>
 #include <glidar/render/raster/visible_clusters.hpp>
-#include <glidar/render/rays/rays_renderer.hpp>
+#include <glidar/render/rays/tile_cast.hpp>
 #include <glidar/render/workspace_pool.hpp>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ std::uint64_t key(const VisibleCluster& cluster, std::uint32_t index) {
 class RasterRenderer final : public Renderer {
  public:
   explicit RasterRenderer(std::shared_ptr<CpuBase> base)
-      : base_(std::move(base)), triangles_(scene(), "raster") {
+      : base_(std::move(base)), triangles_(scene()), rays_(*base_) {
     for (std::size_t i = 0; i < scene().meshes.size(); ++i) {
       const Mesh& mesh = scene().meshes[i];
       packed_.emplace_back(mesh, base_->resolver.distinct(i));
@@ -83,7 +83,10 @@ class RasterRenderer final : public Renderer {
     resize(hits, request.beams.size(), request.hit_columns);
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
-    if (is_on_surface(request)) return cast_rays(request, hits);
+    if (is_on_surface(request)) {
+      if (rays_.prepare(request, hits)) rays_.cast(request, {}, hits);
+      return;
+    }
     base_->resolver.use_stored_planes(request.hit_columns, base_->thread_pool);
     if (!overlaps_) overlaps_.emplace(base_->resolver, base_->search.trees());
     overlaps_->prepare(request);
@@ -120,11 +123,6 @@ class RasterRenderer final : public Renderer {
       if (rays::may_touch_triangle(tree, sensor, reach)) return true;
     }
     return false;
-  }
-
-  void cast_rays(const CastRequest& request, Hits& hits) {
-    if (rays_ == nullptr) rays_ = make_rays_renderer(base_);
-    rays_->cast(request, hits);
   }
 
   [[nodiscard]] const raster::PackedMesh& packed_of(std::uint32_t instance) const {
@@ -290,7 +288,7 @@ class RasterRenderer final : public Renderer {
   std::vector<VisibleCluster> visible_clusters_;             ///< of all instances
   raster::TileGrid tiles_;
   WorkspacePool<TileScratch> scratch_pool_;
-  std::unique_ptr<Renderer> rays_;  ///< for a sensor on a surface
+  rays::TileCast rays_;  ///< for a sensor on a surface
 };
 
 }  // namespace

@@ -2,237 +2,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/rays_renderer.hpp>
 
-#include <glidar/core/progress_counter.hpp>
-#include <glidar/math/simd.hpp>
-#include <glidar/render/grid_window.hpp>
-#include <glidar/render/plane_points.hpp>
 #include <glidar/render/rays/footprint_search.hpp>
-#include <glidar/render/rays/tiles.hpp>
-#include <glidar/render/resolver.hpp>
+#include <glidar/render/rays/tile_cast.hpp>
 
-#include <array>
-#include <memory>
-#include <numeric>
 #include <utility>
 
 namespace glidar {
 namespace {
 
-/// Inputs that all tiles of a cast share.
-struct Job {
-  const Beams& beams;
-  const PlanePoints& points;
-  GridWindow window;  ///< beams outside of it miss
-  const HitColumnMask& hit_columns;
-  const Resolver& resolver;
-  const rays::BeamSearch& search;
-  bool is_searched;  ///< the hits have instances and primitives
-  Hits& hits;
-};
-
-/// Collects the beams of a tile that is completely in a pinhole's grid.
-void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, HitBatch& batch) {
-  const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
-  Lanes<double> x;
-  Lanes<double> y;
-  const std::size_t first = tile.beam(0);
-  for (unsigned lane = 0; lane < kLanes; ++lane) {
-    const std::uint32_t row = lane >> tile.width_shift;
-    const std::uint32_t col = lane & column_mask;
-    x[lane] = points.x[tile.first_col + col];
-    y[lane] = points.y[tile.first_row + row];
-    batch.block.beam[lane] = first + std::size_t{row} * tile.cols + col;
-  }
-  batch.block.mask = (1U << kLanes) - 1U;
-  directions_through(x, y, batch.beams.direction);
-}
-
-/// Copies kLanes vectors. Whole vectors are written, since vectors written one number at a time are
-/// slow to load.
-GLIDAR_SIMD void copy_run(const double* xyz, Lanes3<double>& to) {
-  for (unsigned i = 0; i < kLanes; ++i) to.x[i] = xyz[std::size_t{3} * i];
-  for (unsigned i = 0; i < kLanes; ++i) to.y[i] = xyz[std::size_t{3} * i + 1];
-  for (unsigned i = 0; i < kLanes; ++i) to.z[i] = xyz[std::size_t{3} * i + 2];
-}
-
-/// Collects the beams from `first` on.
-void gather_run(const Beams& beams, std::size_t first, HitBatch& batch) {
-  batch.block.mask = (1U << kLanes) - 1U;
-  std::iota(batch.block.beam.begin(), batch.block.beam.end(), first);
-  copy_run(beams.directions[first].data(), batch.beams.direction);
-  batch.beams.has_origins = !beams.origins_m.empty();
-  if (batch.beams.has_origins) copy_run(beams.origins_m[first].data(), batch.beams.origin_m);
-}
-
-/// Collects the tile's beams; lanes beyond the grid's border repeat the first, outside of the mask.
-void gather_beams(const Beams& beams, const rays::Tile& tile, HitBatch& batch) {
-  const bool whole = tile.is_whole(kLanes);
-  const std::size_t first = tile.beam(0);
-  const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
-  if (whole && column_mask == kLanes - 1U) return gather_run(beams, first, batch);
-  batch.block.mask = 0;
-  for (unsigned lane = 0; lane < kLanes; ++lane) {
-    const std::size_t beam =
-        first + std::size_t{lane >> tile.width_shift} * tile.cols + (lane & column_mask);
-    const bool inside = whole || tile.beam(lane) != rays::Tile::kOutside;
-    batch.block.mask |= static_cast<std::uint32_t>(inside) << lane;
-    batch.block.beam[lane] = inside ? beam : first;
-    batch.beams.direction.set(lane, beams.directions[batch.block.beam[lane]]);
-  }
-  batch.beams.has_origins = !beams.origins_m.empty();
-  if (!batch.beams.has_origins) return;
-  for (unsigned lane = 0; lane < kLanes; ++lane) {
-    batch.beams.origin_m.set(lane, beams.origins_m[batch.block.beam[lane]]);
-  }
-}
-
-/// Prefetches a tile's beams.
-void prefetch(const Beams& beams, const rays::Tile& tile) {
-  for (unsigned lane = 0; lane < kLanes; lane += 2) {  // two directions and a half per cache line
-    const std::size_t beam = tile.beam(lane);
-    if (beam == rays::Tile::kOutside) continue;
-    __builtin_prefetch(&beams.directions[beam]);
-    if (!beams.origins_m.empty()) __builtin_prefetch(&beams.origins_m[beam]);
-  }
-}
-
-/// Prefetches the triangles of the block's hits, and sets what the hits have in common.
-void prepare_hits(const Job& job, bool is_run, HitBlock& block) {
-  constexpr std::uint32_t kAll = (1U << kLanes) - 1U;
-  block.is_one_triangle = true;
-  block.is_run = is_run && block.mask == kAll;
-  PrimitiveRef last;
-  for_lanes(block.mask, [&](unsigned lane) {
-    if (block.primitive[lane] == last.primitive && block.instance[lane] == last.instance) return;
-    block.is_one_triangle = last.instance == kInvalidId;
-    last = {block.instance[lane], block.primitive[lane]};
-    job.resolver.prefetch(block, lane);
-  });
-}
-
-/// Takes what was found before.
-void take_found(const Hits& hits, HitBlock& block) {
-  for_lanes(block.mask, [&](unsigned lane) {
-    block.instance[lane] = hits.instance[block.beam[lane]];
-    block.primitive[lane] = hits.primitive[block.beam[lane]];
-    if (block.instance[lane] == kInvalidId) block.mask &= ~(1U << lane);
-  });
-}
-
-/// Collects and traces the beams of tile i.
-void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_t end,
-           HitBatch& batch) {
-  const rays::Tile tile = tiling.tile(i);
-  batch.block.mask = 0;
-  batch.block.is_run = false;
-  if (!job.window.meets(tile.window(kLanes))) return;
-  if (!job.points.x.empty() && tile.is_whole(kLanes)) {
-    gather_pinhole(job.points, tile, batch);
-  } else {
-    gather_beams(job.beams, tile, batch);
-    if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
-  }
-  if (job.is_searched) {
-    take_found(job.hits, batch.block);
-  } else {
-    job.search.find(batch.beams, batch.block);
-  }
-  prepare_hits(job, tiling.has_runs(), batch.block);
-}
-
-/// Writes misses to tiles [begin, end).
-void write_tile_misses(const Job& job, const rays::Tiling& tiling, std::size_t begin,
-                       std::size_t end) {
-  tiling.for_beam_rows(begin, end, [&](BeamRange row) {
-    write_misses(job.hit_columns, row.begin, row.end - row.begin, job.hits);
-  });
-}
-
-/// Casts tiles [begin, end). Three are in progress at a time: data that later steps of one need
-/// (the corners of its triangles) are prefetched while the next is traced.
-void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, std::size_t end) {
-  std::array<HitBatch, 3> batches;
-  if (!tiling.has_runs()) write_tile_misses(job, tiling, begin, end);
-  for (std::size_t i = begin; i < end + 2; ++i) {
-    if (i < end) {
-      HitBatch& batch = batches[i % batches.size()];
-      start(job, tiling, i, end, batch);
-      if (tiling.has_runs() && !batch.block.is_run) write_tile_misses(job, tiling, i, i + 1);
-    }
-    if (i >= begin + 1 && i - 1 < end) {
-      job.resolver.prefetch_corners(batches[(i - 1) % batches.size()].block, job.hit_columns);
-    }
-    if (i < begin + 2) continue;
-    // Hits are written over the misses.
-    job.resolver.write_batch(job.beams, job.hit_columns, batches[(i - 2) % batches.size()],
-                             job.hits);
-  }
-}
-
 class RaysRenderer final : public Renderer {
  public:
-  explicit RaysRenderer(std::shared_ptr<CpuBase> base) : base_(std::move(base)) {
-    for (const Mesh& mesh : base_->resolver.scene().meshes) mesh_boxes_.push_back(bounds(mesh));
-  }
+  explicit RaysRenderer(std::shared_ptr<CpuBase> base) : base_(std::move(base)), tiles_(*base_) {}
 
   [[nodiscard]] std::string_view name() const override { return "rays"; }
   [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
 
   void cast(const CastRequest& request, Hits& hits) override {
-    Resolver& resolver = base_->resolver;
-    check(request, resolver.scene());
-    resize(hits, request.beams.size(), request.hit_columns);
-    if (!any_instance_enabled(request, resolver.scene())) {
-      write_misses(request.hit_columns, 0, request.beams.size(), hits);
-      if (request.on_tile_done) request.on_tile_done({0, request.beams.size()});
-      return;
-    }
-    resolver.set_poses(request.world_from_sensor, request.world_from_instance);
-    resolver.use_stored_planes(request.hit_columns, base_->thread_pool);
-    base_->search.prepare(request);
-    find_plane_points(request.beams, points_);
+    if (!tiles_.prepare(request, hits)) return;
     const rays::FootprintSearch footprints(base_->search.beams());
-    const Job job{
-        .beams = request.beams,
-        .points = points_,
-        .window = visible_window(resolver, mesh_boxes_, request.instance_enabled, points_),
-        .hit_columns = request.hit_columns,
-        .resolver = resolver,
-        .search = base_->search.beams(),
-        .is_searched = footprints.is_useful(),
-        .hits = hits};
-    const rays::Tiling tiling(request.beams);
-    ProgressCounter count(request.progress, tiling.size());
-    // Footprints are in one row. kLanes of them fill as many tiles as each has sub-rays.
-    const std::size_t footprint = job.is_searched ? request.footprints.beams : 1;
-    const std::size_t grain = std::max<std::size_t>(1, kTilesPerTask / footprint);
-    thread_pool().parallel_for(
-        (tiling.size() + footprint - 1) / footprint, grain,
-        [&](std::size_t begin, std::size_t end) {
-          begin *= footprint;
-          end = std::min(end * footprint, tiling.size());
-          while (begin < end) {
-            const std::size_t run_end = tiling.end_of_run(begin, end, grain * footprint);
-            if (job.is_searched)
-              footprints.find({begin * kLanes / footprint,
-                               std::min(run_end * kLanes, request.beams.size()) / footprint},
-                              hits);
-            cast_tiles(job, tiling, begin, run_end);
-            if (request.on_tile_done) tiling.for_beam_rows(begin, run_end, request.on_tile_done);
-            count.add(run_end - begin);
-            begin = run_end;
-          }
-        });
-    count.finish();
+    if (!footprints.is_useful()) return tiles_.cast(request, {}, hits);
+    const std::size_t size = request.footprints.beams;
+    const auto find = [&](BeamRange beams) {  // footprints are in one row
+      footprints.find({beams.begin / size, beams.end / size}, hits);
+    };
+    tiles_.cast(
+        request,
+        {.find = FunctionRef<void(BeamRange)>(find), .beams_at_once = request.footprints.beams},
+        hits);
   }
 
  private:
-  // About 50 microseconds of work, and its hits fit into a core's private cache.
-  static constexpr std::size_t kTilesPerTask = 64;
-
   std::shared_ptr<CpuBase> base_;
-  PlanePoints points_;
-  std::vector<Eigen::AlignedBox3d> mesh_boxes_;  ///< per mesh, in the object's frame
+  rays::TileCast tiles_;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/model.hpp>
-#include <glidar/render/opengl/opengl_renderer.hpp>
+#include <glidar/render/gpu/gpu_renderer.hpp>
 #include <glidar/simulate/simulator.hpp>
 
 #define GLFW_INCLUDE_NONE
@@ -108,8 +108,8 @@ TEST_F(WindowTest, CloudsAreTheSameWithTheContextOfAWindowAndWithout) {
     Simulator(scene, sensor, *renderer).simulate(motion, kAllHitColumns, frame);
     return frame;
   };
-  const Frame with = measured(make_opengl_renderer(scene, {}, std::make_unique<GlfwContext>()));
-  const Frame without = measured(make_opengl_renderer(scene, {}));
+  const Frame with = measured(make_gpu_renderer(scene, {}, std::make_unique<GlfwContext>()));
+  const Frame without = measured(make_gpu_renderer(scene, {}));
   EXPECT_EQ(with.status, without.status);
   EXPECT_EQ(with.ground_truth.primitive, without.ground_truth.primitive);
   EXPECT_EQ(0, std::memcmp(with.range_m.data(), without.range_m.data(),

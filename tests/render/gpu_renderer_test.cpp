@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenGL only: selection of devices, and many renderers at a time.
+// The gpu renderer only: selection of devices, and many renderers at a time.
 #include <glidar/core/error.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <render/renderer_suite.hpp>
@@ -12,32 +12,43 @@ namespace {
 using testing::builtin_scene;
 using testing::camera_beams;
 
-class OpenglRenderer : public ::testing::Test {
+class GpuRenderer : public ::testing::Test {
  protected:
-  void SetUp() override { GLIDAR_NEEDS_OPENGL(); }
+  void SetUp() override { GLIDAR_NEEDS_GPU(); }
 };
 
-TEST_F(OpenglRenderer, AnUnknownDeviceIsAnErrorThatListsTheDevices) {
+TEST_F(GpuRenderer, AnUnknownDeviceIsAnErrorThatListsTheDevices) {
   const std::vector<std::string> devices = opengl::graphics_devices();
   if (devices.empty()) GTEST_SKIP() << "this EGL does not list devices; install libegl-mesa0";
   const Scene scene;
   const std::string text = error_text(
-      [&] { make_renderer(scene, {.kind = "opengl", .threads = 1, .graphics_device = 1000}); });
+      [&] { make_renderer(scene, {.kind = "gpu", .threads = 1, .graphics_device = 1000}); });
   EXPECT_EQ(text.rfind("graphics device: 1000; allowed: 0: " + devices[0], 0), 0U) << text;
 }
 
-TEST_F(OpenglRenderer, ManyRenderersCanDrawInTurns) {
+TEST_F(GpuRenderer, ManyRenderersCanCastInTurns) {
   const Scene scene = builtin_scene("box");
   const Beams beams = camera_beams(8, 8, 8.0);
-  const auto first = make_renderer(scene, {.kind = "opengl", .threads = 1});
+  const auto first = make_renderer(scene, {.kind = "gpu", .threads = 1});
   Hits hits;
   for (int i = 0; i < 20; ++i) {
-    const auto other = make_renderer(scene, {.kind = "opengl", .threads = 1});
+    const auto other = make_renderer(scene, {.kind = "gpu", .threads = 1});
     other->cast({.beams = beams, .hit_columns = {}}, hits);
     const Hits theirs = hits;
     first->cast({.beams = beams, .hit_columns = {}}, hits);
     EXPECT_EQ(hits.primitive, theirs.primitive);
   }
+}
+
+TEST(GpuDevice, OneSentenceSaysWhatItLacks) {
+  GLIDAR_NEEDS_OPENGL();
+  const std::string& missing = testing::missing_gpu();
+  if (missing.empty()) GTEST_SKIP() << "this device lacks nothing";
+  EXPECT_EQ(missing.rfind("gpu renderer: ", 0), 0U) << missing;
+  EXPECT_NE(missing.find(" has OpenGL 3.3; allowed: OpenGL 4.3 with compute shaders"),
+            std::string::npos)
+      << missing;
+  EXPECT_NE(missing.find("--renderer rays"), std::string::npos) << missing;
 }
 
 }  // namespace

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/gpu/device_beams.hpp>
+#include <glidar/render/gpu/device_scene.hpp>
+#include <glidar/render/rays/scene_trees.hpp>
+#include <glidar/render/renderer.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace glidar::gpu {
+
+/// In place of a primitive: the host must cast the beam.
+inline constexpr std::uint32_t kUndecided = 0xfffffffeU;
+
+/// What the device found for the beams of a view.
+struct FoundHits {
+  /// Per beam the primitive, kNone or kUndecided; with has_instances its instance follows.
+  std::span<const std::uint32_t> ids;
+  std::span<const double> range_m;  ///< of decided hits; empty: not requested
+  bool has_instances = false;
+  std::uint32_t instance = kNone;  ///< of all hits, without has_instances
+};
+
+/// The program that casts beams into a scene.
+opengl::Program make_cast_program(const Scene& scene);
+
+/// Views that the device casts together: requests with the same beams, culling and columns.
+class DeviceBatch {
+ public:
+  DeviceBatch() = default;
+  ~DeviceBatch();
+  DeviceBatch(const DeviceBatch&) = delete;
+  DeviceBatch& operator=(const DeviceBatch&) = delete;
+
+  /// True if the device can cast a request for which the trees are prepared.
+  static bool can_cast(const CastRequest& request, const rays::SceneTrees& trees);
+
+  /// Forgets all views.
+  void clear();
+
+  /// Adds the view of a request for which resolver and trees are prepared.
+  void add(const CastRequest& request, const DeviceScene& scene, const Resolver& resolver,
+           const rays::SceneTrees& trees);
+
+  /// Starts the cast of all views by the current program, to which the scene is bound.
+  void start(const CastRequest& request, bool with_ranges, DeviceBeams& beams);
+
+  /// Waits until the device is done.
+  void wait();
+
+  /// Of a view that was added, until the next start().
+  [[nodiscard]] FoundHits found(std::size_t view) const;
+
+ private:
+  /// Memory of the host that the device writes to.
+  struct Mapped {
+    opengl::Buffer buffer;
+    void* data = nullptr;
+    std::size_t bytes = 0;
+  };
+  /// In the layout of the shader.
+  struct Frame {
+    std::array<std::array<double, 4>, 3> rows;
+    std::array<double, 4> sensor;
+    std::array<double, 4> sphere;
+    std::array<float, 4> reach;
+    std::array<std::uint32_t, 4> mesh;
+  };
+  struct View {
+    std::uint32_t first_frame;
+    std::uint32_t end_frame;
+    std::uint32_t tree_frame;
+    std::uint32_t unused;
+  };
+
+  static Frame frame_of(const InstanceView& view, const rays::MeshSphere& sphere);
+  void add_frame(std::uint32_t instance, double tie_reach_m, const DeviceScene& scene,
+                 const Resolver& resolver);
+  [[nodiscard]] std::uint32_t add_tree(const rays::SceneTrees& trees, std::size_t instances);
+  static void make_room(std::size_t bytes, Mapped& mapped);
+  void upload(const CastRequest& request, DeviceBeams& beams);
+  void dispatch(const CastRequest& request) const;
+
+  std::array<opengl::Buffer, 4> inputs_;  ///< frames, views, nodes of trees, targets
+  Mapped ids_;
+  Mapped ranges_;
+  GLsync done_ = nullptr;
+  std::size_t beams_ = 0;  ///< of each view
+  bool has_ranges_ = false;
+  bool has_instances_ = false;
+  std::vector<Frame> frames_;
+  std::vector<View> views_;
+  std::vector<rays::TreeNode> nodes_;
+  std::vector<rays::TreeNode> tree_;        ///< that is being added
+  std::size_t last_tree_ = 0;               ///< where the nodes of the last one start
+  std::vector<std::uint32_t> position_of_;  ///< per instance, among those of a view
+};
+
+}  // namespace glidar::gpu
