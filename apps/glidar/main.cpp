@@ -133,40 +133,15 @@ int report_error(const std::string& message) {
   return kBadInput;
 }
 
-/// The words of the command line as the options have them: `help render` is `render --help`, and
-/// options may be spelled in American English. A word after --help goes to `section`. Throws Error
-/// for `-h 480`.
-std::vector<std::string> tidied(std::vector<std::string> words, std::string& section) {
-  if (!words.empty() && words.front() == "help") {
-    words.erase(words.begin());
-    words.insert(words.begin() + (words.empty() ? 0 : 1), "--help");
-  }
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    std::string& word = words[i];
-    const std::string next = i + 1 < words.size() ? words[i + 1] : "";
-    const bool is_help = i > 0 && (word == "-h" || word == "--help") && !next.starts_with('-');
-    if (is_help && !next.empty() && next.find_first_not_of("0123456789") == std::string::npos) {
-      throw Error(
-          {"-h " + next, "-h prints the help", "", "the height of an image is --height " + next});
-    }
-    if (is_help) section = next;
-    if (!word.starts_with("--")) continue;
-    const std::size_t end = std::min(word.find('='), word.size());
-    word =
-        std::regex_replace(std::regex_replace(word.substr(0, end), std::regex("color"), "colour"),
-                           std::regex("center"), "centre") +
-        word.substr(end);
-  }
-  return words;
-}
-
 int parse_and_run(CLI::App& program, const Commands& commands,
                   const std::vector<std::string>& arguments, const std::string& section) {
   try {
     program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& help_or_version) {
     if (section.empty()) return program.exit(help_or_version);
-    print_lines(stdout, section_help(chosen(program), section));
+    const std::string text = section_help(chosen(program), section);
+    if (text.empty()) return program.exit(help_or_version);
+    print_lines(stdout, text);
     return kDone;
   } catch (const CLI::ArgumentMismatch& error) {
     return report_error(explain_mismatch(chosen(program), error.what()));
@@ -233,6 +208,61 @@ std::vector<Subcommand> all_subcommands() {
           subcommand("tof", add_tof),
           subcommand("verify", add_verify),
           subcommand("completion", add_completion)};
+}
+
+bool is_subcommand(const std::string& word) {
+  const std::vector<Subcommand> all = all_subcommands();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const Subcommand& one) { return one.name == word; });
+}
+
+/// Appends a word as the options have it: `-qj4` as `-q -j 4`, American spellings as ours.
+void append_option(const std::string& word, std::vector<std::string>& words) {
+  const bool is_short = word.size() > 2 && word[0] == '-' && word[1] != '-';
+  const std::size_t at = is_short ? word.find_first_not_of('q', 1) : 1;
+  for (std::size_t i = 1; i < std::min(at, word.size()); ++i) words.emplace_back("-q");
+  if (at == std::string::npos) return;
+  const std::string rest = at == 1 ? word : "-" + word.substr(at);
+  if (is_short && rest.size() > 2 &&
+      std::string_view("jow").find(rest[1]) != std::string_view::npos) {
+    words.push_back(rest.substr(0, 2));
+    words.push_back(rest.substr(2));
+    return;
+  }
+  const std::string name = rest.substr(0, rest.find('='));
+  const std::string value = rest.substr(name.size());
+  words.push_back(name == "--color-by" ? "--colour-by" + value
+                  : name == "--center" ? "--centre" + value
+                                       : rest);
+}
+
+/// The words of the command line as the options have them. `help render` becomes `render --help`; a
+/// word after the help goes to `section`. Throws Error for `-h 480`.
+std::vector<std::string> tidied(std::vector<std::string> given, std::string& section) {
+  const bool asks_help = !given.empty() && given.front() == "help";
+  if (asks_help) given.erase(given.begin());
+  if (asks_help && (given.empty() || is_subcommand(given.front())))
+    given.insert(given.begin() + (given.empty() ? 0 : 1), "--help");
+  const std::string command = given.empty() ? "" : given.front();
+  if (command == "campaign") return given;  // it has its own command line
+  const bool has_height = command == "render" || command == "view" || command == "stream";
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const std::string next = i + 1 < given.size() ? given[i + 1] : "";
+    if (given[i] == "--") {
+      words.insert(words.end(), given.begin() + static_cast<std::ptrdiff_t>(i), given.end());
+      break;
+    }
+    if (has_height && given[i] == "-h" && !next.empty() &&
+        next.find_first_not_of("0123456789") == std::string::npos) {
+      throw Error(
+          {"-h " + next, "-h prints the help", "", "the height of an image is --height " + next});
+    }
+    if (i > 0 && (given[i] == "-h" || given[i] == "--help") && !next.starts_with('-'))
+      section = next;
+    append_option(given[i], words);
+  }
+  return words;
 }
 
 constexpr const char* kExamples = R"(Examples:

@@ -90,18 +90,34 @@ Decoded decode_webp(std::span<const std::uint8_t> bytes, std::uint64_t budget) {
   return decoded;
 }
 
+/// Scans of a JPEG (ITU-T T.81, annex B), without those in its thumbnails and after its end.
+std::uint64_t scans_of(std::span<const std::uint8_t> jpeg) {
+  constexpr std::uint8_t kMarker = 0xFF;
+  constexpr std::uint8_t kEnd = 0xD9;
+  constexpr std::uint8_t kScan = 0xDA;
+  std::uint64_t scans = 0;
+  for (std::size_t at = 2; at + 3 < jpeg.size();) {
+    const std::uint8_t code = jpeg[at + 1];
+    const bool is_data = jpeg[at] != kMarker || code == 0 || code == kMarker ||
+                         (code >= 0xD0 && code < kEnd);  // restarts have no content
+    if (is_data) {
+      ++at;
+      continue;
+    }
+    if (code == kEnd) break;
+    if (code == kScan) ++scans;
+    at += 2 + (std::size_t{jpeg[at + 2]} << 8U) + jpeg[at + 3];
+  }
+  return scans;
+}
+
 /// Each scan of a progressive JPEG costs time for all texels, however small it is.
 bool has_too_many_scans(std::span<const std::uint8_t> bytes, std::uint64_t texels) {
-  constexpr std::array<std::uint8_t, 2> kScan = {0xFF, 0xDA};
   constexpr std::uint64_t kAlways = 32;                         // encoders write about ten
   constexpr std::uint64_t kMostWork = std::uint64_t{1} << 29U;  // texels: about a second
-  if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
-  std::uint64_t scans = 0;
-  for (auto at = bytes.begin(); at != bytes.end(); ++scans) {
-    at = std::search(at, bytes.end(), kScan.begin(), kScan.end());
-    if (at != bytes.end()) at += kScan.size();
-  }
-  return scans > std::max(kAlways, kMostWork / std::max<std::uint64_t>(texels, 1));
+  const bool is_jpeg = bytes.size() > 1 && bytes[0] == 0xFF && bytes[1] == 0xD8;
+  return is_jpeg &&
+         scans_of(bytes) > std::max(kAlways, kMostWork / std::max<std::uint64_t>(texels, 1));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ class Woods2016Camera {
 std::unique_ptr<Woods2016Camera> make_woods2016_camera(const Scene& scene,
                                                        const RendererOptions& options);
 
-/// The same with the caller's context, see make_opengl_renderer().
+/// The same with the caller's context, see make_gpu_renderer().
 std::unique_ptr<Woods2016Camera> make_woods2016_camera(const Scene& scene,
                                                        const RendererOptions& options,
                                                        std::unique_ptr<opengl::Context> context);

@@ -229,10 +229,10 @@ class Frame(DepthImages, Immutable):
         view_target: npt.ArrayLike | None = None,
     ) -> None:
         """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv .las .bin
-        .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .ir.png .ir_left.png
-        .ir_right.png .ir_reference.png .tof.npy .patterns.npy .exr .png .bev.png .view.png .transform .mcap .bag
-        .rosbag2. The last three are ROS bags, to which only columns, layout and deskew apply; ``save_bag`` writes
-        several frames to one.
+        .kitti .npy .depth.npy .range.npy .depth.png .range.png .depth.tiff .rgb.png .normal.png .instance.png
+        .class.png .ir.png .ir_left.png .ir_right.png .ir_reference.png .tof.npy .patterns.npy .exr .png .bev.png
+        .view.png .transform .mcap .bag .rosbag2. The last three are ROS bags, to which only columns, layout and
+        deskew apply; ``save_bag`` writes several frames to one. ``.npy`` of a LiDAR has ranges.
 
         Args:
             columns, frame, drop_invalid, deskew: as for ``cloud``. By default "sensor"; .las files are in "world" and

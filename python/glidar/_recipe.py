@@ -41,23 +41,31 @@ class _Register:
 
     def set(self, index: int, info: dict[str, Any]) -> None:
         """Replaces the attributes of an object, or adds those of the next."""
-        if index < len(self._objects):
-            self._remove(index)
-        else:
+        if index == len(self._objects):
             self._objects.append({})
-        self._objects[index] = {key: info[key] for key in self._count}
-        for key, value in self._objects[index].items():
-            self._count[key][value] += 1
+        for key, count in self._count.items():
+            if self._objects[index].get(key) == info[key]:
+                continue
+            self._give_up(index, key)
+            self._objects[index][key] = info[key]
+            count[info[key]] += 1
 
     def drop_last(self) -> None:
         """Removes the last object."""
-        self._remove(len(self._objects) - 1)
+        for key in self._count:
+            self._give_up(len(self._objects) - 1, key)
         self._objects.pop()
 
-    def _remove(self, index: int) -> None:
-        self._next_number.clear()
-        for key, value in self._objects[index].items():
-            self._count[key][value] -= 1
+    def _give_up(self, index: int, key: str) -> None:
+        value = self._objects[index].get(key)
+        if value is None:
+            return
+        self._count[key][value] -= 1
+        if key == "name":
+            base, _, number = value.rpartition("_")
+            for freed, place in ((value, "1"), (base, number)):
+                if freed in self._next_number and place.isdecimal() and place.isascii() and len(place) < 10:
+                    self._next_number[freed] = min(self._next_number[freed], int(place))
 
     def is_taken(self, key: str, value: Any, index: int = -1) -> bool:
         """Whether an object other than this one has the name or id."""

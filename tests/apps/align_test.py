@@ -45,7 +45,7 @@ class AlignCommand(PngTest):
 
     def test_errors_name_what_is_wrong(self):
         self.store("small.png", [[1, 2]])
-        self.write("bad.yaml", CAMERAS.replace("POSITION", "0, 0, 0").replace("colour:", "color:"))
+        self.write("bad.yaml", CAMERAS.replace("POSITION", "0, 0, 0").replace("colour:", "rgb:"))
         cases = (
             (("d.png", "-o", "o.png"), "--cameras"),
             (("d.png", "--cameras", "cameras.yaml"), "--output"),

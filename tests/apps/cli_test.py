@@ -86,7 +86,19 @@ class Words(CliTest):
         self.assertEqual(text, self.succeed("render", "--help", "Fisher").stdout)
         self.assertIn("--range-sigma M", text)
         self.assertNotIn("--sensor", text)
-        self.assertIn("allowed: Options, Output", self.refused("help", "render", "nothing"))
+        for words in (("help", "render", "nothing"), ("render", "--help", "model.obj"), ("render", "a.obj", "--help", "b.obj")):
+            self.assertEqual(self.succeed(*words).stdout, self.succeed("render", "--help").stdout, words)
+        self.assertIn("'nothing' is no subcommand", self.refused("help", "nothing"))
+
+    def test_joined_short_options_are_recorded_as_the_same_command(self):
+        for words in (("-qo", "a.pcd"), ("-qj", "2", "-o", "a.pcd"), ("-qqj2", "-oa.pcd"), ("-o", "a.pcd")):
+            self.succeed("render", "builtin:box", *words)
+            command = json.loads(self.bytes_of("a.pcd.json"))["command"]["arguments"]
+            self.assertEqual(command, ["render", "builtin:box", "-o", "a.pcd"], words)
+            self.succeed("explain", "a.pcd", "--index", "3")
+
+    def test_words_after_two_hyphens_stay_as_they_are(self):
+        self.assertIn("--color-by.obj", self.refused("render", "-o", "a.pcd", "--", "--color-by.obj"))
 
     def test_completions_know_commands_options_and_presets(self):
         self.write("glidar.bash", self.succeed("completion", "bash").stdout)

@@ -63,10 +63,11 @@ class Images(CliTest):
     def test_the_scans_of_a_jpeg_are_limited_by_its_size(self):
         self.write("a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n")
         self.write("a.mtl", "newmtl m\nmap_Kd a.jpg\n")
-        for side, scans, is_read in ((16, 30, True), (16, 1000, True), (4096, 40, False)):
+        for side, scans, after, is_read in ((16, 30, b"", True), (16, 1000, b"", True), (4096, 40, b"", False),
+                                            (4096, 3, 100 * b"\xff\xda", True)):
             with self.subTest(side=side, scans=scans):
                 with open(os.path.join(self.folder, "a.jpg"), "wb") as file:
-                    file.write(progressive_jpeg(side, scans))
+                    file.write(progressive_jpeg(side, scans) + after)
                 text = self.succeed("info", "a.obj").stdout
                 self.assertEqual("a JPEG with too many scans" not in text, is_read, text)
                 self.assertEqual("MISSING" not in text, is_read, text)

@@ -102,7 +102,7 @@ def test_metres_and_other_values_move_along():
 
 @pytest.mark.parametrize("cameras, text", [
     ({"depth": DEPTH, "colour": FINER}, "colour_from_depth"),
-    ({"depth": DEPTH, "color": FINER, "colour_from_depth": POSE}, "colour"),
+    ({"depth": DEPTH, "rgb": FINER, "colour_from_depth": POSE}, "colour"),
     ({"depth": {**DEPTH, "width": 0}, "colour": FINER, "colour_from_depth": POSE}, "depth.width"),
     ("missing.yaml", "missing.yaml"),
 ])

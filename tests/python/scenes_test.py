@@ -409,6 +409,11 @@ def test_adding_and_moving_instances_takes_time_that_does_not_depend_on_the_scen
     scene = glidar.Scene()
     box = scene.add_mesh(BOX, FACES)
     scene.add_instances(box, poses_along_x(5000))
+    scene.add_instance(box)  # passes all names in use, once
+    looked_up = []
+    register = scene._recipe.register(len(scene))
+    is_taken = register.is_taken
+    register.is_taken = lambda *arguments: looked_up.append(arguments) or is_taken(*arguments)
     reads = []
     core = scene._recipe.core
     scene._recipe.core = type("Counting", (), {
@@ -419,6 +424,7 @@ def test_adding_and_moving_instances_takes_time_that_does_not_depend_on_the_scen
         scene.add_instance(box, pose=np.eye(4), name=f"new {number}")
         scene.objects[-1].name = f"renamed {number}"
     assert len(reads) < 100
+    assert len(looked_up) < 200
 
 
 def test_names_and_ids_that_were_given_up_are_free_again():

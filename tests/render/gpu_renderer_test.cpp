@@ -40,10 +40,25 @@ TEST_F(GpuRenderer, ManyRenderersCanCastInTurns) {
   }
 }
 
+TEST_F(GpuRenderer, CastsMoreViewsThanGroupsAlongADimension) {
+  const Scene scene = builtin_scene("box");
+  const Beams beams = camera_beams(1, 1, 8.0);
+  constexpr std::size_t kViews = 65537;
+  std::vector<Hits> hits(kViews);
+  std::vector<Hits*> to;
+  for (Hits& one : hits) to.push_back(&one);
+  const std::vector<CastRequest> requests(kViews, {.beams = beams, .hit_columns = {}});
+  make_renderer(scene, {.kind = "gpu", .threads = 1})->cast_batch(requests, to);
+  for (const Hits& one : hits) ASSERT_EQ(one.primitive, hits.front().primitive);
+  Hits rays;
+  make_renderer(scene, {.kind = "rays", .threads = 1})->cast(requests.front(), rays);
+  EXPECT_EQ(hits.front().primitive, rays.primitive);
+}
+
 TEST(GpuDevice, OneSentenceSaysWhatItLacks) {
   GLIDAR_NEEDS_OPENGL();
   const std::string& missing = testing::missing_gpu();
-  if (missing.empty()) GTEST_SKIP() << "this device lacks nothing";
+  if (missing.empty()) GTEST_SKIP() << "this device has all that gpu needs; nothing to do";
   EXPECT_EQ(missing.rfind("gpu renderer: ", 0), 0U) << missing;
   EXPECT_NE(missing.find(" has OpenGL 3.3; allowed: OpenGL 4.3 with compute shaders"),
             std::string::npos)

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/options/help_text.hpp>
 
-#include <glidar/core/error.hpp>
 #include <glidar/core/text.hpp>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -64,9 +61,7 @@ std::string section_help(const CLI::App& command, const std::string& words) {
     if (lower_case(heading).find(lower_case(words)) == std::string::npos) continue;
     text += layout.make_group(heading, false, command.get_options(is_under));
   }
-  if (!text.empty()) return text;
-  throw Error({"--help " + words, "no options have such a heading",
-               fmt::format("{}", fmt::join(headings, ", "))});
+  return text;
 }
 
 void use_help_layout(CLI::App& program) {

@@ -15,8 +15,7 @@ inline constexpr const char* kWoods2016Heading = "Woods 2016 compatibility";
 /// The words in lines of at most 100 columns, each after two spaces.
 std::string indented(std::string_view words);
 
-/// The help of the options of a command under headings that contain the words. Throws Error with
-/// all headings if there is none.
+/// The help of the options of a command under headings that contain the words; empty: none.
 std::string section_help(const CLI::App& command, const std::string& words);
 
 /// Sets the layout of --help for the program and the subcommands that are added later.

@@ -41,7 +41,7 @@ void add_run_options(CLI::App& command, RendererOptions& options, const std::str
   std::vector<std::string> names = renderer_kinds();
   names.emplace_back("opengl");  // another name of gpu
   group.add("--renderer", "NAME",
-            fmt::format("How beams are cast: {} [{}]; opengl is gpu",
+            fmt::format("How beams are cast: {} [{}]; opengl: gpu",
                         fmt::join(renderer_kinds(), ", "), options.kind),
             options.kind, one_of(std::move(names)));
   add_threads_option(group, options);

@@ -251,13 +251,23 @@ bool straddles_zero(double min, double max) {
   return min < -part && max > part;
 }
 
-/// Wide, low, and of many triangles.
+/// Wide and low, of many triangles, nearly all of which face up: without an underside.
 bool looks_like_terrain(const Scene& scene, const Eigen::Vector3d& size_m) {
   constexpr double kLow = 0.25;
   constexpr std::size_t kFewTriangles = 500;
+  constexpr double kUp = 0.9;
   std::size_t triangles = 0;
-  for (const Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
-  return triangles > kFewTriangles && size_m.z() < kLow * std::min(size_m.x(), size_m.y());
+  std::size_t up = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    const auto corner = [&](std::uint32_t vertex) { return mesh.positions_m[vertex]; };
+    triangles += mesh.triangles.size();
+    up += static_cast<std::size_t>(std::ranges::count_if(mesh.triangles, [&](const Triangle& t) {
+      return (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).z() > 0.0F;
+    }));
+  }
+  return triangles > kFewTriangles &&
+         static_cast<double>(up) > kUp * static_cast<double>(triangles) &&
+         size_m.z() < kLow * std::min(size_m.x(), size_m.y());
 }
 
 }  // namespace

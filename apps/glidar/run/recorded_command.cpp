@@ -29,9 +29,7 @@ std::vector<std::string> without(const std::vector<std::string>& arguments, Name
   std::vector<std::string> kept;
   bool is_value = false;
   for (const std::string& argument : arguments) {
-    const bool is_attached = argument.size() > 2 && argument[0] == '-' && argument[1] != '-';  // -j4
-    const std::size_t end = is_attached ? 2 : argument.find('=');
-    const std::string_view name = std::string_view(argument).substr(0, end);
+    const std::string_view name = std::string_view(argument).substr(0, argument.find('='));
     const bool is_option = !is_value && (has(flags, name) || has(with_value, name));
     if (!is_option && !is_value) kept.push_back(argument);
     is_value = is_option && has(with_value, argument);

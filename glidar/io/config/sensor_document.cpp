@@ -27,7 +27,6 @@ struct UsualRange {
 
 constexpr std::array kUsual = {
     UsualRange{"elevation_deg", 1.0, 360.0, true, "are these radians?"},
-    UsualRange{"fov_deg", 1.0, 180.0, false, "is this in radians?"},
     UsualRange{"rate_hz", 0.01, 1e4, false, "is this a period or a rate of points?"},
     UsualRange{"wavelength_nm", 200.0, 20'000.0, false, "is this in micrometres?"},
     UsualRange{"reference_reflectance", 0.001, 1.5, false, "is this in percent?"},

@@ -46,8 +46,8 @@ void check_distances(const Column& column, double units_per_m, const AtomicFile&
                      column.name, max_m, units_per_m),
          fmt::format("up to {:.9g} m", kMaxDepthGrey / units_per_m),
          fmt::format("use {:.9g} units per metre (--depth-scale, depth_units_per_m in Python), or "
-                     "write .npy or .depth.tiff",
-                     fitting_scale(max_m))});
+                     "write .{}.npy",
+                     fitting_scale(max_m), column.name)});
   }
 }
 

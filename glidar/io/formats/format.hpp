@@ -59,6 +59,7 @@ Format las_format();            ///< point record format 6, without misses
 Format kitti_format();          ///< see kitti_cloud()
 Format kitti_folder_format();   ///< frames that are written one by one, see stage_kitti_scan()
 Format npy_format();            ///< depth, of LiDARs range, in metres
+Format depth_npy_format();      ///< depth in metres, for every sensor
 Format range_npy_format();      ///< range in metres, for every sensor
 Format depth_png_format();      ///< 16-bit
 Format range_png_format();      ///< 16-bit

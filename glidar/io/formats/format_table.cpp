@@ -9,7 +9,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 
 namespace glidar {
 
@@ -24,6 +27,7 @@ const std::vector<Format>& formats() {
       kitti_format(),
       kitti_folder_format(),
       npy_format(),
+      depth_npy_format(),
       range_npy_format(),
       depth_png_format(),
       range_png_format(),
@@ -72,22 +76,27 @@ const Format* matching_format(const std::filesystem::path& path) {
 }
 
 /// Refuses names such as a.dept.png, which would be a picture although another image was meant. The
-/// part before the suffix may be a number.
+/// part before the suffix may be a number, a letter, or the suffix of a model.
 void require_known_kind(const std::filesystem::path& path, const Format& format) {
+  constexpr std::array<std::string_view, 10> kModels = {".obj", ".ply", ".stl", ".off",  ".gltf",
+                                                        ".glb", ".dae", ".fbx", ".yaml", ".yml"};
   const std::string& suffix = format.info.suffix;
   std::string stem = without_separators(path).filename().string();
   stem.resize(stem.size() - suffix.size());
   const std::string kind = lower_case(std::filesystem::path(stem).extension().string());
-  const bool is_word = kind.size() > 1 && kind.find_first_not_of("abcdefghijklmnopqrstuvwxyz_",
-                                                                 1) == std::string::npos;
+  const bool is_word =
+      kind.size() > 2 &&
+      kind.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", 1) == std::string::npos &&
+      std::ranges::find(kModels, kind) == kModels.end();
   std::vector<std::string> known;
   for (const Format& other : formats()) {
-    if (other.info.suffix.ends_with(suffix)) known.push_back(other.info.suffix);
+    if (other.info.suffix.ends_with(suffix) && other.info.suffix != suffix)
+      known.push_back(other.info.suffix);
   }
-  if (!is_word || known.size() < 2) return;
+  if (!is_word || known.empty()) return;
   const std::string nearest = closest_match(kind + suffix, known);
   throw Error({path.string(), fmt::format("no format has the suffix {}", excerpt(kind + suffix)),
-               fmt::format("{}", fmt::join(known, " ")),
+               fmt::format("{} {}", suffix, fmt::join(known, " ")),
                (nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest)) +
                    "use another character than the dot for a name"});
 }

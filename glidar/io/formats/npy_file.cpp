@@ -56,6 +56,13 @@ Format npy_format() {
           .pixels = "depth in metres as 32-bit float; NaN: no return"};
 }
 
+Format depth_npy_format() {
+  Format format = npy_format();
+  format.info.suffix = ".depth.npy";
+  format.info.description = "NumPy depth image, metres";
+  return format;
+}
+
 Format range_npy_format() {
   return {.info = {.suffix = ".range.npy",
                    .description = "NumPy range image, metres",

@@ -24,6 +24,9 @@ constexpr std::size_t kUnderWay = 3;
 /// hits is small.
 constexpr std::size_t kMaxBeams = std::size_t{1} << 22U;
 
+/// Views of a part: OpenGL guarantees so many groups along a dimension.
+constexpr std::size_t kMaxViews = 65535;
+
 /// Instances of all views of a part, unless a single request has more.
 constexpr std::size_t kMaxInstances = std::size_t{1} << 17U;
 
@@ -194,6 +197,7 @@ class GpuRenderer final : public Renderer {
     const std::size_t instances = base_.resolver.scene().instances.size();
     for (std::size_t i = 0; i < requests.size(); ++i) {
       const bool joins = !parts_.empty() && are_alike(requests[parts_.back().first], requests[i]) &&
+                         parts_.back().count < kMaxViews &&
                          (parts_.back().count + 1) * requests[i].beams.size() <= kMaxBeams &&
                          (parts_.back().count + 1) * instances <= kMaxInstances;
       if (joins) {

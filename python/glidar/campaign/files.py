@@ -167,6 +167,10 @@ def write_json(temp, final, value):
     write_bytes(temp, final, json_bytes(value))
 
 
+def _mib(size):
+    return f"{size / (1 << 20):.3g} MiB"
+
+
 def open_input(path, max_bytes=MAX_BYTES):
     """Opens a regular file of at most `max_bytes` for reading: a path from the user, or a place in a campaign's folder.
     A pipe or device is rejected and cannot block."""
@@ -184,7 +188,7 @@ def open_input(path, max_bytes=MAX_BYTES):
     size = os.fstat(descriptor).st_size
     if size > max_bytes:
         file.close()
-        raise Error(str(path), f"a file of {size:,} bytes", f"a file of at most {max_bytes:,} bytes", "")
+        raise Error(str(path), f"a file of {_mib(size)}", f"a file of at most {_mib(max_bytes)}", "")
     return file
 
 
@@ -196,7 +200,7 @@ def read_bytes(path, max_bytes):
         except OSError as error:
             raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None
     if len(data) > max_bytes:
-        raise Error(str(path), "a file that grows while it is read", f"a file of at most {max_bytes:,} bytes", "")
+        raise Error(str(path), "a file that grows while it is read", f"a file of at most {_mib(max_bytes)}", "")
     return data
 
 

@@ -42,6 +42,8 @@ TEST(SizeAdvice, IsNotGivenForSitesThatASensorReachesNorForTerrain) {
   EXPECT_TRUE(size_advice(scene, false, 300.0).empty());
   scene.meshes.front().triangles.resize(1000, {0, 1, 2});
   EXPECT_TRUE(size_advice(scene, false, kInfinity).empty());
+  scene.meshes.front().triangles.resize(2000, {0, 2, 1});  // a plate
+  EXPECT_EQ(size_advice(scene, false, kInfinity).size(), 1U);
 }
 
 TEST(SizeAdvice, IsGivenForAssumedUnitsOnly) {

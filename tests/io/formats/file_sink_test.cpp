@@ -41,7 +41,8 @@ TEST(FileFormats, AnUnknownSuffixIsReportedWithAllSuffixesAndTheNearest) {
   EXPECT_THAT(
       text,
       AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
-            HasSubstr(".pcd .ply .npz .csv .las .bin .kitti .npy .range.npy .depth.png .range.png "
+            HasSubstr(".pcd .ply .npz .csv .las .bin .kitti .npy .depth.npy .range.npy "
+                      ".depth.png .range.png "
                       ".framebuffer.png .png .transform .bev.png .view.png .depth.tiff .rgb.png "
                       ".normal.png .instance.png .class.png .exr")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
@@ -54,8 +55,10 @@ TEST(FormatFor, RefusesUnknownKindsOfImagesInsteadOfWritingAPicture) {
                     HasSubstr(" .range.png "), HasSubstr("did you mean .depth.png?")));
   EXPECT_THAT(error_text([] { format_for("a.label.png"); }), HasSubstr("mean .class.png?"));
   EXPECT_THAT(error_text([] { format_for("a.Rnage.npy"); }), HasSubstr("mean .range.npy?"));
-  EXPECT_THAT(error_text([] { format_for("my.rock.png"); }),
+  EXPECT_THAT(error_text([] { format_for("my.boulders.png"); }),
               HasSubstr("use another character than the dot"));
+  EXPECT_EQ(format_for("rock.obj.png").suffix, ".png");
+  EXPECT_EQ(format_for("run.v.png").suffix, ".png");
 }
 
 TEST(FileSink, RejectsInvalidPathsImmediately) {

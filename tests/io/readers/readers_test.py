@@ -293,6 +293,15 @@ class Formats(unittest.TestCase):
             image = np.load(path, allow_pickle=False)
             self.same(image, columns["depth"].astype(np.float32).reshape(rows, cols), path)
 
+    def test_range_images(self):
+        for folder, (rows, cols) in SIZES.items():
+            i = np.arange(rows * cols)
+            ranges = np.where(i % 3 == 2, np.nan, 1.0 + i).reshape(rows, cols)
+            self.same(np.load(FOLDER / folder / "a.range.npy", allow_pickle=False), ranges.astype(np.float32), folder)
+            image, texts = formats.read_png(FOLDER / folder / "a.range.png")
+            np.testing.assert_array_equal(image[:, :, 0], np.nan_to_num(ranges))
+            self.assertTrue(texts["Description"].startswith("range, 1 units per metre"), texts)
+
     def test_depth_png(self):
         for folder in ("small", "one", "none"):
             rows, cols = SIZES[folder]

@@ -42,7 +42,9 @@ void write_all(const CloudFixture& made, const std::filesystem::path& folder) {
   fixture::add_image_columns(full.cloud);
   for (const FileFormat& format : file_formats()) {
     if (!format.missing.empty()) continue;  // an optional library is not installed
-    write_cloud(format.takes_more ? made : full, folder / ("a" + format.suffix));
+    FileSinkOptions options;
+    if (format.suffix == ".range.png") options.depth_png_units_per_m = 1.0;  // up to 60 km
+    write_cloud(format.takes_more ? made : full, folder / ("a" + format.suffix), options);
   }
   write_layouts(made, folder);
   write_cloud(made, folder / "ascii.pcd", ascii);
