@@ -115,21 +115,26 @@ complete -o default -F _glidar glidar
                      version(), joined(names), joined(names), cases, preset_names());
 }
 
+/// The lines of _arguments for an option.
+std::string zsh_option(const CLI::Option& option) {
+  const std::string help = zsh_text(option.get_description());
+  const std::string value = !takes_value(option)           ? ""
+                            : option.check_lname("sensor") ? ":sensor:(" + preset_names() + ")"
+                                                           : ":value:_files";
+  std::string lines;
+  for (const std::string& name : names_of(option)) {
+    lines += fmt::format(" \\\n      '*{}[{}]{}'", name, help, value);
+  }
+  return lines;
+}
+
 std::string zsh_script(const CLI::App& program) {
   std::string commands;
   std::string cases;
   for (const CLI::App* command : commands_of(program)) {
     commands += fmt::format(" '{}:{}'", command->get_name(), zsh_text(command->get_description()));
     cases += fmt::format("    {}) _arguments -S", command->get_name());
-    for (const CLI::Option* option : options_of(*command)) {
-      const std::string help = zsh_text(option->get_description());
-      const std::string value = !takes_value(*option)           ? ""
-                                : option->check_lname("sensor") ? ":sensor:(" + preset_names() + ")"
-                                                                : ":value:_files";
-      for (const std::string& name : names_of(*option)) {
-        cases += fmt::format(" \\\n      '*{}[{}]{}'", name, help, value);
-      }
-    }
+    for (const CLI::Option* option : options_of(*command)) cases += zsh_option(*option);
     cases += " \\\n      '*:file:_files' ;;\n";
   }
   return fmt::format(R"(#compdef glidar

@@ -69,9 +69,9 @@ void check_usual(const std::string& path, std::string_view key, const Json& valu
 void check_all(const std::string& path, const Json& value, std::vector<std::string>& sentences) {
   if (!value.is_structured()) return;
   for (const auto& [key, inner] : value.items()) {
-    const std::string place = value.is_array() ? path + "[" + key + "]"
-                              : path.empty()   ? key
-                                               : path + "." + key;
+    const std::string place = value.is_array()
+                                  ? fmt::format("{}[{}]", path, key)
+                                  : fmt::format("{}{}{}", path, path.empty() ? "" : ".", key);
     check_usual(place, key, inner, sentences);
     check_all(place, inner, sentences);
   }
