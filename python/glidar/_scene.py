@@ -256,8 +256,8 @@ class Scene(SceneData):
             raise Error(where, f"{of!r} belongs to another scene", "an object of this scene", remedy)
 
     def add_instances(self, of: SceneObject, poses: npt.ArrayLike) -> tuple[SceneObject, ...]:
-        """Adds an instance of an object for each pose, 100,000 in about a second; returns them. Names and ids are the
-        next free ones; the rest is as of the object.
+        """Adds an instance of an object for each pose, in one step; returns them. They get the next free names and ids,
+        and everything else from the object.
 
         Args:
             of: an object of this scene.
