@@ -10,11 +10,11 @@
 #include <glidar/io/bags/bag_clouds.hpp>
 #include <glidar/io/bags/bag_records.hpp>
 #include <glidar/io/bags/bag_topics.hpp>
-#include <glidar/io/bags/frame_bag.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/files/atomic_file.hpp>
+#include <glidar/output/output.hpp>
 #include <glidar/simulate/simulator.hpp>
 
 #include <cstdlib>
@@ -55,6 +55,12 @@ struct Street {
     simulator->simulate(motion, hit_columns_for(kColumns), frame);
   }
   [[nodiscard]] std::filesystem::path bag() const { return folder / "bag_bench.mcap"; }
+  /// A new bag.
+  [[nodiscard]] std::unique_ptr<Output> open_bag() const {
+    OutputRig rig{.scene = loaded.scene, .sensors = {}};
+    rig.sensors.push_back({.sensor = sensor, .beams = *beams});
+    return open_output(bag().string(), rig);
+  }
 };
 
 void measure_alone(benchmark::State& state, const Street& street) {
@@ -67,9 +73,9 @@ void measure_alone(benchmark::State& state, const Street& street) {
 
 void write_bag(benchmark::State& state, const Street& street) {
   for (auto _ : state) {
-    FrameBag bag(street.bag(), street.loaded.scene, street.sensor, *street.beams);
-    app::Delivery delivery(
-        [&](const app::MeasuredFrame& slot) { bag.write(slot.frame, *slot.beams); }, [] {}, [] {});
+    const auto bag = street.open_bag();
+    app::Delivery delivery([&](const app::MeasuredFrame& slot) { bag->write(slot.view()); }, [] {},
+                           [] {});
     for (std::uint32_t number = 0; number < kFrames; ++number) {
       app::MeasuredFrame& slot = delivery.next_slot();
       slot.beams = street.beams;
@@ -77,7 +83,7 @@ void write_bag(benchmark::State& state, const Street& street) {
       delivery.submit();
     }
     delivery.finish();
-    bag.finish();
+    bag->finish();
   }
   state.SetItemsProcessed(state.iterations() * kFrames);
 }
@@ -87,13 +93,13 @@ void write_ready(benchmark::State& state, const Street& street) {
   Frame frame;
   street.measure(0, frame);
   for (auto _ : state) {
-    FrameBag bag(street.bag(), street.loaded.scene, street.sensor, *street.beams);
+    const auto bag = street.open_bag();
     for (std::uint32_t number = 0; number < kFrames; ++number) {
       frame.number = number;
       frame.stamp_ns = frame_interval(street.sensor, number).start_ns;
-      bag.write(frame, *street.beams);
+      bag->write({.frame = frame, .beams = *street.beams});
     }
-    bag.finish();
+    bag->finish();
   }
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(street.bag()));
   state.SetBytesProcessed(state.iterations() * bytes);
@@ -104,9 +110,9 @@ void write_plain(benchmark::State& state, const Street& street) {
   Frame frame;
   street.measure(0, frame);
   {
-    FrameBag bag(street.bag(), street.loaded.scene, street.sensor, *street.beams);
-    bag.write(frame, *street.beams);
-    bag.finish();
+    const auto bag = street.open_bag();
+    bag->write({.frame = frame, .beams = *street.beams});
+    bag->finish();
   }
   const std::vector<std::byte> bytes(std::filesystem::file_size(street.bag()), std::byte{7});
   for (auto _ : state) {
@@ -119,13 +125,13 @@ void write_plain(benchmark::State& state, const Street& street) {
 
 /// A bag of the street with this compression. Returns its path.
 std::filesystem::path write_input(const Street& street, bags::Compression compression) {
-  FrameBag plain(street.bag(), street.loaded.scene, street.sensor, *street.beams);
+  const auto plain = street.open_bag();
   Frame frame;
   for (std::uint32_t number = 0; number < kFrames; ++number) {
     street.measure(number, frame);
-    plain.write(frame, *street.beams);
+    plain->write({.frame = frame, .beams = *street.beams});
   }
-  plain.finish();
+  plain->finish();
   if (compression == bags::Compression::none) return street.bag();
   const std::filesystem::path path = street.folder / "bag_bench_packed.mcap";
   const auto from = bags::open_bag_unconfined(street.bag());

@@ -76,7 +76,9 @@ def run(flags, folder):
     scene, runs = street(flags.street), []
     for name, (fields, _) in BAGS.items():
         bag = Path(folder) / f"{name}{flags.format}"
-        glidar.save_bag(bag, frames(scene, sensor, trajectory, flags.seconds, flags.seed), **fields)
+        with glidar.open_output(bag, sensor, **fields) as output:
+            for frame in frames(scene, sensor, trajectory, flags.seconds, flags.seed):
+                output.write(frame)
         runs.append(odometry(name, bag, trajectory, sensor.rate_hz))
     return runs
 

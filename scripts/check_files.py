@@ -46,8 +46,7 @@ PRINTS = {".cpp": re.compile(r"\bfmt::print(?:ln)?\b|\bstd::(?:cout|cerr|clog|pr
                              r"(?<![\w.>])(?:std::)?(?:f?printf|f?puts|f?putc|putchar|fwrite|perror)\("),
           ".py": re.compile(r"(?<![\w.])print\(|\bsys\.(?:__)?std(?:err|out)(?:__)?\.write")}
 PRINTERS = {
-    "apps/glidar/run/printing.cpp": "makes lines printable",
-    "apps/glidar/run/console.cpp": "draws the progress display",
+    "apps/glidar/run/console.cpp": "makes lines printable, draws the progress display",
     "python/glidar/_printing.py": "makes lines printable",
 }
 
@@ -86,7 +85,7 @@ def check_text(path, text):
                                   "use glidar/math/portable.hpp, elementary.hpp or double_double.hpp")
     if must_not_print(path):
         prints = PRINTS.get(Path(path).suffix.replace(".hpp", ".cpp"))
-        complaints += [f"{path}:{number}: prints; use apps/glidar/run/printing.hpp or python/glidar/_printing.py"
+        complaints += [f"{path}:{number}: prints; use apps/glidar/run/console.hpp or python/glidar/_printing.py"
                        for number, line in enumerate(lines, 1)
                        if prints and prints.search(CODE_ELSE.sub("", line) if path.endswith("pp") else line)]
     return complaints

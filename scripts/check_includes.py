@@ -26,6 +26,7 @@ ALLOWED = {
     "verify": {"math", "core", "sensor", "motion", "render", "simulate", "verify"},
     "explain": {"math", "core", "stereo", "structured_light", "tof", "sensor", "motion", "render", "simulate", "io", "explain"},
     "io": {"math", "core", "depth", "sensor", "motion", "structured_light", "io"},
+    "output": {"math", "core", "sensor", "motion", "simulate", "io", "link", "output"},
     "link": {"math", "core", "io", "link"},
     "woods2016": {"math", "core", "sensor", "motion", "render", "simulate", "link", "woods2016"},
 }

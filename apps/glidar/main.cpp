@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/help_text.hpp>
-#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/interrupt.hpp>
-#include <apps/glidar/run/printing.hpp>
 #include <apps/viewer/view.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>

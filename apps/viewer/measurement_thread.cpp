@@ -3,9 +3,10 @@
 #include <apps/viewer/measurement_thread.hpp>
 
 #include <apps/glidar/run/advice.hpp>
-#include <apps/glidar/run/outputs.hpp>
 #include <glidar/core/elapsed_time.hpp>
 #include <glidar/explain/trace_text.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/output/frame_files.hpp>
 #include <glidar/simulate/explain.hpp>
 
 #include <fmt/format.h>
@@ -50,9 +51,9 @@ Motion with_moves(const Motion& motion, const MeasureRequest& request) {
   return result;
 }
 
-std::string written_text(const std::vector<Output>& outputs) {
+std::string written_text(const std::vector<std::filesystem::path>& files) {
   std::string text = "wrote";
-  for (const Output& output : outputs) text += " " + output.path.string();
+  for (const std::filesystem::path& file : files) text += " " + file.string();
   return text;
 }
 
@@ -101,10 +102,10 @@ void MeasurementThread::explain(const MeasureRequest& request, std::size_t entry
   changed_.notify_one();
 }
 
-void MeasurementThread::save(const MeasureRequest& request, const OutputFlags& outputs) {
+void MeasurementThread::save(const MeasureRequest& request, const FrameFileRequest& files) {
   {
     const std::lock_guard lock(mutex_);
-    saves_.emplace_back([this, request, outputs] { save_now(request, outputs); });
+    saves_.emplace_back([this, request, files] { save_now(request, files); });
   }
   changed_.notify_one();
 }
@@ -255,21 +256,21 @@ void MeasurementThread::explain_now(const MeasureRequest& request, std::size_t e
   results_.trace = std::move(text);
 }
 
-void MeasurementThread::save_now(const MeasureRequest& request, const OutputFlags& flags) {
+void MeasurementThread::save_now(const MeasureRequest& request, FrameFileRequest wanted) {
   Snapshot snapshot;
   prepare(request, snapshot);
-  const SidecarContext context{.scene = snapshot.prepared->scene,
-                               .sensor = *snapshot.sensor,
-                               .beams = *snapshot.beams,
-                               .renderer = renderer_name(*request.flags),
-                               .inputs = snapshot.prepared->files};
-  const std::vector<Output> outputs =
-      plan_outputs(flags, request.flags->input, context, console_.report());
-  refuse_overwrite_of_inputs(snapshot.prepared->files, outputs);
-  snapshot.simulator->simulate(snapshot.motion, hit_columns_for_outputs(outputs), snapshot.frame);
-  write_outputs(outputs, snapshot.frame, *snapshot.beams, snapshot.prepared->scene,
-                console_.report());
-  add_message(written_text(outputs));
+  const PreparedScene& prepared = *snapshot.prepared;
+  wanted.input = request.flags->input;
+  OutputRig rig{.scene = prepared.scene, .sensors = {}};
+  rig.sensors.push_back({.sensor = *snapshot.sensor, .beams = *snapshot.beams});
+  rig.renderer = renderer_name(*request.flags);
+  rig.inputs = prepared.files;
+  for (const std::filesystem::path& file : check_frame_files(wanted))
+    refuse_overwrite_of_inputs(prepared.files, file);
+  FrameFiles files(std::move(wanted), false, rig, console_.report());
+  snapshot.simulator->simulate(snapshot.motion, files.hit_columns(0), snapshot.frame);
+  files.write({.frame = snapshot.frame, .beams = *snapshot.beams});
+  add_message(written_text(files.files()));
 }
 
 }  // namespace glidar::app

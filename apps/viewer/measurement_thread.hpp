@@ -59,7 +59,7 @@ class MeasurementThread {
   /// Traces an entry of this measurement; only the latest request counts.
   void explain(const MeasureRequest& request, std::size_t entry);
   /// Writes the outputs of this measurement.
-  void save(const MeasureRequest& request, const OutputFlags& outputs);
+  void save(const MeasureRequest& request, const FrameFileRequest& files);
 
   /// Results; traces, errors and messages are returned once.
   struct Results {
@@ -84,7 +84,7 @@ class MeasurementThread {
   void prepare(const MeasureRequest& request, Snapshot& snapshot);
   void measure_now(const MeasureRequest& request);
   void explain_now(const MeasureRequest& request, std::size_t entry);
-  void save_now(const MeasureRequest& request, const OutputFlags& outputs);
+  void save_now(const MeasureRequest& request, FrameFileRequest files);
   std::shared_ptr<Snapshot> unused_snapshot();
   void add_message(std::string message);
   void show_busy(std::string_view task, double fraction_done);

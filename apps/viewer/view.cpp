@@ -4,8 +4,7 @@
 
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/printing.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/viewer.hpp>
 
-#include <apps/glidar/run/outputs.hpp>
 #include <apps/viewer/measurement_thread.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/math/portable.hpp>
+#include <glidar/output/frame_files.hpp>
 
 #include <Eigen/Core>
 
@@ -244,7 +244,7 @@ void Viewer::set_seed(std::uint64_t seed) {
 
 void Viewer::save() {
   if (!snapshot()) return;
-  OutputFlags outputs = request_.flags->output;
+  FrameFileRequest outputs = request_.flags->output;
   if (outputs.paths.empty() && outputs.legacy_name.empty()) outputs.legacy_name = "buffer";
   measurements_.save(request_, saved_ == 0 ? outputs : numbered(outputs, saved_));
   ++saved_;

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/cloud_sink.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/point_cloud.hpp>
 #include <glidar/link/error_log.hpp>
 #include <glidar/link/router.hpp>
 #include <glidar/woods2016/handshake_match.hpp>
@@ -39,7 +40,7 @@ std::string rig_topic(std::string_view name);
 
 /// Publishes clouds to any number of subscribers by the Woods 2016 protocol. Subscribers cannot
 /// block it: slow subscribers miss clouds, which are counted. Used by one thread at a time.
-class CloudPublisher final : public CloudSink {
+class CloudPublisher {
  public:
   /// Listens at both ports. Throws Error if it cannot. The context and the log must outlive it.
   CloudPublisher(link::Context& context, const CloudPublisherOptions& options,
@@ -51,7 +52,7 @@ class CloudPublisher final : public CloudSink {
 
   /// Sends a cloud with the columns xyz (x left, y up, z forward, metres) and intensity, once per
   /// timestamp of a sensor.
-  void write(const PointCloud& cloud, const Frame& frame) override;
+  void write(const PointCloud& cloud, const Frame& frame);
   /// True if the frame with this number in its sensor's sequence is to be published.
   [[nodiscard]] bool wants(std::uint64_t frame) const { return frame % options_.every == 0; }
 

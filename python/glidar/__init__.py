@@ -11,7 +11,6 @@ ground truth of every beam.
 """
 
 from . import _core
-from ._bag import save_bag
 from ._cloud import Cloud
 from ._errors import Error
 from ._depth_images import RawImage
@@ -22,6 +21,7 @@ from ._depth import AlignedDepth, DepthAligner, DepthFilters, recommended_depth_
 from ._mesh import Mesh, from_open3d, from_trimesh
 from ._object import SceneObject
 from ._object_box import ObjectBox
+from ._output import Output, open_output, output_formats
 from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
 from ._scene import ModelPart, Scene, list_parts, load_scene, surface_names
@@ -61,6 +61,7 @@ __all__ = [
     "Mesh",
     "ModelPart",
     "ObjectBox",
+    "Output",
     "RigImu",
     "RigSensor",
     "SceneObject",
@@ -111,13 +112,14 @@ __all__ = [
     "load_sensor",
     "look_at",
     "match_stereo",
+    "open_output",
+    "output_formats",
     "pose",
     "quaternion",
     "recommended_depth_filters",
     "rig_imus",
     "sample_stereo_pair",
     "sample_tof_images",
-    "save_bag",
     "sensor",
     "sensor_file",
     "sensor_names",

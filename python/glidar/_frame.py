@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._bag_writer import bag_writer
 from ._cloud import Cloud
 from ._depth_images import DepthImages
 from ._errors import Error
@@ -21,7 +20,7 @@ from ._fisher_information import FisherInformation, fisher_information_of
 from ._inputs import FloatArray, column_list, log, path_of
 from ._object_box import ObjectBox, boxes_of
 from ._origin import Origin
-from ._file_options import file_options, set_columns
+from ._file_options import file_options, set_cloud, set_columns
 from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_cloud, set_picture, show_images
 from ._state import Immutable, key_of, part, restoring, make_state
 from ._status import ReturnSource, Status
@@ -228,11 +227,8 @@ class Frame(DepthImages, Immutable):
         view_eye: npt.ArrayLike | None = None,
         view_target: npt.ArrayLike | None = None,
     ) -> None:
-        """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv .las .bin
-        .kitti .npy .depth.npy .range.npy .depth.png .range.png .depth.tiff .rgb.png .normal.png .instance.png
-        .class.png .ir.png .ir_left.png .ir_right.png .ir_reference.png .tof.npy .patterns.npy .exr .png .bev.png
-        .view.png .transform .mcap .bag .rosbag2. The last three are ROS bags, to which only columns, layout and
-        deskew apply; ``save_bag`` writes several frames to one. ``.npy`` of a LiDAR has ranges.
+        """Writes a file like ``glidar render -o PATH``. The suffix selects the format; ``output_formats()`` lists them.
+        ``open_output`` writes several frames to a recording or a network. ``.npy`` of a LiDAR has ranges.
 
         Args:
             columns, frame, drop_invalid, deskew: as for ``cloud``. By default "sensor"; .las files are in "world" and
@@ -254,27 +250,23 @@ class Frame(DepthImages, Immutable):
         """
         options = file_options(pcd, ply_ascii, depth_units_per_m)
         set_columns(options, columns, layout)
+        set_cloud(options, frame, drop_invalid, deskew, crs, sidecar)
         target = path_of(path, "path")
-        if _core.is_bag_name(target):
-            bag = bag_writer(target, columns, layout, deskew)
-            self.write_to(bag)
-            bag.finish()
+        if not _core.is_frame_file(target):
+            output = _core.Output(target, options)
+            self.write_to(output)
+            output.finish()
             return
-        options.frame = frame or ""
-        options.set_crs(os.fspath(crs))
-        options.deskew = deskew
-        options.set_drop_invalid(drop_invalid)
-        options.set_sidecar(sidecar)
         set_picture(options, colour_by, picture_size, view_eye, view_target)
         core = self._with_scene()
         if core.needs_boxes(target, options):
             core = self._with_renderer()
         core.save(target, options, log)
 
-    def write_to(self, bag: _core.BagWriter) -> None:
-        """Adds it to a bag; see ``save_bag``."""
+    def write_to(self, output: _core.Output) -> None:
+        """Adds it to an output; see ``open_output``."""
         core = self._with_scene()
-        bag.add(self._with_renderer() if _core.lacks_boxes(core) else core)
+        output.write(self._with_renderer() if _core.lacks_boxes(core) else core, log)
 
     def boxes(self, *, frame: str = "sensor", unlabelled: bool = False) -> list[ObjectBox]:
         """3D bounding boxes of the objects that have a class, when the frame starts, in the order of ``Scene.objects``,

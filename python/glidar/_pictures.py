@@ -143,7 +143,7 @@ class Picture:
 
 
 def set_picture(
-    options: _core.SaveOptions,
+    options: _core.OutputOptions,
     colour_by: str,
     size: tuple[int, int],
     eye: npt.ArrayLike | None,

@@ -16,7 +16,7 @@ void bind_sensor(nb::module_& module);
 void bind_imu(nb::module_& module);
 void bind_trajectory_state(nb::module_& module);
 void bind_frame(nb::module_& module);
-void bind_bag(nb::module_& module);
+void bind_output(nb::module_& module);
 void bind_boxes(nb::module_& module);
 void bind_simulator(nb::module_& module);
 void bind_point_trace(nb::module_& module);

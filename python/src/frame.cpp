@@ -7,9 +7,9 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
 #include <glidar/io/pictures/colour_scale.hpp>
+#include <glidar/output/output.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
@@ -144,28 +144,24 @@ std::vector<std::string> column_names_of(const CloudHandle& handle) {
   return names;
 }
 
-/// Options of an output file, as for `glidar render`.
-struct SaveOptions {
-  std::vector<std::string> columns;
-  std::string frame;  ///< empty: by the format
-  bool deskew = false;
-  FileSinkOptions sink;
-};
-
 /// Whether boxes of objects are to be found before the file is written.
-bool needs_boxes(const Measured& m, const std::filesystem::path& path, const SaveOptions& options) {
+bool needs_boxes(const Measured& m, const std::filesystem::path& path,
+                 const OutputOptions& options) {
   return has_boxes(format_for(path), options.sink) && lacks_boxes(m);
 }
 
-void save_to(Measured& m, const std::filesystem::path& path, const SaveOptions& options,
+void save_to(Measured& m, const std::filesystem::path& path, const OutputOptions& options,
              const Report& report) {
   std::vector<std::string> inputs = m.scene().files;
   const std::vector<std::string>& more = m.sensor->sensor().files;
   inputs.insert(inputs.end(), more.begin(), more.end());
   refuse_overwrite_of_inputs(inputs, path);
   const FileFormat& format = format_for(path);
-  std::vector<std::string> columns = format.takes_more ? options.columns : format.columns;
-  if (format.takes_more) check_columns(m.sensor->sensor(), columns);
+  std::vector<std::string> columns = format.columns;
+  if (format.takes_more) {
+    columns = options.columns.empty() ? default_columns() : options.columns;
+    check_columns(m.sensor->sensor(), columns);
+  }
   if (!options.sink.layout.empty() && format.takes_more) {
     columns = find_layout(options.sink.layout).columns;
   }
@@ -185,7 +181,7 @@ void save_to(Measured& m, const std::filesystem::path& path, const SaveOptions& 
       m.frame);
 }
 
-void save(Measured& measured, const std::filesystem::path& path, SaveOptions options,
+void save(Measured& measured, const std::filesystem::path& path, OutputOptions options,
           const nb::object& log) {
   unlocked([&](Watch& watch) {
     options.sink.progress = watch.progress();
@@ -194,7 +190,7 @@ void save(Measured& measured, const std::filesystem::path& path, SaveOptions opt
 }
 
 /// Options of .bev.png and .view.png; the name is one of colour_by_names().
-void set_picture(SaveOptions& self, const std::string& colour_by, std::uint32_t width,
+void set_picture(OutputOptions& self, const std::string& colour_by, std::uint32_t width,
                  std::uint32_t height) {
   const auto names = colour_by_names();
   const auto place = std::find(names.begin(), names.end(), colour_by);
@@ -205,36 +201,47 @@ void set_picture(SaveOptions& self, const std::string& colour_by, std::uint32_t 
 
 template <auto kMember>
 auto sink_member() {
-  return [](SaveOptions& self, std::remove_reference_t<decltype(self.sink.*kMember)> value) {
+  return [](OutputOptions& self, std::remove_reference_t<decltype(self.sink.*kMember)> value) {
     self.sink.*kMember = std::move(value);
   };
 }
 
 void bind_save_options(nb::module_& module) {
-  nb::class_<SaveOptions>(module, "SaveOptions")
+  nb::class_<OutputOptions>(module, "OutputOptions")
       .def(nb::init<>())
-      .def_rw("columns", &SaveOptions::columns)
-      .def_rw("frame", &SaveOptions::frame)
-      .def_rw("deskew", &SaveOptions::deskew)
+      .def_rw("columns", &OutputOptions::columns)
+      .def_rw("frame", &OutputOptions::frame)
+      .def_rw("deskew", &OutputOptions::deskew)
       .def(
           "set_pcd",
-          [](SaveOptions& self, int encoding) {
+          [](OutputOptions& self, int encoding) {
             self.sink.pcd = static_cast<PcdEncoding>(encoding);
           },
           nb::arg("encoding"))
       .def("set_picture", set_picture, nb::arg("colour_by"), nb::arg("width"), nb::arg("height"))
       .def(
           "set_view_eye",
-          [](SaveOptions& self, const Eigen::Vector3d& at) { self.sink.picture.eye_m = at; },
+          [](OutputOptions& self, const Eigen::Vector3d& at) { self.sink.picture.eye_m = at; },
           nb::arg("eye_m"))
       .def(
           "set_view_target",
-          [](SaveOptions& self, const Eigen::Vector3d& at) { self.sink.picture.target_m = at; },
+          [](OutputOptions& self, const Eigen::Vector3d& at) { self.sink.picture.target_m = at; },
           nb::arg("target_m"))
       .def("set_ply_ascii", sink_member<&FileSinkOptions::ply_ascii>(), nb::arg("value"))
       .def("set_drop_invalid", sink_member<&FileSinkOptions::drop_invalid>(), nb::arg("value"))
       .def("set_sidecar", sink_member<&FileSinkOptions::sidecar>(), nb::arg("value"))
       .def("set_crs", sink_member<&FileSinkOptions::crs>(), nb::arg("value"))
+      .def(
+          "set_driver",
+          [](OutputOptions& self, const std::string& name) { set_driver(name, self); },
+          nb::arg("name"))
+      .def(
+          "set_ouster_profile",
+          [](OutputOptions& self, const std::string& name) { set_ouster_profile(name, self); },
+          nb::arg("name"))
+      .def(
+          "set_livox_type", [](OutputOptions& self, int number) { set_livox_type(number, self); },
+          nb::arg("number"))
       .def("set_layout", sink_member<&FileSinkOptions::layout>(), nb::arg("value"))
       .def("set_depth_units_per_m", sink_member<&FileSinkOptions::depth_png_units_per_m>(),
            nb::arg("value"));
@@ -375,9 +382,10 @@ void bind_frame(nb::module_& module) {
       .def("cloud", cloud_of, nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
            nb::arg("drop_invalid"))
       .def("needs_boxes", needs_boxes, nb::arg("path"), nb::arg("options"),
-           nb::sig("def needs_boxes(self, path: str, options: SaveOptions) -> bool"))
-      .def("save", save, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
-           nb::sig("def save(self, path: str, options: SaveOptions, log: object | None) -> None"));
+           nb::sig("def needs_boxes(self, path: str, options: OutputOptions) -> bool"))
+      .def(
+          "save", save, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
+          nb::sig("def save(self, path: str, options: OutputOptions, log: object | None) -> None"));
 }
 
 }  // namespace glidar::python

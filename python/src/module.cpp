@@ -14,7 +14,7 @@ NB_MODULE(_core, module) {
   glidar::python::bind_scene(module);
   glidar::python::bind_sensor(module);
   glidar::python::bind_frame(module);
-  glidar::python::bind_bag(module);
+  glidar::python::bind_output(module);
   glidar::python::bind_boxes(module);
   glidar::python::bind_simulator(module);
   glidar::python::bind_point_trace(module);

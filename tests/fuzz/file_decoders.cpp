@@ -8,7 +8,6 @@
 #include "packet_decoders.hpp"
 
 #include <apps/glidar/options/option_values.hpp>
-#include <apps/glidar/run/packet_frames.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_clouds.hpp>
 #include <glidar/io/bags/bag_poses.hpp>
@@ -28,6 +27,7 @@
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/png_texture.hpp>
 #include <glidar/io/packets/ouster_codec.hpp>
+#include <glidar/io/packets/packet_frames.hpp>
 #include <glidar/io/ros/cloud_from_message.hpp>
 #include <glidar/link/recording.hpp>
 
@@ -149,7 +149,7 @@ void read_clouds(const fs::path& bag) {
 }
 
 void read_packet_topics(const fs::path& bag) {
-  const auto packets = app::packets_of(bags::open_bag_unconfined(bag), bag, {});
+  const auto packets = packets_of(bags::open_bag_unconfined(bag), bag, {});
   UdpPacket packet;
   while (packets->next(packet)) {
   }
@@ -160,7 +160,7 @@ void read_bag(const fs::path& file) {
   try_contents([&] { read_clouds(file); });
   try_contents([&] { bags::read_bag_poses(*bags::open_bag_unconfined(file), file, {}); });
   try_contents([&] { read_packet_topics(file); });
-  try_contents([&] { app::ouster_metadata_of(*bags::open_bag_unconfined(file)); });
+  try_contents([&] { ouster_metadata_of(*bags::open_bag_unconfined(file)); });
   const auto bag = bags::open_bag_unconfined(file);
   bags::BagMessage message;
   while (bag->next(message)) {

@@ -67,7 +67,7 @@ class CheckFiles(unittest.TestCase):
                            ("apps/import/main.cpp", "perror(x);"), ("python/glidar/a.py", "print(x)"),
                            ("python/glidar/campaign/a.py", "sys.stderr.write(x)")):
             found = check_files.check_text(path, HEAD + line + "\n")
-            self.assertEqual(found, [f"{path}:3: prints; use apps/glidar/run/printing.hpp or python/glidar/_printing.py"], line)
+            self.assertEqual(found, [f"{path}:3: prints; use apps/glidar/run/console.hpp or python/glidar/_printing.py"], line)
 
     def test_what_prints_nothing_or_is_no_product_passes(self):
         for path, line in (("apps/glidar/a.cpp", 'print("{}", x); print_lines(stdout, x); std::snprintf(a, 9, "%g", x);'),

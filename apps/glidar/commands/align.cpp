@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/option_group.hpp>
-#include <apps/glidar/run/depth_images.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/printing.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/image_files.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/depth_alignment_file.hpp>
 #include <glidar/math/constants.hpp>

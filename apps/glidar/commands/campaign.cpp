@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/program_search.hpp>
 #include <glidar/core/error.hpp>
 

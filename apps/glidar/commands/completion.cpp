@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/option_values.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/printing.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 

@@ -6,14 +6,12 @@
 #include <apps/glidar/options/output_options.hpp>
 #include <apps/glidar/options/sensor_options.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/outputs.hpp>
-#include <apps/glidar/run/packet_frames.hpp>
-#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag_clouds.hpp>
 #include <glidar/io/bags/bag_topics.hpp>
+#include <glidar/io/packets/packet_frames.hpp>
 #include <glidar/io/packets/packet_writer.hpp>
 
 #include <fmt/format.h>
@@ -153,15 +151,15 @@ void decode_packets(const DecodeFlags& flags, std::unique_ptr<PacketSource> pack
   sender.sensor.doppler.reset();  // packets have no velocities
   check_columns(sender.sensor, flags.output.columns);
   const Scene nothing;
-  OutputFlags output = flags.output;
-  if (output.frame.empty()) output.frame = "sensor";
+  FrameFileRequest request = flags.output;
+  if (request.frame.empty()) request.frame = "sensor";
+  request.input = flags.input;
   DecodedFrame decoded;
+  OutputRig rig{.scene = nothing, .sensors = {}};
+  rig.sensors.push_back({.sensor = sender.sensor, .beams = decoded.beams});
+  FrameFiles files(std::move(request), true, rig, Report{console.report().log, {}});
   while (!written.is_enough() && frames.next(decoded)) {
-    const SidecarContext context{
-        .scene = nothing, .sensor = sender.sensor, .beams = decoded.beams, .renderer = ""};
-    const std::vector<Output> outputs =
-        plan_outputs(numbered(output, written.next()), flags.input, context, console.report());
-    write_outputs(outputs, decoded.frame, decoded.beams, nothing);
+    files.write({.frame = decoded.frame, .beams = decoded.beams, .index = written.next()});
     written.add();
   }
   if (frames.malformed() == 0) return;

@@ -4,9 +4,8 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/options/stream_options.hpp>
-#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
-#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/explain/trace_text.hpp>

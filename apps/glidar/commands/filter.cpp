@@ -3,9 +3,8 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
-#include <apps/glidar/run/depth_images.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/printing.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/image_files.hpp>
 #include <glidar/depth/depth_filter.hpp>
 #include <glidar/depth/depth_filter_chain.hpp>
 #include <glidar/io/config/depth_filter_text.hpp>

@@ -4,8 +4,6 @@
 #include <apps/glidar/options/model_options.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/excerpt.hpp>
 #include <glidar/io/model/model_parts.hpp>
 #include <glidar/io/model/model_report.hpp>

@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/run/advice.hpp>
-#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/delivery.hpp>
 #include <apps/glidar/run/fisher_output.hpp>
-#include <apps/glidar/run/frame_order.hpp>
-#include <apps/glidar/run/imu_outputs.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
-#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
-#include <apps/glidar/run/recording_sinks.hpp>
-#include <apps/glidar/run/rig_outputs.hpp>
-#include <apps/glidar/run/unused_options.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/output/frame_files.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -62,7 +59,8 @@ void measure(const ActiveSensor& active, const HitColumnMask& hit_columns, Conso
                              [&console](double fraction) { console.set_progress(fraction); });
 }
 
-void print_summary(const View& view, const std::vector<Output>& outputs, std::FILE* to) {
+void print_summary(const View& view, const std::vector<std::filesystem::path>& files,
+                   std::FILE* to) {
   const FrameSummary s = summarise(view.frame);
   const double percent =
       100.0 * static_cast<double>(s.hits) / static_cast<double>(view.beams.size());
@@ -74,7 +72,7 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
     print(to, ", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
   }
   print(to, "\nwrote");
-  for (const Output& output : outputs) print(to, " {}", output.path.string());
+  for (const std::filesystem::path& file : files) print(to, " {}", file.string());
   print(to, "\n");
 }
 
@@ -84,23 +82,11 @@ std::FILE* result_stream(const RenderFlags& flags) {
   return writes_standard_output(flags.output) ? stderr : stdout;
 }
 
-/// Writes the files of a frame and prints the summary.
-void write(const RenderFlags& flags, const View& view, const std::vector<Output>& outputs,
-           Console& console) {
-  if (outputs.empty()) return;
-  {
-    const ProgressScope progress(console, "writing");
-    write_outputs(outputs, view.frame, view.beams, view.scene, console.report());
-  }
-  std::FILE* to = result_stream(flags);
-  if (to != nullptr) print_summary(view, outputs, to);
-}
-
 /// The output beside which the Fisher information of a frame is: its first file, else the first
 /// recording.
 std::filesystem::path fisher_neighbour(const RenderFlags& flags, const ActiveSensor& active,
-                                       const std::vector<Output>& outputs) {
-  if (!outputs.empty()) return outputs.front().path;
+                                       const std::vector<std::filesystem::path>& files) {
+  if (!files.empty()) return files.front();
   std::filesystem::path path = flags.output.recording_paths.front();
   if (!path.has_filename()) path = path.parent_path();
   const std::string label = label_of(flags, active);
@@ -111,20 +97,18 @@ std::filesystem::path fisher_neighbour(const RenderFlags& flags, const ActiveSen
 /// A run of `render`.
 struct Job {
   const RenderFlags& flags;
-  const CommandRecord& command;
   const PreparedScene& prepared;
-  std::vector<OutputFlags> files = {};                      ///< of each sensor
-  std::vector<std::unique_ptr<FrameSink>> recordings = {};  ///< bags and packet captures
-  std::vector<std::filesystem::path> written = {};          ///< so far
+  FrameFiles files;                                 ///< of each frame
+  std::vector<std::unique_ptr<Output>> recordings;  ///< bags and packet captures
+  std::unique_ptr<Output> imu;                      ///< samples of IMUs; nullptr: none
+  std::vector<std::filesystem::path> written = {};  ///< so far
 };
 
-HitColumnMask needed_hit_columns(const Job& job, std::size_t sensor_index,
-                                 const std::vector<Output>& outputs) {
-  HitColumnMask hit_columns = hit_columns_for_outputs(outputs);
+HitColumnMask needed_hit_columns(const Job& job, std::size_t sensor) {
+  HitColumnMask hit_columns = job.files.hit_columns(sensor);
   hit_columns.normal = hit_columns.normal || job.flags.fisher.is_requested;
-  for (const auto& recording : job.recordings) {
-    hit_columns = hit_columns | recording->hit_columns(sensor_index);
-  }
+  for (const auto& recording : job.recordings)
+    hit_columns = hit_columns | recording->hit_columns(sensor);
   return hit_columns;
 }
 
@@ -138,50 +122,18 @@ Error after_writing(const Error& error, const std::vector<std::filesystem::path>
   return Error(parts);
 }
 
-/// The files of one sensor's frame: named after both on a rig.
-OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs,
-                     const ActiveSensor& active, std::uint32_t frame) {
-  const std::string label = label_of(flags, active);
-  const OutputFlags files = label.empty() ? outputs : labelled(outputs, label);
-  return is_sequence(flags) ? numbered(files, frame) : files;
-}
-
-/// The files of a frame; none if only recordings are written.
-std::vector<Output> plan_frame(const RenderFlags& flags, const OutputFlags& files,
-                               const SidecarContext& context, Console& console) {
-  if (!has_outputs(files)) return {};
-  return plan_outputs(files, flags.input, context, console.report(),
-                      [&console](double fraction) { console.set_progress(fraction); });
-}
-
-/// Appends a frame to the recordings.
-void record(const Job& job, const MeasuredFrame& measured, Console& console) {
-  if (job.recordings.empty()) return;
+/// Appends a frame to the recordings, and writes its files.
+void write(Job& job, const MeasuredFrame& measured, Console& console) {
   const ProgressScope progress(console, "writing");
-  for (const auto& recording : job.recordings) recording->write(measured);
+  for (const auto& recording : job.recordings) recording->write(measured.view());
+  job.files.write(measured.view());
 }
 
-/// Completes the recordings.
-void finish_recordings(Job& job) {
-  for (const auto& recording : job.recordings) {
-    recording->finish();
-    std::string names;
-    for (const std::filesystem::path& file : recording->files()) {
-      job.written.push_back(file);
-      names += " " + file.string();
-    }
-    if (job.flags.quiet) continue;
-    print(result_stream(job.flags), "wrote{}\n", names);
-  }
-}
-
-/// The command that repeats the frames of one sensor.
-CommandRecord command_of(const Job& job, const ActiveSensor& active) {
-  CommandRecord command = job.command;
-  if (!label_of(job.flags, active).empty()) {
-    command.arguments.insert(command.arguments.end(), {"--sensor-name", active.name});
-  }
-  return command;
+/// Completes an output of all frames.
+void finish(Job& job, Output& output) {
+  output.finish();
+  for (const std::filesystem::path& file : output.files()) job.written.push_back(file);
+  if (std::FILE* to = result_stream(job.flags)) print_lines(to, output.written_text());
 }
 
 /// Measures a frame and writes it to files of its own and to the recordings.
@@ -193,29 +145,21 @@ void measure_and_write(Job& job, const SensorFrame& which, Console& console,
   measured.sensor_index = which.sensor_index;
   measured.index = which.number;
   measured.beams = active.simulator->beams(which.number);
-  const SidecarContext context{.scene = prepared.scene,
-                               .sensor = active.sensor,
-                               .beams = *measured.beams,
-                               .renderer = renderer_name(flags),
-                               .command = command_of(job, active),
-                               .inputs = prepared.files};
   const View view{prepared.scene, active.sensor, *measured.beams, measured.frame};
-  const std::vector<Output> outputs =
-      plan_frame(flags, files_of(flags, job.files[which.sensor_index], active, which.number),
-                 context, console);
-  refuse_overwrite_of_inputs(prepared.files, outputs);
   set_frame_header(flags, prepared, active, which.number, measured.frame);
-  measure(active, needed_hit_columns(job, which.sensor_index, outputs), console, measured.frame);
+  measure(active, needed_hit_columns(job, which.sensor_index), console, measured.frame);
   if (which.number == 0) print_advice(view_advice(view), console);
-  record(job, measured, console);
-  write(flags, view, outputs, console);
+  write(job, measured, console);
+  const std::vector<std::filesystem::path> files = job.files.files();
+  std::FILE* to = result_stream(flags);
+  if (to != nullptr && !files.empty()) print_summary(view, files, to);
   if (flags.fisher.is_requested) {
     std::optional<std::uint32_t> number;
     if (is_sequence(flags)) number = which.number;
     write_fisher(flags.fisher, measured.frame, *measured.beams,
-                 fisher_neighbour(flags, active, outputs), number, result_stream(flags));
+                 fisher_neighbour(flags, active, files), number, to);
   }
-  for (const Output& output : outputs) job.written.push_back(output.path);
+  job.written.insert(job.written.end(), files.begin(), files.end());
 }
 
 /// All frames of all sensors, in the order of time.
@@ -223,47 +167,69 @@ void measure_all(Job& job, Console& console) {
   std::vector<MeasuredFrame> frames(job.prepared.sensors.size());  // sensors have their own sizes
   FrameOrder order(job.prepared.sensors);
   while (const std::optional<SensorFrame> which = order.next()) {
-    const bool is_written = has_outputs(job.files[which->sensor_index]) || !job.recordings.empty();
+    const bool is_written = job.files.has_files(which->sensor_index) || !job.recordings.empty();
     if (is_written) measure_and_write(job, *which, console, frames[which->sensor_index]);
   }
 }
 
-int run_render(const RenderFlags& flags, const std::vector<std::string>& arguments) {
+/// The files of the first frame, checked before the work begins.
+std::vector<std::filesystem::path> first_files(const OutputFlags& flags) {
+  if (has_outputs(flags)) return check_frame_files(flags);
+  if (has_run_outputs(flags)) return {};
+  throw Error(
+      {.where = "--output",
+       .found = "there is no -o, so nothing would be written",
+       .allowed = "files by suffix: " + all_suffixes(),
+       .remedy = "for example: glidar render " + flags.input + " -o cloud.pcd -o picture.png"});
+}
+
+/// Measures and writes all frames of a prepared scene.
+void run(const RenderFlags& flags, const PreparedScene& prepared, const CommandRecord& command,
+         Console& console) {
+  OutputRig rig = output_rig(flags, prepared, PoseOrigin::motion);
+  rig.command = command;
+  rig.end_ns = end_ns(prepared);
+  Job job{flags, prepared, FrameFiles(flags.output, is_sequence(flags), rig, console.report()),
+          open_recordings(flags.output, rig), open_imu_outputs(flags.output, rig, console)};
+  try {
+    measure_all(job, console);
+    for (const auto& recording : job.recordings) finish(job, *recording);
+    if (job.imu) finish(job, *job.imu);
+  } catch (const Error& error) {
+    if (job.written.empty()) throw;
+    throw after_writing(error, job.written);
+  }
+}
+
+/// Throws Error if IMU samples are requested without a duration.
+void check_imu_outputs(const RenderFlags& flags) {
+  if (flags.output.imu_paths.empty() || is_sequence(flags)) return;
+  throw Error({"--output, " + flags.output.imu_paths.front(), "samples of IMUs without a duration",
+               "this output with --duration", "add --duration 1, for example"});
+}
+
+int run_render(RenderFlags flags, const std::vector<std::string>& arguments) {
+  flags.output.input = flags.input;
   Console console(flags.quiet);
   check_fisher(flags);
   check_imu_outputs(flags);
   if (is_sequence(flags)) numbered(flags.output, 0);  // for its errors only
   CommandRecord command = {.arguments = reproducible_arguments(arguments),
                            .folder = std::filesystem::current_path()};
-  PreparedScene prepared;
-  const ActiveSensor unknown;
-  std::vector<Output> outputs;  // to report errors before the work begins
-  if (has_outputs(flags.output) || !has_run_outputs(flags.output)) {
-    outputs = plan_outputs(flags.output, flags.input,
-                           {.scene = prepared.scene,
-                            .sensor = unknown.sensor,
-                            .beams = unknown.beams,
-                            .renderer = renderer_name(flags)},
-                           console.report());
-  }
+  const std::vector<std::filesystem::path> files = first_files(flags.output);
   check_layout(flags.output);
+  PreparedScene prepared;
   prepare_scene(
-      flags, [&] { refuse_overwrite_of_inputs(prepared.files, outputs); }, console, prepared);
+      flags,
+      [&] {
+        for (const std::filesystem::path& file : files)
+          refuse_overwrite_of_inputs(prepared.files, file);
+      },
+      console, prepared);
   set_start_time(prepared.recorded_start, command);
   refuse_unused_output_options(flags.output, prepared, {});
   refuse_unused_imu(flags, prepared, {}, PoseOrigin::motion);
-  Job job{flags, command, prepared, outputs_by_sensor(flags, prepared, console),
-          make_recording_sinks(flags, prepared, prepared.files, PoseOrigin::motion)};
-  try {
-    measure_all(job, console);
-    finish_recordings(job);
-    if (!flags.output.imu_paths.empty()) {
-      write_imu_outputs(flags, prepared, imu_end_ns(prepared), console, job.written);
-    }
-  } catch (const Error& error) {
-    if (job.written.empty()) throw;
-    throw after_writing(error, job.written);
-  }
+  run(flags, prepared, command, console);
   return kDone;
 }
 

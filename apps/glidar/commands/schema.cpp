@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/printing.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <glidar/io/config/json_schema.hpp>
 
 #include <CLI/CLI.hpp>

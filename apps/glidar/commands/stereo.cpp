@@ -4,10 +4,7 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/image_files.hpp>
-#include <apps/glidar/run/printing.hpp>
-#include <apps/glidar/run/status_shares.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/staged_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>

@@ -3,7 +3,7 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/advice.hpp>
-#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/lockstep_run.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/stream_run.hpp>

@@ -3,8 +3,6 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/printing.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/verify/verify.hpp>
 

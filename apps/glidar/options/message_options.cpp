@@ -5,6 +5,7 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/io/ros/driver.hpp>
+#include <glidar/io/ros/image_transport.hpp>
 #include <glidar/io/ros/published_rig.hpp>
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace {
 
 constexpr const char* kMessageHeading = "ROS messages in bags and --ros2";
 
-DriverFlag parse_driver(const std::string& text) {
+SensorDriver parse_driver(const std::string& text) {
   const std::size_t equals = text.find('=');
   const bool has_sensor = equals != std::string::npos;
   if (has_sensor && equals == 0) refuse_value(text, "[SENSOR=]DRIVER");
@@ -38,7 +39,7 @@ std::string parse_frame_prefix(const std::string& text) {
 
 }  // namespace
 
-void add_message_options(CLI::App& command, MessageFlags& flags) {
+void add_message_options(CLI::App& command, MessageOptions& flags) {
   const OptionGroup group(command, kMessageHeading);
   group.add_repeatable(
       "--as", "[SENSOR=]DRIVER", "As a maker's driver publishes, see below; repeatable",
@@ -71,7 +72,7 @@ void remove_message_options(CLI::App& command) {
     command.remove_option(command.get_option(name));
 }
 
-std::string given_message_option(const MessageFlags& flags) {
+std::string given_message_option(const MessageOptions& flags) {
   if (!flags.drivers.empty()) return "--as";
   if (!flags.frame_prefix.empty()) return "--frame-prefix";
   if (flags.imu_orientation) return "--imu-orientation";

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/error.hpp>
+#include <glidar/core/option_name.hpp>
 #include <glidar/core/pose.hpp>
 
 #include <Eigen/Core>
@@ -22,19 +22,6 @@
 #include <vector>
 
 namespace glidar::app {
-
-/// Runs `work` and adds the option's name to its errors.
-template <class Work>
-void with_option_name(const std::string& option, const Work& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    ErrorParts parts = error.parts();
-    if (parts.where.starts_with(option)) throw;
-    parts.where = parts.where.empty() ? option : option + ", " + parts.where;
-    throw Error(parts);
-  }
-}
 
 // Each parser below takes the whole text of an option and throws Error when it is not allowed.
 

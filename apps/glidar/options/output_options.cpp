@@ -5,12 +5,9 @@
 #include <apps/glidar/options/help_text.hpp>
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
-#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/formats/imu_samples_file.hpp>
-#include <glidar/io/formats/kitti_writer.hpp>
-#include <glidar/io/osi/osi_trace.hpp>
-#include <glidar/io/packets/packet_writer.hpp>
+#include <glidar/io/packets/livox_packet.hpp>
+#include <glidar/io/packets/ouster_packet.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -61,16 +58,11 @@ std::vector<std::string> stream_formats() {
 
 /// The list for an output of this name.
 std::vector<std::string>& paths_for(const std::string& path, OutputFlags& flags) {
-  if (is_imu_samples_path(path)) return flags.imu_paths;
-  const bool is_recording = bags::is_bag_name(path) || is_capture_name(path) ||
-                            osi::is_osi_trace_name(path) || is_kitti_name(path);
-  if (is_recording) return flags.recording_paths;
-  if (path != kStandardOutput && !has_format(path)) {
-    with_option_name("--output", [&] {
-      refuse_suffix(path, {".mcap", ".rosbag2", ".bag", ".pcap", ".osi", ".imu.csv", ".imu.npz"});
-    });
-  }
-  return flags.paths;
+  if (path == kStandardOutput) return flags.paths;
+  OutputKind kind{};
+  with_option_name("--output", [&] { kind = output_kind(path); });
+  if (kind == OutputKind::imu_samples) return flags.imu_paths;
+  return kind == OutputKind::frame_file ? flags.paths : flags.recording_paths;
 }
 
 void add_cloud_options(const OptionGroup& group, OutputFlags& flags) {
@@ -124,12 +116,6 @@ void add_picture_options(const OptionGroup& group, CloudPictureOptions& picture)
 
 }  // namespace
 
-const std::vector<std::string>& default_columns() {
-  static const std::vector<std::string> kColumns = {"xyz",    "intensity", "range",
-                                                    "normal", "instance",  "class"};
-  return kColumns;
-}
-
 void add_output_options(CLI::App& command, OutputFlags& flags) {
   const OptionGroup group(command, kOutputHeading);
   group.add_repeatable(
@@ -156,18 +142,10 @@ void hide_standard_output(CLI::App& command) {
 
 std::string output_names_text() {
   std::string text = "Output files by suffix:\n";
-  for (const FileFormat& format : file_formats()) {
+  for (const OutputFormat& format : output_formats()) {
     text += fmt::format("  {:<17} {}{}\n", format.suffix, format.description,
                         format.missing.empty() ? "" : "; not in this build");
   }
-  text += fmt::format("  {:<17} {}\n", ".imu.csv", "samples of IMUs, text");
-  text += fmt::format("  {:<17} {}\n", ".imu.npz", "samples of IMUs, NumPy archive");
-  text += fmt::format("  {:<17} {}\n", ".mcap", "ROS bag of all frames and sensors");
-  text +=
-      fmt::format("  {:<17} {}\n", ".rosbag2", "the same as a folder with SQLite, for ros2 bag");
-  text += fmt::format("  {:<17} {}\n", ".bag", "the same for ROS 1");
-  text += fmt::format("  {:<17} {}\n", ".pcap", "UDP packets as the sensor sends them");
-  text += fmt::format("  {:<17} {}\n", ".osi", "OSI trace of all frames and sensors");
   text += "\nColumns of clouds (* by default):\n";
   std::string names;
   for (const std::string& name : cloud_column_names()) {
@@ -187,20 +165,8 @@ std::string output_names_text() {
          "  world        those of the scene\n\n";
 }
 
-const FileFormat& format_of(const OutputFlags& flags, const std::string& path) {
-  return format_for(path == kStandardOutput ? "stdout." + flags.format : path);
-}
-
-bool writes_standard_output(const OutputFlags& flags) {
-  return contains(flags.paths, kStandardOutput);
-}
-
 bool has_run_outputs(const OutputFlags& flags) {
   return !flags.imu_paths.empty() || !flags.recording_paths.empty();
-}
-
-bool has_outputs(const OutputFlags& flags) {
-  return !flags.paths.empty() || !flags.legacy_name.empty();
 }
 
 }  // namespace glidar::app

@@ -121,43 +121,6 @@ void add_live_view_option(CLI::App& command, StreamFlags& flags) {
           [&flags](const std::string& text) { flags.foxglove = parse_listen_address(text); });
 }
 
-/// Refuses "::1" and "[::1]:2368".
-void refuse_ipv6(const std::string& text) {
-  constexpr std::ptrdiff_t kMaxColons = 2;  // before two ports
-  const bool has_dots = text.find('.') != std::string::npos;
-  const bool is_ipv6 = text.find('[') != std::string::npos ||
-                       text.find("::") != std::string::npos ||
-                       (!has_dots && std::count(text.begin(), text.end(), ':') > kMaxColons);
-  if (!is_ipv6) return;
-  throw Error({"", "'" + text + "', an IPv6 address",
-               "[SENSOR=]ADDRESS[:PORT[:PORT]] with an IPv4 address or the name of a host",
-               "for example 127.0.0.1:2368"});
-}
-
-PacketTarget parse_packet_target(const std::string& text) {
-  refuse_ipv6(text);
-  PacketTarget target;
-  const std::size_t equals = text.find('=');
-  if (equals != std::string::npos) target.sensor_name = text.substr(0, equals);
-  std::string rest = equals == std::string::npos ? text : text.substr(equals + 1);
-  const auto take_port = [&]() -> std::optional<std::uint16_t> {
-    const std::size_t colon = rest.find(':');
-    if (colon == std::string::npos) return std::nullopt;
-    const std::size_t end = std::min(rest.find(':', colon + 1), rest.size());
-    const auto port = whole<std::uint16_t>(1, 65535)(rest.substr(colon + 1, end - colon - 1));
-    rest.erase(colon, end - colon);
-    return port;
-  };
-  target.data_port = take_port();
-  target.second_port = take_port();
-  target.host = rest;
-  const bool is_valid = !rest.empty() && rest.find(':') == std::string::npos && equals != 0;
-  if (!is_valid) {
-    refuse_value(text, "[SENSOR=]ADDRESS[:PORT[:PORT]]", "for example 127.0.0.1:2368");
-  }
-  return target;
-}
-
 ControlTarget parse_control_target(const std::string& text) {
   const PacketTarget parsed = parse_packet_target(text);
   if (parsed.second_port) refuse_value(text, "[SENSOR=]ADDRESS[:PORT]", "give one port");
@@ -173,16 +136,17 @@ void add_packet_options(CLI::App& command, StreamFlags& flags) {
                          with_option_name("--udp",
                                           [&] { flags.udp.push_back(parse_packet_target(text)); });
                        });
-  group.add_repeatable(
-      "--control", "ADDRESS[:PORT]",
-      "Address of the sensor for its drivers, or none [on this machine]",
-      [&flags](const std::string& text) {
-        if (text == "none") {
-          flags.has_no_control = true;
-          return;
-        }
-        with_option_name("--control", [&] { flags.control.push_back(parse_control_target(text)); });
-      });
+  group.add_repeatable("--control", "ADDRESS[:PORT]",
+                       "Address of the sensor for its drivers, or none [on this machine]",
+                       [&flags](const std::string& text) {
+                         if (text == "none") {
+                           flags.control.has_none = true;
+                           return;
+                         }
+                         with_option_name("--control", [&] {
+                           flags.control.chosen.push_back(parse_control_target(text));
+                         });
+                       });
   require_option(command, {"--control"}, "--udp");
 }
 

@@ -7,6 +7,7 @@
 #include <apps/glidar/options/ros2_options.hpp>
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/limits.hpp>
+#include <glidar/output/network.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -14,21 +15,6 @@
 #include <vector>
 
 namespace glidar::app {
-
-/// A receiver of packets: [SENSOR=]ADDRESS[:PORT[:PORT]].
-struct PacketTarget {
-  std::string sensor_name;  ///< empty: the only sensor with packets
-  std::string host;
-  std::optional<std::uint16_t> data_port;    ///< empty: the manufacturer's
-  std::optional<std::uint16_t> second_port;  ///< of positions (Velodyne) or IMU (Ouster, Livox)
-};
-
-/// Where the drivers of a sensor reach it: [SENSOR=]ADDRESS[:PORT].
-struct ControlTarget {
-  std::string sensor_name;  ///< empty: all
-  std::string host;
-  std::optional<std::uint16_t> port;  ///< empty: the manufacturer's
-};
 
 /// A stream as given on the command line.
 struct StreamFlags {
@@ -50,8 +36,7 @@ struct StreamFlags {
   bool publishes_latest = false;              ///< --publish-latest
   int publish_queue = 32;                     ///< clouds for each subscriber
   std::vector<PacketTarget> udp;              ///< receivers of packets
-  std::vector<ControlTarget> control;         ///< empty: loopback addresses
-  bool has_no_control = false;                ///< --control none
+  PacketControl control;                      ///< of the sensors whose packets are sent
   std::optional<link::Endpoint> foxglove;     ///< of the live view; empty: there is none
   std::optional<link::Endpoint> pose_source;  ///< empty: the command line gives the poses
   Ros2Flags ros2;

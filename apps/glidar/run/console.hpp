@@ -2,16 +2,75 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/core/report.hpp>
+
+#include <fmt/format.h>
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdio>
 #include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <type_traits>
+#include <utility>
 
 namespace glidar::app {
+
+// Exit codes. An interrupt returns 130; `stream` returns 128 plus the signal's number.
+inline constexpr int kDone = 0;
+inline constexpr int kCheckFailed = 1;   ///< `verify` found errors beyond its bounds
+inline constexpr int kBadInput = 2;      ///< options, files, values
+inline constexpr int kClosedPipe = 141;  ///< standard output was closed, as shells report it
+inline constexpr int kNoPoses = 3;       ///< `stream`: no pose within --pose-timeout
+
+/// Prints lines for people. Nothing in them controls a terminal, see printable_lines().
+void print_lines(std::FILE* to, std::string_view lines);
+
+/// Prints a line to standard error: the prefix and the message, which is cut at 8 KiB, because it
+/// may quote files of others.
+void print_message(std::string_view prefix, std::string_view message);
+
+/// A value of print(): texts become one printable line.
+template <class Value>
+decltype(auto) printable_value(const Value& value) {
+  if constexpr (std::is_convertible_v<const Value&, std::string_view>) {
+    return printable_line(value);
+  } else {
+    return (value);
+  }
+}
+
+/// As fmt::format, for print().
+template <class... Values>
+std::string printable_format(fmt::string_view format, const Values&... values) {
+  return fmt::vformat(format, fmt::make_format_args(values...));
+}
+
+/// As fmt::print, but line ends come from the format only, because texts may be from files.
+template <class... Values>
+void print(std::FILE* to, fmt::format_string<Values...> format, Values&&... values) {
+  print_lines(to, printable_format(fmt::string_view(format), printable_value(values)...));
+}
+
+template <class... Values>
+void print(fmt::format_string<Values...> format, Values&&... values) {
+  app::print(stdout, format, std::forward<Values>(values)...);  // not fmt's
+}
+
+/// Prints JSON in ASCII; bytes that are no UTF-8 are replaced.
+template <class Json>
+void print_json(const Json& json) {
+  print_lines(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+}
+
+/// The progress display of a task: a bar with percent and the remaining time, or the elapsed time
+/// if the fraction is unknown (negative). At most `columns` bytes.
+std::string progress_line(std::string_view task, double fraction_done, double elapsed_s,
+                          std::size_t columns);
 
 /// The terminal: results go to standard output, everything else to standard error. Keeps messages
 /// and the progress display apart. Thread-safe.

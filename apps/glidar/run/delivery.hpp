@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/run/frame_sink.hpp>
-#include <apps/glidar/run/measured_frame.hpp>
+#include <glidar/link/lockstep/messages.hpp>
+#include <glidar/output/output.hpp>
 
 #include <array>
 #include <chrono>
@@ -11,10 +11,27 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 
 namespace glidar::app {
+
+/// A frame to be delivered.
+struct MeasuredFrame {
+  Frame frame;
+  std::shared_ptr<const Beams> beams;
+  std::uint64_t index = 0;                         ///< among its sensor's frames
+  std::size_t sensor_index = 0;                    ///< of its sensor among those of the scene
+  std::shared_ptr<const Motion> motion;            ///< with which it was measured
+  std::shared_ptr<const lockstep::Moment> placed;  ///< poses by a client; nullptr: by the command
+  std::string frame_hash;                          ///< expected frame_hash(); empty: unknown
+  std::chrono::steady_clock::time_point due;       ///< when its pose was known
+
+  /// The same for outputs.
+  [[nodiscard]] RigFrame view() const { return {frame, *beams, sensor_index, index, due, motion}; }
+};
 
 /// Delivers frames in its own thread, while the next frame is measured. At most two frames are in
 /// progress: measuring waits for delivery.
@@ -24,7 +41,7 @@ class Delivery {
   /// nothing to deliver), and `failed` (once, after one of them threw).
   Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
            std::function<void()> failed,
-           std::chrono::milliseconds idle_interval = kDefaultServeInterval);
+           std::chrono::milliseconds idle_interval = Output::kServeInterval);
   /// Delivers the submitted frames.
   ~Delivery();
   Delivery(const Delivery&) = delete;

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/fisher_output.hpp>
 
-#include <apps/glidar/run/printing.hpp>
+#include <apps/glidar/run/console.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/formats/fisher_information_file.hpp>
-#include <glidar/io/packets/packet_writer.hpp>
 
 #include <fmt/format.h>
 
@@ -22,7 +20,8 @@ void check_fisher(const RenderFlags& flags) {
 std::filesystem::path fisher_path(const std::filesystem::path& output,
                                   std::optional<std::uint32_t> frame) {
   const std::string name = output.string();
-  const bool is_recording = bags::is_bag_name(output) || is_capture_name(output);
+  const OutputKind kind = output_kind(output);
+  const bool is_recording = kind == OutputKind::bag || kind == OutputKind::capture;
   const std::string suffix = is_recording ? output.extension().string() : format_for(output).suffix;
   // the names of files of one frame have the number
   const bool is_numbered = frame && (is_recording || format_for(output).is_folder);

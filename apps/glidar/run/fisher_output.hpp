@@ -3,7 +3,6 @@
 #pragma once
 
 #include <apps/glidar/options/render_options.hpp>
-#include <apps/glidar/run/outputs.hpp>
 
 #include <cstdint>
 #include <cstdio>

@@ -3,11 +3,10 @@
 #include <apps/glidar/run/lockstep_run.hpp>
 
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/placed_motion.hpp>
-#include <apps/glidar/run/printing.hpp>
-#include <apps/glidar/run/reply_size.hpp>
+#include <apps/glidar/run/pose_source.hpp>
 #include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/point_cloud.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/files/input_file.hpp>
 #include <glidar/link/socket.hpp>
@@ -16,16 +15,82 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <exception>
 #include <filesystem>
 #include <new>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
 namespace glidar::app {
+
+namespace {
+
+struct ColumnSize {
+  std::string_view name;
+  std::int64_t bytes;  ///< of a point
+};
+
+/// As documented for make_point_cloud(); reply_size_test.cpp compares all of them with clouds.
+constexpr std::array kSizes = {
+    ColumnSize{"xyz", 24},
+    ColumnSize{"true_xyz", 24},
+    ColumnSize{"intensity", 4},
+    ColumnSize{"range", 8},
+    ColumnSize{"true_range", 8},
+    ColumnSize{"sigma", 4},
+    ColumnSize{"radial_velocity", 8},
+    ColumnSize{"true_radial_velocity", 8},
+    ColumnSize{"depth", 8},
+    ColumnSize{"normal", 12},
+    ColumnSize{"shading_normal", 12},
+    ColumnSize{"incidence", 4},
+    ColumnSize{"instance", 4},
+    ColumnSize{"class", 4},
+    ColumnSize{"primitive", 4},
+    ColumnSize{"barycentrics", 8},
+    ColumnSize{"colour", 12},
+    ColumnSize{"object_point", 24},
+    ColumnSize{"status", 1},
+    ColumnSize{"row", 4},
+    ColumnSize{"col", 4},
+    ColumnSize{"ring", 2},
+    ColumnSize{"time", 4},
+    ColumnSize{"return", 1},
+    ColumnSize{"return_source", 1},
+    ColumnSize{"azimuth", 8},
+    ColumnSize{"elevation", 8},
+    ColumnSize{"stamp", 8},
+    ColumnSize{"sensor_pose", 56},
+    ColumnSize{"object_pose", 56},
+};
+
+constexpr std::int64_t kMax_bytes = 56;
+constexpr std::int64_t kHead_bytes = 120;
+
+}  // namespace
+
+std::int64_t point_bytes(std::span<const std::string> columns) {
+  (void)glidar::hit_columns_for(columns);  // throws on an unknown name
+  std::int64_t bytes = 0;
+  for (const std::string& name : columns) {
+    const auto* const found = std::find_if(
+        kSizes.begin(), kSizes.end(), [&](const ColumnSize& size) { return size.name == name; });
+    bytes += found == kSizes.end() ? kMax_bytes : found->bytes;
+  }
+  return bytes;
+}
+
+std::int64_t reply_bytes(std::span<const std::string> columns, std::size_t points,
+                         std::size_t clouds) {
+  const std::int64_t cloud = static_cast<std::int64_t>(points) * point_bytes(columns) + kHead_bytes;
+  return static_cast<std::int64_t>(clouds) * cloud;
+}
+
 namespace {
 
 /// Creates a file of new keys, and prints the public one.

@@ -6,7 +6,7 @@
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
-#include <apps/glidar/run/recorder.hpp>
+#include <apps/glidar/run/recorded_command.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/link/cloud_pool.hpp>
 #include <glidar/link/error_log.hpp>
@@ -23,6 +23,13 @@
 #include <vector>
 
 namespace glidar::app {
+
+/// Bytes of one point in a cloud with these columns. Throws Error on an unknown name.
+std::int64_t point_bytes(std::span<const std::string> columns);
+
+/// Upper bound of the size of a reply, known before its clouds are measured.
+std::int64_t reply_bytes(std::span<const std::string> columns, std::size_t points,
+                         std::size_t clouds);
 
 /// `glidar stream --lockstep`: measures the frames that clients request.
 class LockstepRun {

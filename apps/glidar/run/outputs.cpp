@@ -4,256 +4,273 @@
 
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag.hpp>
-#include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/formats/cloud_layout.hpp>
-
-#include <fmt/format.h>
-
-#include <unistd.h>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
+#include <glidar/io/ros/image_transport.hpp>
+#include <glidar/output/network.hpp>
+#include <glidar/output/rig_messages.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <set>
+#include <string>
+#include <utility>
+#include <variant>
 
 namespace glidar::app {
 namespace {
 
-void add_missing(const std::string& name, std::vector<std::string>& names) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+bool has_recording(const OutputFlags& flags, OutputKind kind) {
+  return std::ranges::any_of(flags.recording_paths,
+                             [kind](const std::string& path) { return output_kind(path) == kind; });
 }
 
-std::vector<std::string> requested_columns(const OutputFlags& flags) {
-  if (!flags.sink.layout.empty()) return find_layout(flags.sink.layout).columns;
-  return flags.columns.empty() ? default_columns() : flags.columns;
+bool has_bag(const OutputFlags& flags) {
+  return has_recording(flags, OutputKind::bag);
 }
 
-/// Throws Error unless there is at most one standard output and its format is given.
-void check_standard_output(const OutputFlags& flags) {
-  const auto count = std::count(flags.paths.begin(), flags.paths.end(), kStandardOutput);
-  if (count > 1) {
-    throw Error(
-        {"--output -", "is given twice", "one standard output", "write the other one to a file"});
-  }
-  if (count == 0 && !flags.format.empty()) {
-    throw Error({"--format " + flags.format, "there is no -o -", "--format with -o -",
-                 "leave it out: the suffix of a file selects its format"});
-  }
-  if (count == 1 && flags.format.empty()) {
-    throw Error({"--output -", "the format of standard output is not given", "-o - with --format",
-                 "add --format csv, or another of those that --help lists"});
+bool has_capture(const OutputFlags& flags) {
+  return has_recording(flags, OutputKind::capture);
+}
+
+/// Throws Error when two recordings have the same name.
+void check_names(const std::vector<std::string>& paths) {
+  std::set<std::filesystem::path> names;
+  for (const std::string& path : paths) {
+    if (names.insert(real_path(path)).second) continue;
+    throw Error({path, "is given twice as output", "", "choose another name"});
   }
 }
 
-void check_picture(const CloudPictureOptions& picture) {
-  if (!picture.eye_m || !picture.target_m || *picture.eye_m != *picture.target_m) return;
-  throw Error({.where = "--view-eye",
-               .found = "it is the point that the camera looks at",
-               .allowed = "a position other than --view-target"});
-}
+/// Sends the packets of sensors by UDP, as --udp selects them, and serves the drivers of each
+/// sensor once.
+class PacketOutputs {
+ public:
+  PacketOutputs(const StreamFlags& flags, const OutputRig& rig, link::ErrorLog& errors,
+                Console& console)
+      : flags_(flags),
+        rig_(rig),
+        speed_(time_speed(flags, rig.sensors.front().sensor)),
+        errors_(errors),
+        console_(console) {}
 
-void refuse_terminal(const FileFormat& format, const FileSinkOptions& options) {
-  if (::isatty(STDOUT_FILENO) == 0 || is_text(format, options)) return;
-  throw Error({"--output -", "standard output is a terminal, and this format is binary",
-               "text on a terminal",
-               "pipe it to a program or a file, or write text: --format csv"});
-}
-
-/// Formats that hold no points (images, poses) have a fixed set of columns.
-std::vector<std::string> columns_of(const FileFormat& format,
-                                    const std::vector<std::string>& requested) {
-  if (!format.takes_more) return needed_columns(format);
-  std::vector<std::string> columns = requested;
-  for (const std::string& name : needed_columns(format)) add_missing(name, columns);
-  return columns;
-}
-
-/// NAME.pcd and NAME.transform as the original GLIDAR writes them.
-void plan_legacy(const std::string& name, const SidecarContext& context, const Report& report,
-                 std::vector<Output>& outputs) {
-  const FileSinkOptions options{.drop_invalid = true, .sidecar = false};
-  for (const char* suffix : {".pcd", ".transform"}) {
-    const std::filesystem::path path = name + suffix;
-    outputs.push_back({.path = path,
-                       .columns = columns_of(format_for(path), {"xyz", "intensity"}),
-                       .frame_name = "legacy",
-                       .sink = make_file_sink(path, options, context, report)});
-  }
-}
-
-/// The output of one -o.
-Output plan_output(const std::string& path, const OutputFlags& flags,
-                   const FileSinkOptions& options, const SidecarContext& context,
-                   const Report& report) {
-  const FileFormat& format = format_of(flags, path);
-  Output output{.path = path == kStandardOutput ? std::filesystem::path(path) : output_path(path),
-                .columns = columns_of(format, requested_columns(flags)),
-                .frame_name = frame_for(format, flags.frame),
-                .deskew = flags.deskew || format.is_survey,
-                .has_boxes = path != kStandardOutput && has_boxes(format, options),
-                .sink = nullptr};
-  if (path == kStandardOutput) {
-    refuse_terminal(format, options);
-    output.sink =
-        make_stream_sink(STDOUT_FILENO, "stdout." + flags.format, options, context, report);
-  } else {
-    output.sink = make_file_sink(path, options, context, report);
-  }
-  return output;
-}
-
-/// Standard output comes last: when its reader closes it early, all files exist.
-std::vector<std::string> in_order(std::vector<std::string> paths) {
-  std::stable_partition(paths.begin(), paths.end(),
-                        [](const std::string& path) { return path != kStandardOutput; });
-  return paths;
-}
-
-void check_names(const std::vector<Output>& outputs, const std::string& input) {
-  std::set<std::filesystem::path> seen;
-  for (const Output& output : outputs) {
-    const bool is_input = is_same_file(output.path, input);
-    const bool is_repeated = !seen.insert(real_path(output.path)).second;
-    if (!is_input && !is_repeated) continue;
-    throw Error({.where = "--output, " + output.path.string(),
-                 .found = is_input ? "is an input file" : "is given twice as output",
-                 .remedy = "choose another name"});
-  }
-}
-
-/// Gives the outputs of a frame their names, one after the other.
-void commit_all(const std::vector<Output>& outputs) {
-  std::string written;
-  for (const Output& output : outputs) {
-    try {
-      output.sink->commit();
-    } catch (const ClosedPipe&) {
-      throw;
-    } catch (const Error& error) {
-      ErrorParts parts = error.parts();
-      parts.remedy += (parts.remedy.empty() ? "" : "; ") +
-                      (written.empty() ? "no file of this frame was written"
-                                       : "these outputs are written:" + written);
-      throw Error(parts);
+  std::unique_ptr<Output> open(const PacketTarget& target) {
+    ControlPlan plan;
+    with_option_name("--udp", [&] {
+      const std::size_t index = packet_sensor(rig_, target.sensor_name, "--udp");
+      if (served_.insert(index).second)
+        plan = control_plan(flags_.control, rig_.sensors[index], target);
+    });
+    if (plan.at) {
+      try {
+        return open("--control", target, plan.at);
+      } catch (const Error& error) {
+        if (plan.is_chosen) throw;
+        console_.warn(std::string("drivers cannot reach the sensor: ") + error.what() +
+                      "; choose an address with --control, or none");
+      }
     }
-    written += " " + output.path.string();
+    return open("--udp", target, std::nullopt);
   }
+
+ private:
+  std::unique_ptr<Output> open(const char* option, const PacketTarget& target,
+                               const std::optional<link::Endpoint>& control) {
+    std::unique_ptr<Output> output;
+    with_option_name(option, [&] {
+      output = open_packet_output(target, rig_, flags_.render.output, speed_, errors_, control);
+    });
+    return output;
+  }
+
+  const StreamFlags& flags_;
+  const OutputRig& rig_;
+  double speed_;
+  link::ErrorLog& errors_;
+  Console& console_;
+  std::set<std::size_t> served_;  ///< sensors
+};
+
+template <class Predicate>
+bool any_sensor(const PreparedScene& prepared, const Predicate& predicate) {
+  return std::ranges::any_of(prepared.sensors, [&predicate](const ActiveSensor& active) {
+    return predicate(active.sensor);
+  });
 }
 
-/// Throws Error when a coordinate reference system is given, but no output takes one.
-void check_crs(const OutputFlags& flags) {
-  if (flags.sink.crs.empty()) return;
-  const auto is_survey = [&](const std::string& path) { return format_of(flags, path).is_survey; };
-  if (std::any_of(flags.paths.begin(), flags.paths.end(), is_survey)) return;
-  throw Error({.where = "--crs",
-               .found = "no output takes a coordinate reference system",
-               .allowed = "an output with the suffix .las",
-               .remedy = "add one, such as -o survey.las, or leave --crs out"});
+std::string sensor_names(const PreparedScene& prepared) {
+  std::string names;
+  for (const ActiveSensor& active : prepared.sensors)
+    names += (names.empty() ? "" : ", ") + active.sensor.name;
+  return names;
+}
+
+[[noreturn]] void refuse_without_output(const char* option, const char* of, std::string allowed,
+                                        const char* example) {
+  throw Error(
+      {.where = option,
+       .found = std::string("no output has ") + of,
+       .allowed = std::move(allowed),
+       .remedy = std::string("add one, such as ") + example + ", or leave " + option + " out"});
+}
+
+[[noreturn]] void refuse_sensors(const char* option, const PreparedScene& prepared,
+                                 const char* allowed) {
+  throw Error({.where = option,
+               .found = "it has no effect with " + sensor_names(prepared),
+               .allowed = allowed,
+               .remedy = std::string("leave ") + option + " out"});
+}
+
+/// Refuses an option of one manufacturer's packets.
+void check_packets(const char* option, bool has_packet_output, bool has_sensor, const char* sensor,
+                   const PreparedScene& prepared) {
+  if (!has_sensor) refuse_sensors(option, prepared, sensor);
+  if (!has_packet_output)
+    refuse_without_output(option, "packets", "a capture (.pcap), --udp or --packet-topics",
+                          "-o scan.pcap");
+}
+
+/// Options that only cameras have.
+void check_camera_options(const MessageOptions& messages, const PreparedScene& prepared) {
+  const auto is_camera = [](const Sensor& sensor) {
+    return std::holds_alternative<Pinhole>(sensor.optics);
+  };
+  if (any_sensor(prepared, is_camera)) return;
+  if (messages.images != ros::ImageTransport::raw)
+    refuse_sensors("--image-transport", prepared, "a camera");
+  if (messages.depth_in_mm) refuse_sensors("--depth-image", prepared, "a camera");
 }
 
 }  // namespace
 
-OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
-  OutputFlags result = labelled(flags, fmt::format("{:06}", frame));
-  for (std::size_t i = 0; i < flags.paths.size(); ++i) {
-    if (format_of(flags, flags.paths[i]).is_folder) result.paths[i] = flags.paths[i];
-  }
-  return result;
+PoseOrigin pose_origin(const StreamFlags& flags) {
+  return has_pose_source(flags) || flags.replays_requests ? PoseOrigin::frames : PoseOrigin::motion;
 }
 
-OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
-  if (writes_standard_output(flags)) {
-    throw Error({"--output -", "several clouds are written, which one stream cannot separate",
-                 "one frame of one sensor on standard output",
-                 "use glidar render without --duration, and --sensor-name to choose one of a rig's "
-                 "sensors, or write files"});
-  }
-  OutputFlags result = flags;
-  for (std::string& path : result.paths) {
-    path = output_path(path);
-    path.insert(path.size() - format_for(path).suffix.size(), "_" + label);
-  }
-  if (!result.legacy_name.empty()) result.legacy_name += "_" + label;
-  return result;
+double time_speed(const StreamFlags& flags, const Sensor& first_sensor) {
+  if (flags.replay.empty()) return has_pose_source(flags) || flags.is_unpaced ? 0.0 : 1.0;
+  if (flags.replay_rate_hz) return *flags.replay_rate_hz / first_sensor.rate_hz;
+  return flags.foxglove ? 1.0 : 0.0;
 }
 
-void check_layout(const OutputFlags& flags) {
-  check_crs(flags);
-  if (flags.sink.layout.empty()) return;
-  const std::vector<std::string>& recordings = flags.recording_paths;
-  if (std::any_of(recordings.begin(), recordings.end(), bags::is_bag_name)) return;
-  const auto is_laid_out = [&](const std::string& path) {
-    return takes_layout(path == kStandardOutput ? "stdout." + flags.format : path);
-  };
-  if (std::any_of(flags.paths.begin(), flags.paths.end(), is_laid_out)) return;
-  throw Error({.where = "--layout",
-               .found = "no output takes a layout",
-               .allowed = "a bag, or an output with the suffix " + suffixes_with_layouts(),
-               .remedy = "add one, such as -o scan.pcd, or leave --layout out"});
+OutputRig output_rig(const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin) {
+  OutputRig rig{.scene = prepared.scene, .sensors = {}};
+  for (const ActiveSensor& active : prepared.sensors) {
+    rig.sensors.push_back({.name = active.name,
+                           .label = label_of(flags, active),
+                           .id = active.id,
+                           .sensor = active.sensor,
+                           .beams = active.beams,
+                           .rig_from_sensor = active.rig_from_sensor});
+  }
+  if (origin == PoseOrigin::motion) rig.motion = prepared.motion;
+  rig.imus = prepared.imus;
+  rig.gravity_m_s2 = prepared.gravity_m_s2;
+  rig.seed = flags.seed;
+  rig.start_ns = prepared.start_ns;
+  rig.renderer = renderer_name(flags);
+  rig.inputs = prepared.files;
+  return rig;
 }
 
-std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
-                                 const SidecarContext& context, const Report& report,
-                                 const ProgressCallback& progress) {
-  if (!has_outputs(flags)) {
-    throw Error({.where = "--output",
-                 .found = "there is no -o, so nothing would be written",
-                 .allowed = "files by suffix: " + all_suffixes(),
-                 .remedy = "for example: glidar render " + input + " -o cloud.pcd -o picture.png"});
-  }
-  check_standard_output(flags);
-  check_picture(flags.sink.picture);
-  FileSinkOptions options = flags.sink;
-  options.progress = progress;
-  std::vector<Output> outputs;
-  for (const std::string& path : in_order(flags.paths)) {
-    with_option_name(
-        "--output", [&] { outputs.push_back(plan_output(path, flags, options, context, report)); });
-  }
-  if (!flags.legacy_name.empty()) {
-    with_option_name("--legacy-output",
-                     [&] { plan_legacy(flags.legacy_name, context, report, outputs); });
-  }
-  check_names(outputs, input);
+std::vector<std::unique_ptr<Output>> open_recordings(const OutputFlags& flags,
+                                                     const OutputRig& rig) {
+  std::vector<std::unique_ptr<Output>> outputs;
+  with_option_name("--output", [&] {
+    check_names(flags.recording_paths);
+    for (const std::string& path : flags.recording_paths)
+      outputs.push_back(open_output(path, rig, flags));
+  });
   return outputs;
 }
 
-void refuse_overwrite_of_inputs(const std::vector<std::string>& read,
-                                const std::vector<Output>& outputs) {
-  for (const Output& output : outputs) {
-    for (const std::filesystem::path& file : output.sink->files())
-      refuse_overwrite_of_inputs(read, file);
+std::unique_ptr<Output> open_imu_outputs(const OutputFlags& flags, const OutputRig& rig,
+                                         Console& console) {
+  std::unique_ptr<Output> output;
+  if (flags.imu_paths.empty()) return output;
+  with_option_name("--output",
+                   [&] { output = open_imu_samples(flags.imu_paths, rig, console.report()); });
+  return output;
+}
+
+std::vector<std::unique_ptr<Output>> open_stream_outputs(const StreamFlags& flags,
+                                                         const OutputRig& rig,
+                                                         link::ErrorLog& errors, Console& console) {
+  const OutputFlags& files = flags.render.output;
+  std::vector<std::unique_ptr<Output>> outputs = open_recordings(files, rig);
+  if (auto imu = open_imu_outputs(files, rig, console)) outputs.push_back(std::move(imu));
+  PacketOutputs packets(flags, rig, errors, console);
+  for (const PacketTarget& target : flags.udp) outputs.push_back(packets.open(target));
+  return outputs;
+}
+
+std::chrono::milliseconds serve_interval(const std::vector<std::unique_ptr<Output>>& outputs) {
+  std::chrono::milliseconds interval = Output::kServeInterval;
+  for (const auto& output : outputs) interval = std::min(interval, output->serve_interval());
+  return interval;
+}
+
+HitColumnMask needed_hit_columns(const std::vector<std::unique_ptr<Output>>& outputs,
+                                 std::size_t sensor_count) {
+  HitColumnMask needed;
+  for (const auto& output : outputs) {
+    for (std::size_t i = 0; i < sensor_count; ++i) needed = needed | output->hit_columns(i);
+  }
+  return needed;
+}
+
+void check_layout(const OutputFlags& flags) {
+  glidar::check_layout(flags, has_bag(flags));
+}
+
+void refuse_unused_output_options(const OutputFlags& flags, const PreparedScene& prepared,
+                                  const LiveOutputs& live) {
+  const bool has_messages = has_bag(flags) || live.topics;
+  const bool sends_packets = has_capture(flags) || live.packets;
+  const auto is_doppler = [](const Sensor& sensor) { return sensor.doppler.has_value(); };
+  if (!any_sensor(prepared, is_doppler)) {
+    check_columns(prepared.sensors.front().sensor, flags.columns);
+  }
+  const MessageOptions& messages = flags.messages;
+  const std::string message_option = given_message_option(messages);
+  const bool is_framed = live.viewers && !messages.frame_prefix.empty();
+  if (!message_option.empty() && !has_messages && !is_framed)
+    refuse_without_output(message_option.c_str(), "ROS messages", "a bag, or --ros2",
+                          "-o run.mcap");
+  if (messages.tf && !has_messages && !live.viewers)
+    refuse_without_output("--tf", "ROS messages", "a bag, or --ros2", "-o run.mcap");
+  check_camera_options(messages, prepared);
+  if (messages.imu_orientation && prepared.imus.empty())
+    throw Error({"--imu-orientation", "there is no IMU", "a scene file with 'imus', or --imu",
+                 "leave it out"});
+  if (flags.ouster_profile) {
+    check_packets("--ouster-profile", sends_packets || (messages.packet_topics && has_messages),
+                  any_sensor(prepared, is_ouster), "a preset of an Ouster sensor", prepared);
+  }
+  if (flags.livox_type) {
+    check_packets("--livox-data-type", sends_packets, any_sensor(prepared, is_livox),
+                  "a preset of a Livox sensor", prepared);
   }
 }
 
-HitColumnMask hit_columns_for_outputs(const std::vector<Output>& outputs) {
-  std::vector<std::string> columns;
-  for (const Output& output : outputs) {
-    for (const std::string& name : output.columns) add_missing(name, columns);
+void refuse_unused_imu(const RenderFlags& flags, const PreparedScene& prepared,
+                       const LiveOutputs& live, PoseOrigin origin) {
+  if (flags.imu.empty()) return;
+  if (origin == PoseOrigin::frames) {
+    throw Error({"--imu", "a simulator or ROS 2 gives the poses of frames",
+                 "a motion that is known at all times", "leave --imu out"});
   }
-  HitColumnMask hit_columns = hit_columns_for(columns);
-  hit_columns.boxes = std::any_of(outputs.begin(), outputs.end(),
-                                  [](const Output& output) { return output.has_boxes; });
-  return hit_columns;
-}
-
-void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,
-                   const Scene& scene, const Report& report) {
-  PointCloud cloud;
-  const Output* previous = nullptr;
-  for (const Output& output : outputs) {
-    if (report.progress) report.progress("writing " + output.path.string(), -1.0);
-    const bool is_same_cloud = previous != nullptr && previous->columns == output.columns &&
-                               previous->frame_name == output.frame_name &&
-                               previous->deskew == output.deskew;
-    if (!is_same_cloud) {
-      OutputFrame axes = output_frame(output.frame_name, beams, frame.world_from_sensor);
-      axes.deskew = output.deskew;
-      make_point_cloud(frame, beams, scene, axes, output.columns, cloud);
-      previous = &output;
-    }
-    output.sink->stage(cloud, frame);
-  }
-  commit_all(outputs);
+  const OutputFlags& output = flags.output;
+  const bool is_live = live.topics || live.viewers || live.record;
+  if (!output.imu_paths.empty() || has_bag(output) || is_live) return;
+  const bool sends_packets = has_capture(output) || live.packets;
+  if (sends_packets && any_sensor(prepared, has_imu_packets)) return;
+  refuse_without_output("--imu", "samples of an IMU",
+                        "the suffixes .imu.csv and .imu.npz, a bag, --ros2, --foxglove, --record, "
+                        "or packets of Ouster and "
+                        "Livox sensors",
+                        "-o run.imu.csv with --duration");
 }
 
 }  // namespace glidar::app

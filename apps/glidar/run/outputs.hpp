@@ -2,58 +2,75 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/options/output_options.hpp>
-#include <glidar/core/cloud_sink.hpp>
-#include <glidar/core/report.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
-#include <glidar/io/formats/file_sink.hpp>
+#include <apps/glidar/options/stream_options.hpp>
+#include <apps/glidar/run/prepared_scene.hpp>
+#include <glidar/link/error_log.hpp>
+#include <glidar/output/output.hpp>
 
+#include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace glidar::app {
 
-/// The same for one frame of a sequence: NAME_000007.pcd for NAME.pcd; folders take all frames.
-/// Throws Error for standard output, which holds one cloud.
-OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame);
-
-/// The same for one sensor of a rig: NAME_lidar.pcd for NAME.pcd.
-OutputFlags labelled(const OutputFlags& flags, const std::string& label);
-
-/// A file to be written.
-struct Output {
-  std::filesystem::path path;
-  std::vector<std::string> columns;
-  std::string frame_name;  ///< optical, ros, gl, world or legacy
-  bool deskew = false;     ///< points as fired from where the sensor was
-  bool has_boxes = false;  ///< of the objects, in the file or its sidecar
-  std::unique_ptr<FileSink> sink;
+/// Where the poses of the frames come from.
+enum class PoseOrigin : std::uint8_t {
+  motion,  ///< the motion of the command line or the scene file, known at all times
+  frames,  ///< a simulator or a client, known at the times of frames; without samples of IMUs
 };
+
+/// Where the poses of a stream or a replay come from.
+PoseOrigin pose_origin(const StreamFlags& flags);
+
+/// How fast the time of the frames passes, as the flags pace them; 0: it is not related to real
+/// time.
+double time_speed(const StreamFlags& flags, const Sensor& first_sensor);
+
+/// The prepared scene for outputs, which it must outlive. Files may not replace those that were
+/// read.
+OutputRig output_rig(const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin);
+
+/// The bags, OSI traces, packet captures and KITTI folders of the flags. Throws Error when a name
+/// is given twice or is that of an input, or when a recording does not fit the sensors.
+std::vector<std::unique_ptr<Output>> open_recordings(const OutputFlags& flags,
+                                                     const OutputRig& rig);
+
+/// The samples of IMUs. Throws Error.
+std::unique_ptr<Output> open_imu_outputs(const OutputFlags& flags, const OutputRig& rig,
+                                         Console& console);
+
+/// All of these, and the receivers of packets. The log must outlive them. Throws Error.
+std::vector<std::unique_ptr<Output>> open_stream_outputs(const StreamFlags& flags,
+                                                         const OutputRig& rig,
+                                                         link::ErrorLog& errors, Console& console);
+
+/// How often the outputs are to be served.
+std::chrono::milliseconds serve_interval(const std::vector<std::unique_ptr<Output>>& outputs);
+
+/// The columns of ground truth that the outputs need of all sensors.
+HitColumnMask needed_hit_columns(const std::vector<std::unique_ptr<Output>>& outputs,
+                                 std::size_t sensor_count);
 
 /// Throws Error when a layout or a coordinate reference system is given, but no output takes one.
 void check_layout(const OutputFlags& flags);
 
-/// All files, checked as far as possible before any work: suffix, folder, columns, no name twice,
-/// not the input itself. Writing uses the context, calls `progress` and sends warnings to `report`.
-std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
-                                 const SidecarContext& context, const Report& report,
-                                 const ProgressCallback& progress = {});
+/// Where a run sends its frames beside files.
+struct LiveOutputs {
+  bool topics = false;   ///< of ROS 2
+  bool packets = false;  ///< by UDP
+  bool viewers = false;  ///< of the live view
+  bool record = false;   ///< --record, whose replays may write samples of the IMU
+};
 
-using glidar::refuse_overwrite_of_inputs;
-/// Throws Error when one of the outputs is a file that was read; for use after loading.
-void refuse_overwrite_of_inputs(const std::vector<std::string>& read,
-                                const std::vector<Output>& outputs);
+/// Throws Error when an option of packets or messages has no effect because no output or sensor
+/// uses it: --ouster-profile, --livox-data-type, and those of ROS messages.
+void refuse_unused_output_options(const OutputFlags& flags, const PreparedScene& prepared,
+                                  const LiveOutputs& live);
 
-/// The hit columns that all outputs together need.
-HitColumnMask hit_columns_for_outputs(const std::vector<Output>& outputs);
-
-/// Writes all outputs and reports which one is being written. They get their final names together:
-/// if one fails before that, no file of the frame exists. If a later name is refused, the error
-/// lists the files that exist.
-void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,
-                   const Scene& scene, const Report& report = {});
+/// Throws Error when --imu is given, but no output has samples of an IMU.
+void refuse_unused_imu(const RenderFlags& flags, const PreparedScene& prepared,
+                       const LiveOutputs& live, PoseOrigin origin);
 
 }  // namespace glidar::app

@@ -8,12 +8,10 @@
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/time_text.hpp>
-#include <glidar/io/bags/bag.hpp>
 #include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/sensor_document.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/overwrite_guard.hpp>
-#include <glidar/io/packets/packet_writer.hpp>
 #include <glidar/motion/run_clock.hpp>
 
 #include <fmt/format.h>
@@ -23,6 +21,7 @@
 #include <cmath>
 
 namespace glidar::app {
+
 namespace {
 
 bool is_scene_file(const std::string& input) {
@@ -186,7 +185,8 @@ std::int64_t last_firing_ns(const ActiveSensor& active) {
 /// Whether outputs need dates.
 bool are_stamps_dates(const RenderFlags& flags) {
   const auto needs_dates = [](const std::string& path) {
-    return bags::is_bag_name(path) || is_capture_name(path);
+    const OutputKind kind = output_kind(path);
+    return kind == OutputKind::bag || kind == OutputKind::capture;
   };
   const StampOrigin origin = flags.motion.stamp_origin;
   return origin == StampOrigin::date ||
@@ -371,6 +371,13 @@ std::int64_t stamp_of(const PreparedScene& prepared, const ActiveSensor& active,
   return prepared.start_ns + frame_interval(active.sensor, number).start_ns;
 }
 
+std::int64_t end_ns(const PreparedScene& prepared) {
+  std::int64_t end = std::llround(prepared.duration_s.value_or(0.0) * 1e9);
+  for (const ActiveSensor& active : prepared.sensors)
+    end = std::max(end, frame_interval(active.sensor, active.frames - 1).end_ns);
+  return prepared.start_ns + end;
+}
+
 void set_frame_header(const RenderFlags& flags, const PreparedScene& prepared,
                       const ActiveSensor& active, std::uint32_t number, Frame& frame) {
   frame.number = number;
@@ -391,6 +398,20 @@ std::shared_ptr<Simulator> make_simulator(const Scene& scene,
   auto simulator = std::make_shared<Simulator>(scene, beam_cache, renderer);
   if (camera != nullptr) simulator->set_return_replacement(woods2016_measurement(*camera));
   return simulator;
+}
+
+std::optional<SensorFrame> FrameOrder::next() {
+  std::optional<std::size_t> first;
+  std::int64_t first_ns = 0;
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    if (numbers_[i] >= sensors_[i].frames) continue;
+    const std::int64_t start_ns = frame_interval(sensors_[i].sensor, numbers_[i]).start_ns;
+    if (first && start_ns >= first_ns) continue;
+    first = i;
+    first_ns = start_ns;
+  }
+  if (!first) return std::nullopt;
+  return SensorFrame{*first, numbers_[*first]++};
 }
 
 }  // namespace glidar::app

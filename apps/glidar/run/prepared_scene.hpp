@@ -4,22 +4,19 @@
 
 #include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <glidar/io/config/scene_file.hpp>
+#include <glidar/output/output.hpp>
 #include <glidar/simulate/simulator.hpp>
 #include <glidar/woods2016/framebuffer.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace glidar::app {
-
-/// The motion of the rig and all instances.
-struct RigMotion {
-  Trajectory world_from_rig;
-  std::vector<Trajectory> world_from_instance;
-};
 
 /// A sensor that measures: the only one, or one of a rig.
 struct ActiveSensor {
@@ -67,6 +64,9 @@ Motion motion_of(RigMotion motion, const ActiveSensor& active);
 std::int64_t stamp_of(const PreparedScene& prepared, const ActiveSensor& active,
                       std::uint32_t number);
 
+/// The end of the last frame of all sensors, or of the duration.
+std::int64_t end_ns(const PreparedScene& prepared);
+
 /// Sets number, sensor, stamp and seed of a frame of the sequence.
 void set_frame_header(const RenderFlags& flags, const PreparedScene& prepared,
                       const ActiveSensor& active, std::uint32_t number, Frame& frame);
@@ -82,5 +82,26 @@ std::shared_ptr<Simulator> make_simulator(const Scene& scene,
 
 /// Prints advice as warnings.
 void print_advice(const std::vector<std::string>& advice, Console& console);
+
+/// A frame of one of the sensors.
+struct SensorFrame {
+  std::size_t sensor_index = 0;
+  std::uint32_t number = 0;
+};
+
+/// The frames of all sensors in the order of their start; of frames that start together, in the
+/// order of the sensors.
+class FrameOrder {
+ public:
+  /// The sensors must outlive it. Each has ActiveSensor::frames frames.
+  explicit FrameOrder(std::span<const ActiveSensor> sensors)
+      : sensors_(sensors), numbers_(sensors.size()) {}
+  /// Empty: there are no more frames.
+  std::optional<SensorFrame> next();
+
+ private:
+  std::span<const ActiveSensor> sensors_;
+  std::vector<std::uint32_t> numbers_;  ///< of each sensor's next frame
+};
 
 }  // namespace glidar::app

@@ -3,10 +3,8 @@
 #include <apps/glidar/run/ros2_link.hpp>
 
 #include <apps/glidar/options/ros2_options.hpp>
-#include <apps/glidar/run/frame_sink.hpp>
-#include <apps/glidar/run/rig_messages.hpp>
 #include <glidar/core/elapsed_time.hpp>
-#include <glidar/link/dds/message_sink.hpp>
+#include <glidar/output/network.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <fmt/format.h>
@@ -26,69 +24,11 @@
 namespace glidar::app {
 namespace {
 
-/// `--ros2`: publishes the messages of all frames as topics of ROS 2.
-class Ros2Sink final : public FrameSink {
- public:
-  /// All must outlive it. `speed`: how fast the time of the frames passes; 0: it is not related to
-  /// real time. Throws Error.
-  Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2, const RenderFlags& flags,
-           const PreparedScene& prepared, PoseOrigin origin, double speed);
-
-  [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor_index) const override;
-  void write(const MeasuredFrame& measured) override;
-  /// Publishes poses and samples of IMUs at their times.
-  void serve() override;
-  [[nodiscard]] std::chrono::milliseconds serve_interval() const override;
-  void finish() override;
-
- private:
-  dds::MessageSink topics_;
-  std::unique_ptr<ros::RigPublisher> publisher_;
-  double speed_;
-  std::optional<std::chrono::steady_clock::time_point> last_due_;  ///< of the last frame
-  std::int64_t last_stamp_ns_ = 0;                                 ///< of the last frame
-};
-
 /// What others publish when they give the poses or the time.
 std::vector<std::string> omitted_topics(const Ros2Flags& flags) {
   if (flags.pose_topic.empty()) return {};
   if (follows_ros_clock(flags)) return {"/clock"};
   return {"/tf", "/odom", "/ground_truth/odom", "/clock"};
-}
-
-Ros2Sink::Ros2Sink(const dds::Participant& participant, const Ros2Flags& ros2,
-                   const RenderFlags& flags, const PreparedScene& prepared, PoseOrigin origin,
-                   double speed)
-    : topics_(participant, {.ros_namespace = ros2.ros_namespace, .omitted = omitted_topics(ros2)}),
-      publisher_(make_rig_publisher(topics_, flags, prepared, origin)),
-      speed_(speed) {}
-
-HitColumnMask Ros2Sink::hit_columns(std::size_t sensor_index) const {
-  return publisher_->hit_columns(sensor_index);
-}
-
-void Ros2Sink::write(const MeasuredFrame& measured) {
-  publisher_->publish(measured.sensor_index, measured.frame, *measured.beams);
-  last_due_ = measured.due;
-  last_stamp_ns_ = measured.frame.stamp_ns;
-}
-
-void Ros2Sink::serve() {
-  topics_.report_other_publishers();
-  if (!last_due_ || speed_ <= 0.0) return;
-  const std::chrono::duration<double, std::nano> passed =
-      std::chrono::steady_clock::now() - *last_due_;
-  publisher_->advance(last_stamp_ns_ + std::llround(speed_ * passed.count()));
-}
-
-std::chrono::milliseconds Ros2Sink::serve_interval() const {
-  constexpr std::chrono::milliseconds kPaced{2};  // IMUs have hundreds of samples per second
-  return speed_ > 0.0 ? kPaced : kDefaultServeInterval;
-}
-
-void Ros2Sink::finish() {
-  publisher_->finish();
-  topics_.finish();
 }
 
 using Clock = std::chrono::steady_clock;
@@ -333,10 +273,11 @@ std::optional<FrameRequest> ClockSource::due_frame() {
 Ros2Link::Ros2Link(const Ros2Flags& flags, link::ErrorLog& errors)
     : flags_(flags), participant_({.id = {}, .interface_name = flags.interface_name}, errors) {}
 
-std::unique_ptr<FrameSink> Ros2Link::make_sink(const RenderFlags& flags,
-                                               const PreparedScene& prepared, PoseOrigin origin,
-                                               double speed) const {
-  return std::make_unique<Ros2Sink>(participant_, flags_, flags, prepared, origin, speed);
+std::unique_ptr<Output> Ros2Link::open(const OutputRig& rig, const OutputOptions& options,
+                                       double speed) const {
+  return open_ros2_output(
+      participant_, {.ros_namespace = flags_.ros_namespace, .omitted = omitted_topics(flags_)}, rig,
+      options, speed);
 }
 
 std::unique_ptr<PoseSource> Ros2Link::make_source(const Ros2Schedule& schedule, std::size_t queue,

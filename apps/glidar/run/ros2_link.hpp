@@ -3,15 +3,14 @@
 #pragma once
 
 #include <apps/glidar/options/ros2_options.hpp>
-#include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
-#include <apps/glidar/run/rig_messages.hpp>
 #include <glidar/link/dds/clock_subscriber.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/dds/pose_subscriber.hpp>
 #include <glidar/link/error_log.hpp>
+#include <glidar/output/output.hpp>
 
 #include <cstddef>
 #include <memory>
@@ -25,16 +24,15 @@ struct Ros2Schedule {
   std::optional<double> timeout_s;  ///< for a pose; empty: no limit
 };
 
-/// The connection of a stream to ROS 2. It outlives the sink and the source that it makes.
+/// The connection of a stream to ROS 2. It outlives the output and the source that it makes.
 class Ros2Link {
  public:
   /// Joins the domain. Flags and log must outlive it. Throws Error.
   Ros2Link(const Ros2Flags& flags, link::ErrorLog& errors);
 
   /// Publishes frames. `speed`: how fast their time passes; 0: it is not related to real time.
-  [[nodiscard]] std::unique_ptr<FrameSink> make_sink(const RenderFlags& flags,
-                                                     const PreparedScene& prepared,
-                                                     PoseOrigin origin, double speed) const;
+  [[nodiscard]] std::unique_ptr<Output> open(const OutputRig& rig, const OutputOptions& options,
+                                             double speed) const;
   /// Subscribes to the poses, or the clock, of the flags. `queue`: poses that wait; 0: the newest
   /// only.
   std::unique_ptr<PoseSource> make_source(const Ros2Schedule& schedule, std::size_t queue,

@@ -6,20 +6,16 @@
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/interrupt.hpp>
+#include <apps/glidar/run/live_view.hpp>
 #include <apps/glidar/run/outputs.hpp>
-#include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/placement.hpp>
-#include <apps/glidar/run/playback.hpp>
 #include <apps/glidar/run/pose_source.hpp>
-#include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/stream_report.hpp>
-#include <apps/glidar/run/stream_sinks.hpp>
-#include <apps/glidar/run/unused_options.hpp>
 #include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/link/recording.hpp>
 #include <glidar/woods2016/cloud_publisher.hpp>
@@ -288,15 +284,16 @@ void StreamRun::open_scene() {
   const bool is_live = flags_.ros2.publishes || !flags_.udp.empty() || flags_.foxglove;
   if (is_live && flags_.render.motion.stamp_origin == StampOrigin::outputs)
     flags_.render.motion.stamp_origin = StampOrigin::date;
-  std::unique_ptr<NumberedFiles> files;
-  if (!flags_.foxglove && !flags_.ros2.publishes) check_layout(flags_.render.output);
-  if (has_outputs(flags_.render.output)) {
-    files = std::make_unique<NumberedFiles>(flags_, prepared_, console_);
-  }
+  OutputFlags& files = flags_.render.output;
+  files.input = flags_.render.input;
+  std::vector<std::filesystem::path> first;  // files of the first frame, to report errors early
+  if (!flags_.foxglove && !flags_.ros2.publishes) check_layout(files);
+  if (has_outputs(files)) first = check_frame_files(numbered(files, 0));
   prepare_scene(
       flags_.render,
       [&] {
-        if (files) files->refuse_overwrite_of_inputs();
+        for (const std::filesystem::path& file : first)
+          refuse_overwrite_of_inputs(prepared_.files, file);
       },
       console_, prepared_);
   set_start_time(prepared_.recorded_start, flags_.command);
@@ -308,32 +305,33 @@ void StreamRun::open_scene() {
   refuse_unused_output_options(flags_.render.output, prepared_, live);
   // a replay may have other outputs than the run that was recorded
   if (!recording_) refuse_unused_imu(flags_.render, prepared_, live, pose_origin(flags_));
-  const std::vector<std::string> reserved = reserved_files(flags_, prepared_.files);
   for (const ActiveSensor& active : prepared_.sensors) {
     motions_.push_back(std::make_shared<const Motion>(active.motion));
     if (has_pose_source(flags_)) print_advice(velocity_advice(active.sensor), console_);
   }
   if (publisher_) publisher_->set_topics(topics());
-  open_sinks(std::move(files), reserved);
+  OutputRig rig = output_rig(flags_.render, prepared_, pose_origin(flags_));
+  rig.inputs = reserved_files(flags_, prepared_.files);
+  // otherwise the command does not contain the poses
+  if (!has_pose_source(flags_) && flags_.replay.empty()) rig.command = flags_.command;
+  open_outputs(std::move(rig));
 }
 
-void StreamRun::open_sinks(std::unique_ptr<NumberedFiles> files,
-                           const std::vector<std::string>& reserved) {
+void StreamRun::open_outputs(OutputRig rig) {
+  const OutputFlags& files = flags_.render.output;
   if (live_view_) {
-    live_view_->begin(flags_.render, prepared_, pose_origin(flags_));
-    sinks_.push_back(std::move(live_view_));
+    live_view_->begin(flags_.render, prepared_, rig);
+    outputs_.push_back(std::move(live_view_));
   }
-  if (files) {
-    files->begin(reserved);
-    sinks_.push_back(std::move(files));
-  }
-  for (auto& sink : make_stream_sinks(flags_, prepared_, reserved, errors_, console_)) {
-    sinks_.push_back(std::move(sink));
-  }
+  if (has_outputs(files))
+    outputs_.push_back(
+        std::make_unique<FrameFiles>(files, true, rig, Report{console_.report().log, {}}));
+  for (auto& output : open_stream_outputs(flags_, rig, errors_, console_))
+    outputs_.push_back(std::move(output));
   if (flags_.ros2.publishes)
-    sinks_.push_back(ros2_->make_sink(flags_.render, prepared_, pose_origin(flags_),
-                                      time_speed(flags_, prepared_.sensors.front().sensor)));
-  hit_columns_ = needed_hit_columns(sinks_, prepared_.sensors.size());
+    outputs_.push_back(
+        ros2_->open(rig, files, time_speed(flags_, prepared_.sensors.front().sensor)));
+  hit_columns_ = needed_hit_columns(outputs_, prepared_.sensors.size());
   if (publisher_) hit_columns_ = hit_columns_ | glidar::hit_columns_for(kPublishedColumns);
 }
 
@@ -433,7 +431,7 @@ int StreamRun::run() {
     finish(ending_, stop.signal() == SIGTERM);
   } catch (const std::exception& error) {
     try {
-      if (recording_) sinks_.clear();  // a replay that is refused leaves no unfinished files
+      if (recording_) outputs_.clear();  // a replay that is refused leaves no unfinished files
       if (!is_finished_) finish(error.what());
     } catch (const std::exception& another) {
       console_.warn(another.what());
@@ -456,7 +454,8 @@ bool StreamRun::has_all_peers(const StopRequest& stop) {
 void StreamRun::stream(PoseSource& source, StopRequest& stop) {
   stats_ = {};
   Delivery delivery([this](const MeasuredFrame& measured) { deliver(measured); },
-                    [this] { serve_peers(); }, [&stop] { stop.request(); }, serve_interval(sinks_));
+                    [this] { serve_peers(); }, [&stop] { stop.request(); },
+                    serve_interval(outputs_));
   while (!stop.is_requested()) {
     const std::optional<FrameRequest> request = source.next();
     if (!request) break;
@@ -500,7 +499,7 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
 }
 
 bool StreamRun::is_wanted(std::uint64_t index) const {
-  return recording_ || recorder_ || !sinks_.empty() || (publisher_ && publisher_->wants(index));
+  return recording_ || recorder_ || !outputs_.empty() || (publisher_ && publisher_->wants(index));
 }
 
 void StreamRun::deliver(const MeasuredFrame& measured) {
@@ -509,7 +508,7 @@ void StreamRun::deliver(const MeasuredFrame& measured) {
   if (!measured.frame_hash.empty())
     require_recorded(measured, flags_.replay, stats_.latency.count());
   if (publisher_ && publisher_->wants(measured.index)) publish(measured);
-  for (const auto& sink : sinks_) sink->write(measured);
+  for (const auto& output : outputs_) output->write(measured.view());
   stats_.add_frame(measured.due);
 }
 
@@ -522,7 +521,7 @@ void StreamRun::publish(const MeasuredFrame& measured) {
 
 void StreamRun::serve_peers() {
   if (publisher_) publisher_->serve();
-  for (const auto& sink : sinks_) sink->serve();
+  for (const auto& output : outputs_) output->serve();
   const auto now = StreamStats::Clock::now();
   if (now - status_time_ < kStatusInterval) return;
   status_time_ = now;
@@ -544,11 +543,10 @@ void StreamRun::finish(const std::string& ending, bool is_urgent) {
   };
   if (publisher_) attempt([&] { publisher_->shut_down(is_urgent ? kUrgent : kUnhurried); });
   std::string written;
-  for (const auto& sink : sinks_) {
+  for (const auto& output : outputs_) {
     attempt([&] {
-      sink->finish();
-      const std::string names = sink->written_text();
-      if (!names.empty()) written += "wrote" + names + "\n";
+      output->finish();
+      written += output->written_text();
     });
   }
   errors_.flush();

@@ -5,21 +5,18 @@
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/delivery.hpp>
-#include <apps/glidar/run/exit_code.hpp>
-#include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/live_view.hpp>
-#include <apps/glidar/run/numbered_files.hpp>
-#include <apps/glidar/run/playback.hpp>
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
-#include <apps/glidar/run/recorder.hpp>
+#include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/ros2_link.hpp>
-#include <apps/glidar/run/stream_stats.hpp>
+#include <apps/glidar/run/stream_report.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/link/error_log.hpp>
 #include <glidar/link/recording.hpp>
+#include <glidar/output/output.hpp>
 #include <glidar/woods2016/cloud_publisher.hpp>
 
 #include <map>
@@ -29,7 +26,7 @@
 
 namespace glidar::app {
 
-/// `glidar stream`: source of poses -> simulate -> sinks.
+/// `glidar stream`: source of poses -> simulate -> outputs.
 class StreamRun {
  public:
   /// Listens at its ports, then loads the inputs of the flags. Throws Error.
@@ -40,7 +37,7 @@ class StreamRun {
 
  private:
   void open_scene();
-  void open_sinks(std::unique_ptr<NumberedFiles> files, const std::vector<std::string>& reserved);
+  void open_outputs(OutputRig rig);
   [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
@@ -69,9 +66,9 @@ class StreamRun {
   std::vector<std::shared_ptr<const Motion>> motions_;  ///< of each sensor, now
   bool is_within_reach_ = true;                         ///< all sensors and instances, now
   std::unique_ptr<Playback> playback_;                  ///< of a replay with a live view
-  std::unique_ptr<LiveView> live_view_;                 ///< until it is one of the sinks
+  std::unique_ptr<LiveView> live_view_;                 ///< until it is one of the outputs
   std::unique_ptr<Ros2Link> ros2_;
-  std::vector<std::unique_ptr<FrameSink>> sinks_;
+  std::vector<std::unique_ptr<Output>> outputs_;
   MovedScene moved_scene_;
   HitColumnMask hit_columns_;
   StreamStats stats_;

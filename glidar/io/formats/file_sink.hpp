@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/cloud_sink.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/point_cloud.hpp>
 #include <glidar/core/report.hpp>
 #include <glidar/sensor/sensor.hpp>
 
@@ -144,8 +145,13 @@ Misfit find_misfit(const FileFormat& format, const CloudPictureOptions& picture,
                    const Sensor& sensor, const Beams& beams);
 
 /// Writes files in two steps, so that the files of several sinks appear together or not at all.
-class FileSink : public CloudSink {
+class FileSink {
  public:
+  FileSink() = default;
+  FileSink(const FileSink&) = delete;
+  FileSink& operator=(const FileSink&) = delete;
+  virtual ~FileSink() = default;
+
   /// The files that a cloud is written to, as far as known in advance; for a folder format the
   /// folder.
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
@@ -154,8 +160,8 @@ class FileSink : public CloudSink {
   virtual void stage(const PointCloud& cloud, const Frame& frame) = 0;
   /// Gives the staged files their names. Throws Error when the system refuses.
   virtual void commit() = 0;
-  /// Both steps.
-  void write(const PointCloud& cloud, const Frame& frame) override;
+  /// Both steps, for an organised cloud, made from `frame`.
+  void write(const PointCloud& cloud, const Frame& frame);
 };
 
 /// A sink that writes one file (and its sidecar) per cloud: to a temporary name in the same folder,

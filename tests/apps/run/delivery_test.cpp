@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/delivery.hpp>
-#include <apps/glidar/run/stream_stats.hpp>
+#include <apps/glidar/run/stream_report.hpp>
 
 #include "support/waiting.hpp"
 

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/run/measured_frame.hpp>
-#include <apps/glidar/run/prepared_scene.hpp>
+#include <apps/glidar/run/delivery.hpp>
+#include <apps/glidar/run/outputs.hpp>
+#include <glidar/output/rig_messages.hpp>
 
 #include <memory>
 #include <string>
@@ -33,6 +34,13 @@ struct LiveScene {
     HitColumnMask all = hit_columns_for(cloud_column_names());
     active.simulator->simulate(*measured.motion, all, measured.frame);
     return measured;
+  }
+
+  /// The publisher of its messages.
+  std::unique_ptr<ros::RigPublisher> publisher(ros::MessageSink& sink,
+                                               PoseOrigin origin = PoseOrigin::motion,
+                                               bool for_viewers = false) const {
+    return make_rig_publisher(sink, output_rig(flags, prepared, origin), flags.output, for_viewers);
   }
 
   RenderFlags flags;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/run/playback.hpp>
+#include <apps/glidar/run/live_view.hpp>
 
 #include <gtest/gtest.h>
 

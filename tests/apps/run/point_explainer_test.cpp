@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/run/point_explainer.hpp>
-#include <apps/glidar/run/rig_messages.hpp>
+#include <apps/glidar/run/live_view.hpp>
 #include <glidar/explain/trace_text.hpp>
 #include <glidar/simulate/explain.hpp>
 
@@ -38,12 +37,11 @@ std::uint32_t time_of(const ros::PointCloud2& message, std::size_t index) {
 TEST(PointExplainer, ExplainsTheBeamOfTheSelectedPointOfTheMessage) {
   LiveScene scene;
   ros::MemorySink sink;
-  const auto publisher =
-      make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion, true);
+  const auto publisher = scene.publisher(sink, PoseOrigin::motion, true);
   PointExplainer explainer(scene.flags, scene.prepared, *publisher);
   for (const std::uint32_t number : {0U, 1U}) {
     const MeasuredFrame measured = scene.measure(number);
-    explainer.add_frame(measured);
+    explainer.add_frame(measured.view());
     publisher->publish(0, measured.frame, *measured.beams);
   }
   const auto clouds = sink.of<ros::PointCloud2>("/lidar/points");
@@ -78,11 +76,10 @@ TEST(PointExplainer, ExplainsTheBeamOfTheSelectedPointOfTheMessage) {
 TEST(PointExplainer, ReportsPointsAndFramesThatDoNotExist) {
   LiveScene scene;
   ros::MemorySink sink;
-  const auto publisher =
-      make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion, true);
+  const auto publisher = scene.publisher(sink, PoseOrigin::motion, true);
   PointExplainer explainer(scene.flags, scene.prepared, *publisher);
   const MeasuredFrame measured = scene.measure(0);
-  explainer.add_frame(measured);
+  explainer.add_frame(measured.view());
   const std::int64_t stamp_ns =
       ros::cloud_stamp_ns({measured.frame, scene.prepared.sensors.front().sensor, *measured.beams});
   EXPECT_THAT(explained(explainer, {"/lidar/points", stamp_ns, 1'000'000}),
@@ -94,8 +91,7 @@ TEST(PointExplainer, ReportsPointsAndFramesThatDoNotExist) {
 TEST(PointExplainer, EndsWithPointsThatWait) {
   LiveScene scene;
   ros::MemorySink sink;
-  const auto publisher =
-      make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion, true);
+  const auto publisher = scene.publisher(sink, PoseOrigin::motion, true);
   const MeasuredFrame measured = scene.measure(0);
   const std::int64_t stamp_ns =
       ros::cloud_stamp_ns({measured.frame, scene.prepared.sensors.front().sensor, *measured.beams});
@@ -103,7 +99,7 @@ TEST(PointExplainer, EndsWithPointsThatWait) {
   int replies = 0;
   {
     PointExplainer explainer(scene.flags, scene.prepared, *publisher);
-    explainer.add_frame(measured);
+    explainer.add_frame(measured.view());
     for (int i = 0; i < kPoints; ++i) {
       explainer.explain({"/lidar/points", stamp_ns, 0}, [&](const std::string&) { ++replies; });
     }

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/run/rig_messages.hpp>
 #include <glidar/io/config/imu_file.hpp>
 
 #include "io/ros/memory_sink.hpp"
@@ -41,7 +40,7 @@ struct ImuScene : LiveScene {
 TEST(RigMessages, AreWrittenInTheOrderOfTime) {
   ImuScene scene;
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  publish(*scene.publisher(sink), scene);
   const auto is_earlier = [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; };
   EXPECT_TRUE(std::is_sorted(sink.messages.begin(), sink.messages.end(), is_earlier));
   EXPECT_EQ(sink.counts().at("/imu/data"), 21U);  // both ends of 0.2 s
@@ -115,7 +114,7 @@ TEST(RigMessages, OfSeveralSensorsAndImusNeverStepBack) {
 TEST(RigMessages, BetweenFramesReachTheEndOfTheNextFrameOnly) {
   ImuScene scene;
   ros::MemorySink sink;
-  const auto publisher = make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+  const auto publisher = scene.publisher(sink);
   publisher->advance(50'000'000);
   EXPECT_THAT(sink.counts(), Not(Contains(Key("/clock"))));  // not before the first frame
   const MeasuredFrame first = scene.measure(0);
@@ -140,7 +139,7 @@ TEST(RigMessages, OfOdometryHaveTheVelocitiesOfTheMotionInTheAxesOfTheBody) {
   twist.angular_rad_s = {0.3, -0.2, 0.5};
   scene.prepared.motion.world_from_rig = twist;
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  publish(*scene.publisher(sink), scene);
   const auto poses = sink.of<ros::Odometry>("/ground_truth/odom");
   ASSERT_EQ(poses.size(), 22U);  // every 10 ms of 0.2 s, and the start of the second frame
   for (const ros::Odometry& odometry : poses) {
@@ -165,8 +164,7 @@ TEST(RigMessages, HaveATransformWithTheStampOfEveryCloud) {
   for (const bool is_live : {false, true}) {
     LiveScene scene;
     ros::MemorySink sink;
-    const auto publisher =
-        make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+    const auto publisher = scene.publisher(sink);
     for (const std::uint32_t number : {0U, 1U}) {
       const MeasuredFrame measured = scene.measure(number);
       publisher->publish(0, measured.frame, *measured.beams);
@@ -184,7 +182,7 @@ TEST(RigMessages, HaveATransformWithTheStampOfEveryCloud) {
 TEST(RigMessages, OfScansAreWrittenAfterTheirLastPoint) {
   LiveScene scene;
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  publish(*scene.publisher(sink), scene);
   std::vector<std::int64_t> times;
   for (const auto& written : sink.messages)
     if (written.topic == "/lidar/points") times.push_back(written.time_ns);
@@ -194,7 +192,7 @@ TEST(RigMessages, OfScansAreWrittenAfterTheirLastPoint) {
 TEST(RigMessages, OfTheClockNeverStepBack) {
   LiveScene scene;
   ros::MemorySink sink;
-  const auto publisher = make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+  const auto publisher = scene.publisher(sink);
   for (const std::uint32_t number : {0U, 1U}) {
     const MeasuredFrame measured = scene.measure(number);
     publisher->publish(0, measured.frame, *measured.beams);
@@ -220,7 +218,7 @@ std::set<std::string> frame_pairs(const ros::MemorySink& sink, const std::string
 TEST(RigMessages, OfTheGroundTruthLeaveTheParentOfTheBodyToOthers) {
   LiveScene scene;
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  publish(*scene.publisher(sink), scene);
   EXPECT_THAT(frame_pairs(sink, "/tf"), ElementsAre("base_link > ground_truth"));
   EXPECT_THAT(frame_pairs(sink, "/tf_static"), ElementsAre("base_link > lidar_frame"));
   EXPECT_THAT(sink.counts(), Not(Contains(Key("/odom"))));
@@ -245,7 +243,7 @@ TEST(RigMessages, HaveThePosesOfTheRequestedFrames) {
     scene.flags.output.messages.tf = mode;
     scene.flags.output.messages.frame_prefix = "robot1/";
     ros::MemorySink sink;
-    publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+    publish(*scene.publisher(sink), scene);
     const auto odometry = sink.of<ros::Odometry>("/odom");
     EXPECT_GT(sink.counts().at("/clock"), 20U);
     if (mode == ros::TransformMode::none) {
@@ -275,7 +273,7 @@ TEST(RigMessages, OfImusHaveCovariancesAndAnOrientationOnRequest) {
     imu.accelerometer.noise_density = 0.02;
     scene.flags.output.messages.imu_orientation = has_orientation;
     ros::MemorySink sink;
-    publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+    publish(*scene.publisher(sink), scene);
     const ros::Imu message = sink.of<ros::Imu>("/imu/data").at(10);  // after 0.1 s of 0.5 rad/s
     EXPECT_NEAR(message.angular_velocity_covariance[4], 1e-6 * 100.0, 1e-15);
     EXPECT_NEAR(message.linear_acceleration_covariance[8], 4e-4 * 100.0, 1e-15);
@@ -289,7 +287,7 @@ TEST(RigMessages, OfImusHaveCovariancesAndAnOrientationOnRequest) {
 TEST(RigMessages, OfACameraWithoutARigHaveABodyWithXForward) {
   LiveScene scene("D435");
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  publish(*scene.publisher(sink), scene);
   EXPECT_THAT(frame_pairs(sink, "/tf_static"),
               ElementsAre("base_link > camera_link", "camera_link > camera_depth_optical_frame"));
   const ros::TFMessage fixed = sink.of<ros::TFMessage>("/tf_static").at(0);
@@ -314,7 +312,7 @@ TEST(RigMessages, OfACameraWithoutARigHaveABodyWithXForward) {
 TEST(RigMessages, HaveThePosesOfFramesWhenTheMotionIsNotKnown) {
   ImuScene scene;
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::frames), scene);
+  publish(*scene.publisher(sink, PoseOrigin::frames), scene);
   EXPECT_THAT(sink.counts(), Not(Contains(Key("/imu/data"))));
   const auto poses = sink.of<ros::Odometry>("/ground_truth/odom");
   ASSERT_EQ(poses.size(), 2U);
@@ -329,7 +327,7 @@ TEST(RigMessages, HaveThePosesOfFramesWhenTheMotionIsNotKnown) {
 TEST(RigMessages, BeginAtTheFirstFrameAndAgainAfterALongGap) {
   ImuScene scene;
   ros::MemorySink sink;
-  const auto publisher = make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion);
+  const auto publisher = scene.publisher(sink);
   constexpr std::int64_t kDay_ns = 86'400'000'000'000;
   for (const std::int64_t start_ns : {kDay_ns, 2 * kDay_ns}) {
     MeasuredFrame measured = scene.measure(0);
@@ -346,7 +344,7 @@ TEST(RigMessages, StartWithTheRunAlsoWhereItsTimesAreDates) {
   constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
   scene.prepared.start_ns = kStart_ns;
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion), scene);
+  publish(*scene.publisher(sink), scene);
   for (const auto& message : sink.messages) EXPECT_GE(message.time_ns, kStart_ns);
   EXPECT_EQ(sink.messages.front().time_ns, kStart_ns);
   EXPECT_EQ(sink.messages.back().time_ns, kStart_ns + 200'000'000);
@@ -361,7 +359,7 @@ TEST(RigMessages, StartWithTheRunAlsoWhereItsTimesAreDates) {
 TEST(RigMessages, OfViewersHaveTrueRangesAndImages) {
   LiveScene scene;
   ros::MemorySink sink;
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion, true), scene);
+  publish(*scene.publisher(sink, PoseOrigin::motion, true), scene);
   const auto images = sink.of<ros::Image>("/lidar/range/image_raw");
   ASSERT_EQ(images.size(), 2U);
   EXPECT_EQ(images[0].height, 16U);
@@ -377,7 +375,7 @@ TEST(RigMessages, AreMadeOnlyForTopicsThatAreWanted) {
   LiveScene scene;
   ros::MemorySink sink;
   sink.wanted = [](const std::string& topic) { return topic.ends_with("range/image_raw"); };
-  publish(*make_rig_publisher(sink, scene.flags, scene.prepared, PoseOrigin::motion, true), scene);
+  publish(*scene.publisher(sink, PoseOrigin::motion, true), scene);
   EXPECT_EQ(sink.counts().at("/lidar/range/image_raw"), 2U);
   EXPECT_THAT(sink.counts(), Not(Contains(Key("/lidar/points"))));
 }

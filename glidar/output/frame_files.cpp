@@ -1,0 +1,388 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/output/frame_files.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/core/option_name.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+/// A file to be written.
+struct PlannedFile {
+  std::filesystem::path path;
+  std::vector<std::string> columns;
+  std::string frame_name;  ///< optical, ros, gl, world or legacy
+  bool deskew = false;
+  std::unique_ptr<FileSink> sink;
+};
+
+void add_missing(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+std::vector<std::string> requested_columns(const FrameFileRequest& request) {
+  if (!request.sink.layout.empty()) return find_layout(request.sink.layout).columns;
+  return request.columns.empty() ? default_columns() : request.columns;
+}
+
+/// Throws Error unless there is at most one standard output and its format is given.
+void check_standard_output(const FrameFileRequest& request) {
+  const auto count = std::count(request.paths.begin(), request.paths.end(), kStandardOutput);
+  if (count > 1) {
+    throw Error(
+        {"--output -", "is given twice", "one standard output", "write the other one to a file"});
+  }
+  if (count == 0 && !request.format.empty()) {
+    throw Error({"--format " + request.format, "there is no -o -", "--format with -o -",
+                 "leave it out: the suffix of a file selects its format"});
+  }
+  if (count == 1 && request.format.empty()) {
+    throw Error({"--output -", "the format of standard output is not given", "-o - with --format",
+                 "add --format csv, or another of those that --help lists"});
+  }
+}
+
+void check_picture(const CloudPictureOptions& picture) {
+  if (!picture.eye_m || !picture.target_m || *picture.eye_m != *picture.target_m) return;
+  throw Error({.where = "--view-eye",
+               .found = "it is the point that the camera looks at",
+               .allowed = "a position other than --view-target"});
+}
+
+void refuse_terminal(const FileFormat& format, const FileSinkOptions& options) {
+  if (::isatty(STDOUT_FILENO) == 0 || is_text(format, options)) return;
+  throw Error({"--output -", "standard output is a terminal, and this format is binary",
+               "text on a terminal",
+               "pipe it to a program or a file, or write text: --format csv"});
+}
+
+/// Formats that hold no points (images, poses) have a fixed set of columns.
+std::vector<std::string> columns_of(const FileFormat& format,
+                                    const std::vector<std::string>& requested) {
+  if (!format.takes_more) return needed_columns(format);
+  std::vector<std::string> columns = requested;
+  for (const std::string& name : needed_columns(format)) add_missing(name, columns);
+  return columns;
+}
+
+/// The names of the files of the original GLIDAR, and their columns.
+std::vector<std::filesystem::path> legacy_paths(const std::string& name) {
+  return {name + ".pcd", name + ".transform"};
+}
+
+std::vector<std::string> legacy_columns(const std::filesystem::path& path) {
+  return columns_of(format_for(path), {"xyz", "intensity"});
+}
+
+/// The path of one file.
+PlannedFile plan_file(const std::string& path, const FrameFileRequest& request,
+                      const FileSinkOptions& options, const SidecarContext& context,
+                      const Report& report) {
+  const FileFormat& format = format_of(request, path);
+  PlannedFile file{
+      .path = path == kStandardOutput ? std::filesystem::path(path) : output_path(path),
+      .columns = columns_of(format, requested_columns(request)),
+      .frame_name = frame_for(format, request.frame),
+      .deskew = request.deskew || format.is_survey,
+      .sink = nullptr};
+  if (path == kStandardOutput) {
+    refuse_terminal(format, options);
+    file.sink =
+        make_stream_sink(STDOUT_FILENO, "stdout." + request.format, options, context, report);
+  } else {
+    file.sink = make_file_sink(path, options, context, report);
+  }
+  return file;
+}
+
+/// Standard output comes last: when its reader closes it early, all files exist.
+std::vector<std::string> in_order(std::vector<std::string> paths) {
+  std::stable_partition(paths.begin(), paths.end(),
+                        [](const std::string& path) { return path != kStandardOutput; });
+  return paths;
+}
+
+void check_names(const std::vector<PlannedFile>& files, const FrameFileRequest& request) {
+  std::set<std::filesystem::path> seen;
+  for (const PlannedFile& file : files) {
+    const bool is_input = is_same_file(file.path, request.input);
+    const bool is_repeated = !seen.insert(real_path(file.path)).second;
+    if (!is_input && !is_repeated) continue;
+    with_option_name(request.option, [&] {
+      throw Error({.where = file.path.string(),
+                   .found = is_input ? "is an input file" : "is given twice as output",
+                   .remedy = "choose another name"});
+    });
+  }
+}
+
+/// All files of a frame. Writing uses the context and sends warnings to `report`.
+std::vector<PlannedFile> plan_files(const FrameFileRequest& request, const SidecarContext& context,
+                                    const Report& report) {
+  check_standard_output(request);
+  check_picture(request.sink.picture);
+  std::vector<PlannedFile> files;
+  for (const std::string& path : in_order(request.paths)) {
+    FileSinkOptions options = request.sink;
+    if (report.progress) {
+      options.progress = [progress = report.progress, task = "writing " + path](double fraction) {
+        progress(task, fraction);
+      };
+    }
+    with_option_name(request.option,
+                     [&] { files.push_back(plan_file(path, request, options, context, report)); });
+  }
+  if (!request.legacy_name.empty()) {
+    const FileSinkOptions options{.drop_invalid = true, .sidecar = false};
+    with_option_name("--legacy-output", [&] {
+      for (const std::filesystem::path& path : legacy_paths(request.legacy_name)) {
+        files.push_back({.path = path,
+                         .columns = legacy_columns(path),
+                         .frame_name = "legacy",
+                         .sink = make_file_sink(path, options, context, report)});
+      }
+    });
+  }
+  check_names(files, request);
+  return files;
+}
+
+/// Gives the files of a frame their names, one after the other.
+void commit_all(const std::vector<PlannedFile>& files) {
+  std::string written;
+  for (const PlannedFile& file : files) {
+    try {
+      file.sink->commit();
+    } catch (const ClosedPipe&) {
+      throw;
+    } catch (const Error& error) {
+      ErrorParts parts = error.parts();
+      parts.remedy += (parts.remedy.empty() ? "" : "; ") +
+                      (written.empty() ? "no file of this frame was written"
+                                       : "these outputs are written:" + written);
+      throw Error(parts);
+    }
+    written += " " + file.path.string();
+  }
+}
+
+void write_files(const std::vector<PlannedFile>& files, const RigFrame& written, const Scene& scene,
+                 const Report& report) {
+  PointCloud cloud;
+  const PlannedFile* previous = nullptr;
+  for (const PlannedFile& file : files) {
+    if (report.progress) report.progress("writing " + file.path.string(), -1.0);
+    const bool is_same_cloud = previous != nullptr && previous->columns == file.columns &&
+                               previous->frame_name == file.frame_name &&
+                               previous->deskew == file.deskew;
+    if (!is_same_cloud) {
+      OutputFrame axes =
+          output_frame(file.frame_name, written.beams, written.frame.world_from_sensor);
+      axes.deskew = file.deskew;
+      make_point_cloud(written.frame, written.beams, scene, axes, file.columns, cloud);
+      previous = &file;
+    }
+    file.sink->stage(cloud, written.frame);
+  }
+  commit_all(files);
+}
+
+/// Throws Error when a coordinate reference system is given, but no output takes one.
+void check_crs(const FrameFileRequest& request) {
+  if (request.sink.crs.empty()) return;
+  const auto is_survey = [&](const std::string& path) {
+    return format_of(request, path).is_survey;
+  };
+  if (std::any_of(request.paths.begin(), request.paths.end(), is_survey)) return;
+  throw Error({.where = "--crs",
+               .found = "no output takes a coordinate reference system",
+               .allowed = "an output with the suffix .las",
+               .remedy = "add one, such as -o survey.las, or leave --crs out"});
+}
+
+/// The same for one sensor of a rig: NAME_lidar.pcd for NAME.pcd.
+FrameFileRequest labelled(const FrameFileRequest& request, const std::string& label) {
+  if (writes_standard_output(request)) {
+    throw Error({"--output -", "several clouds are written, which one stream cannot separate",
+                 "one frame of one sensor on standard output",
+                 "use glidar render without --duration, and --sensor-name to choose one of a rig's "
+                 "sensors, or write files"});
+  }
+  FrameFileRequest result = request;
+  for (std::string& path : result.paths) {
+    path = output_path(path);
+    path.insert(path.size() - format_for(path).suffix.size(), "_" + label);
+  }
+  if (!result.legacy_name.empty()) result.legacy_name += "_" + label;
+  return result;
+}
+
+/// Adds a path to the requests of the sensors that it fits.
+void distribute(const std::string& path, const FrameFileRequest& request, const OutputRig& rig,
+                std::vector<FrameFileRequest>& of_sensor, const Report& report) {
+  const FileFormat& format = format_of(request, path);
+  std::string reasons;
+  std::string remedy;
+  std::size_t fitting = 0;
+  for (std::size_t i = 0; i < rig.sensors.size(); ++i) {
+    const OutputSensor& sensor = rig.sensors[i];
+    const Misfit misfit = find_misfit(format, request.sink.picture, sensor.sensor, sensor.beams);
+    if (misfit.reason.empty()) {
+      of_sensor[i].paths.push_back(path);
+      ++fitting;
+      continue;
+    }
+    reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", sensor.name, misfit.reason);
+    remedy = misfit.remedy;
+  }
+  if (fitting == 0) {
+    with_option_name(request.option, [&] {
+      throw Error({.where = path,
+                   .found = "fits none of the sensors on the rig: " + reasons,
+                   .allowed = "an output that fits at least one of them",
+                   .remedy = remedy});
+    });
+  }
+  if (!reasons.empty()) report.info(fmt::format("{} is not written for {}", path, reasons));
+}
+
+std::vector<FrameFileRequest> request_by_sensor(const FrameFileRequest& request,
+                                                const OutputRig& rig, const Report& report) {
+  std::vector<FrameFileRequest> of_sensor(rig.sensors.size(), request);
+  if (rig.sensors.size() == 1) return of_sensor;
+  for (FrameFileRequest& one : of_sensor) one.paths.clear();
+  for (const std::string& path : request.paths) distribute(path, request, rig, of_sensor, report);
+  return of_sensor;
+}
+
+}  // namespace
+
+const std::vector<std::string>& default_columns() {
+  static const std::vector<std::string> kColumns = {"xyz",    "intensity", "range",
+                                                    "normal", "instance",  "class"};
+  return kColumns;
+}
+
+const FileFormat& format_of(const FrameFileRequest& request, const std::string& path) {
+  return format_for(path == kStandardOutput ? "stdout." + request.format : path);
+}
+
+bool writes_standard_output(const FrameFileRequest& request) {
+  return std::ranges::find(request.paths, kStandardOutput) != request.paths.end();
+}
+
+bool has_outputs(const FrameFileRequest& request) {
+  return !request.paths.empty() || !request.legacy_name.empty();
+}
+
+FrameFileRequest numbered(const FrameFileRequest& request, std::uint32_t frame) {
+  FrameFileRequest result = labelled(request, fmt::format("{:06}", frame));
+  for (std::size_t i = 0; i < request.paths.size(); ++i) {
+    if (format_of(request, request.paths[i]).is_folder) result.paths[i] = request.paths[i];
+  }
+  return result;
+}
+
+void check_layout(const FrameFileRequest& request, bool has_bag) {
+  check_crs(request);
+  if (request.sink.layout.empty() || has_bag) return;
+  const auto is_laid_out = [&](const std::string& path) {
+    return takes_layout(path == kStandardOutput ? "stdout." + request.format : path);
+  };
+  if (std::any_of(request.paths.begin(), request.paths.end(), is_laid_out)) return;
+  throw Error({.where = "--layout",
+               .found = "no output takes a layout",
+               .allowed = "a bag, or an output with the suffix " + suffixes_with_layouts(),
+               .remedy = "add one, such as -o scan.pcd, or leave --layout out"});
+}
+
+std::vector<std::filesystem::path> check_frame_files(const FrameFileRequest& request) {
+  const Scene scene;
+  const Sensor sensor;
+  const Beams beams;
+  std::vector<std::filesystem::path> all;
+  for (const PlannedFile& file : plan_files(
+           request, {.scene = scene, .sensor = sensor, .beams = beams, .renderer = {}}, {})) {
+    const std::vector<std::filesystem::path> made = file.sink->files();
+    all.insert(all.end(), made.begin(), made.end());
+  }
+  return all;
+}
+
+FrameFiles::FrameFiles(FrameFileRequest request, bool is_numbered, const OutputRig& rig,
+                       Report report)
+    : request_(std::move(request)),
+      is_numbered_(is_numbered),
+      rig_(rig),
+      report_(std::move(report)),
+      of_sensor_(request_by_sensor(request_, rig_, report_)) {}
+
+HitColumnMask FrameFiles::hit_columns(std::size_t sensor) const {
+  const FrameFileRequest& request = of_sensor_[sensor];
+  std::vector<std::string> columns;
+  bool has_box = false;
+  for (const std::string& path : request.paths) {
+    const FileFormat& format = format_of(request, path);
+    for (const std::string& name : columns_of(format, requested_columns(request)))
+      add_missing(name, columns);
+    has_box = has_box || (path != kStandardOutput && has_boxes(format, request.sink));
+  }
+  if (!request.legacy_name.empty()) {
+    for (const std::filesystem::path& path : legacy_paths(request.legacy_name)) {
+      for (const std::string& name : legacy_columns(path)) add_missing(name, columns);
+    }
+  }
+  HitColumnMask hit_columns = hit_columns_for(columns);
+  hit_columns.boxes = has_box;
+  return hit_columns;
+}
+
+void FrameFiles::write(const RigFrame& written) {
+  const OutputSensor& sensor = rig_.sensors[written.sensor];
+  files_.clear();
+  FrameFileRequest request = of_sensor_[written.sensor];
+  if (!has_outputs(request)) return;
+  SidecarContext context{.scene = rig_.scene,
+                         .sensor = sensor.sensor,
+                         .beams = written.beams,
+                         .renderer = rig_.renderer,
+                         .command = rig_.command,
+                         .inputs = rig_.inputs};
+  if (!sensor.label.empty()) {
+    request = labelled(request, sensor.label);
+    std::vector<std::string>& arguments = context.command.arguments;
+    if (!arguments.empty()) arguments.insert(arguments.end(), {"--sensor-name", sensor.label});
+  }
+  if (is_numbered_) request = numbered(request, static_cast<std::uint32_t>(written.index));
+  const std::vector<PlannedFile> files = plan_files(request, context, report_);
+  for (const PlannedFile& file : files) {
+    for (const std::filesystem::path& made : file.sink->files())
+      refuse_overwrite_of_inputs(rig_.inputs, made);
+  }
+  write_files(files, written, rig_.scene, report_);
+  for (const PlannedFile& file : files) files_.push_back(file.path);
+  if (count_ == 0) first_ = files_.front();
+  last_ = files_.back();
+  count_ += files_.size();
+}
+
+std::string FrameFiles::written_text() const {
+  if (count_ == 0) return {};
+  if (count_ == 1) return "wrote " + printable_line(first_.string()) + "\n";
+  return fmt::format("wrote {} to {} ({} files)\n", printable_line(first_.string()),
+                     printable_line(last_.string()), count_);
+}
+
+}  // namespace glidar

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "convert.hpp"
+#include "frame.hpp"
+#include "report.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/output/output.hpp>
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace glidar::python {
+namespace {
+
+/// An output of frames. The first frame determines the scene and, unless a rig is given, the
+/// sensor.
+class OutputHandle {
+ public:
+  OutputHandle(std::string path, OutputOptions options)
+      : path_(std::move(path)), options_(std::move(options)) {
+    if (path_.find("://") == std::string::npos) (void)output_kind(path_);  // an unknown suffix
+  }
+
+  void add_sensor(const std::string& name, std::uint32_t number,
+                  std::shared_ptr<SensorHandle> sensor, const PoseArray& rig_from_sensor) {
+    sensors_.push_back({name, std::move(sensor), pose_of(rig_from_sensor, 0, "rig_from_sensor")});
+    numbers_.push_back(number);
+  }
+  void add_imu(const std::string& name, const ImuHandle& imu, const PoseArray& rig_from_imu) {
+    imus_.push_back({name, imu.imu, pose_of(rig_from_imu, 0, "rig_from_imu")});
+  }
+  void set_motion(const Trajectories& world_from_rig, std::int64_t start_ns, std::uint64_t seed,
+                  const Eigen::Vector3d& gravity_m_s2) {
+    world_from_rig_ = world_from_rig.all.at(0);
+    start_ns_ = start_ns;
+    seed_ = seed;
+    gravity_m_s2_ = gravity_m_s2;
+  }
+
+  /// Throws Error when the frame is of another sensor. It needs the renderer if it lacks_boxes().
+  void write(Measured& measured, const nb::object& log) {
+    unlocked([&](Watch& watch) {
+      check_columns(measured.sensor->sensor(), options_.columns);
+      if (!output_) open(measured, report_to(log, watch));
+      const std::size_t sensor = sensor_of(measured);
+      if (output_->hit_columns(sensor).boxes && lacks_boxes(measured)) ensure_boxes(measured);
+      output_->write({.frame = measured.frame,
+                      .beams = *measured.beams,
+                      .sensor = sensor,
+                      .index = counts_[sensor]++});
+    });
+  }
+  /// Returns what was written, in lines.
+  std::string finish() {
+    if (!output_) throw Error({path_, "there is no frame", "one frame or more"});
+    unlocked([&](Watch& /*watch*/) { output_->finish(); });
+    const std::string text = output_->written_text();
+    output_.reset();
+    return text;
+  }
+  /// Ends it; nothing of a recording remains.
+  void discard() { output_.reset(); }
+
+ private:
+  void open(const Measured& measured, const Report& report) {
+    (void)measured.scene();  // restores it when the frame was unpickled
+    prepared_ = measured.prepared;
+    unrendered_ = measured.unrendered;
+    if (sensors_.empty()) {
+      sensors_.push_back({{}, measured.sensor, Pose::Identity()});
+      numbers_.push_back(measured.frame.sensor_id);
+    }
+    counts_.assign(sensors_.size(), 0);
+    OutputRig rig{.scene = *measured.scene().scene, .sensors = {}};
+    rig.inputs = measured.scene().files;
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+      const MountedSensor& mounted = sensors_[i];
+      beams_.push_back(mounted.sensor->beams(0));
+      rig.sensors.push_back({.name = mounted.name,
+                             .label = mounted.name,
+                             .id = numbers_[i],
+                             .sensor = mounted.sensor->sensor(),
+                             .beams = *beams_.back(),
+                             .rig_from_sensor = mounted.rig_from_sensor});
+      const std::vector<std::string>& files = mounted.sensor->sensor().files;
+      rig.inputs.insert(rig.inputs.end(), files.begin(), files.end());
+    }
+    if (world_from_rig_) rig.motion = {*world_from_rig_, measured.motion->world_from_instance};
+    rig.imus = imus_;
+    rig.gravity_m_s2 = gravity_m_s2_;
+    rig.seed = seed_;
+    rig.start_ns = start_ns_;
+    rig.renderer = measured.scene().kind;
+    options_.messages.has_colour = !measured.frame.ground_truth.colour.empty();
+    output_ = open_output(path_, rig, options_, report);
+  }
+
+  /// The index of the frame's sensor in the rig. Throws Error when it is another sensor.
+  [[nodiscard]] std::size_t sensor_of(const Measured& measured) const {
+    const auto found_number = std::ranges::find(numbers_, measured.frame.sensor_id);
+    const auto index = sensors_.size() == 1
+                           ? std::size_t{0}
+                           : static_cast<std::size_t>(found_number - numbers_.begin());
+    const Sensor& found = measured.sensor->sensor();
+    if (index < sensors_.size() && sensors_[index].sensor->sensor().name == found.name &&
+        beams_[index]->rows == measured.beams->rows)
+      return index;
+    throw Error({path_, "a frame of another sensor", "frames of one sensor, or of a rig's sensors",
+                 "open an output for each sensor"});
+  }
+
+  std::string path_;
+  OutputOptions options_;
+  std::vector<MountedSensor> sensors_;
+  std::vector<std::uint32_t> numbers_;  ///< of these sensors on their rig
+  std::vector<RigImu> imus_;
+  std::optional<Trajectory> world_from_rig_;
+  std::int64_t start_ns_ = 0;
+  std::uint64_t seed_ = 1;
+  Eigen::Vector3d gravity_m_s2_ = standard_gravity_m_s2();
+  std::vector<std::uint64_t> counts_;  ///< frames of each sensor
+  // what the output refers to
+  std::shared_ptr<PreparedScene> prepared_;
+  std::shared_ptr<const PreparedScene> unrendered_;
+  std::vector<std::shared_ptr<const Beams>> beams_;
+  std::unique_ptr<Output> output_;
+};
+
+std::vector<std::pair<std::string, std::string>> known_formats() {
+  std::vector<std::pair<std::string, std::string>> formats;
+  for (const OutputFormat& format : output_formats()) {
+    if (format.missing.empty()) formats.emplace_back(format.suffix, format.description);
+  }
+  return formats;
+}
+
+/// Whether the name is that of files of one frame, such as those in a KITTI folder.
+bool is_frame_file(const std::string& path) {
+  if (path.find("://") != std::string::npos) return false;
+  const OutputKind kind = output_kind(path);
+  return kind == OutputKind::frame_file || kind == OutputKind::kitti_folder;
+}
+
+}  // namespace
+
+void bind_output(nb::module_& module) {
+  module.def("output_formats", known_formats);
+  module.def("is_frame_file", is_frame_file, nb::arg("path"));
+  module.def("lacks_boxes", lacks_boxes, nb::arg("frame"));
+  nb::class_<OutputHandle>(module, "Output")
+      .def(nb::init<std::string, OutputOptions>(), nb::arg("path"), nb::arg("options"))
+      .def("add_sensor", &OutputHandle::add_sensor, nb::arg("name"), nb::arg("number"),
+           nb::arg("sensor"), nb::arg("rig_from_sensor"))
+      .def("add_imu", &OutputHandle::add_imu, nb::arg("name"), nb::arg("imu"),
+           nb::arg("rig_from_imu"))
+      .def("set_motion", &OutputHandle::set_motion, nb::arg("world_from_rig"), nb::arg("start_ns"),
+           nb::arg("seed"), nb::arg("gravity_m_s2"))
+      .def("write", &OutputHandle::write, nb::arg("frame"), nb::arg("log").none(),
+           nb::sig("def write(self, frame: Frame, log: object | None) -> None"))
+      .def("finish", &OutputHandle::finish)
+      .def("discard", &OutputHandle::discard);
+}
+
+}  // namespace glidar::python
