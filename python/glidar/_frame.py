@@ -255,7 +255,7 @@ class Frame(DepthImages, Immutable):
         if not _core.is_frame_file(target):
             output = _core.Output(target, options)
             self.write_to(output)
-            output.finish()
+            output.finish(log)
             return
         set_picture(options, colour_by, picture_size, view_eye, view_target)
         core = self._with_scene()

@@ -16,7 +16,7 @@ from ._errors import Error
 from ._file_options import file_options, set_cloud, set_columns
 from ._frame import Frame
 from ._imu import STANDARD_GRAVITY, RigImu
-from ._inputs import MAX_UINT64, floats, path_of, text_of, times_ns, whole
+from ._inputs import MAX_UINT64, floats, log, path_of, text_of, times_ns, whole
 from ._pictures import set_picture
 from ._scene_data import RigSensor
 from ._sensor import Sensor, load_sensor
@@ -55,7 +55,7 @@ class Output:
         Raises:
             Error: there is no frame, or the system refuses.
         """
-        return self._core.finish().splitlines()
+        return self._core.finish(log).splitlines()
 
     def discard(self) -> None:
         """Ends it without completing it: nothing of a recording remains."""

@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
+#include <string_view>
 #include <utility>
 
 namespace glidar::python {
@@ -47,9 +49,9 @@ class OutputHandle {
 
   /// Throws Error when the frame is of another sensor. It needs the renderer if it lacks_boxes().
   void write(Measured& measured, const nb::object& log) {
-    unlocked([&](Watch& watch) {
+    unlocked([&](Watch& /*watch*/) {
       check_columns(measured.sensor->sensor(), options_.columns);
-      if (!output_) open(measured, report_to(log, watch));
+      if (!output_) open(measured);
       const std::size_t sensor = sensor_of(measured);
       if (output_->hit_columns(sensor).boxes && lacks_boxes(measured)) ensure_boxes(measured);
       output_->write({.frame = measured.frame,
@@ -57,20 +59,36 @@ class OutputHandle {
                       .sensor = sensor,
                       .index = counts_[sensor]++});
     });
+    pass_messages(log);
   }
   /// Returns what was written, in lines.
-  std::string finish() {
+  std::string finish(const nb::object& log) {
     if (!output_) throw Error({path_, "there is no frame", "one frame or more"});
     unlocked([&](Watch& /*watch*/) { output_->finish(); });
     const std::string text = output_->written_text();
     output_.reset();
+    pass_messages(log);
     return text;
   }
   /// Ends it; nothing of a recording remains.
   void discard() { output_.reset(); }
 
  private:
-  void open(const Measured& measured, const Report& report) {
+  /// The output reports from any thread and after the call that opens it.
+  void add_message(Severity severity, std::string_view message) {
+    const std::lock_guard lock(mutex_);
+    messages_.emplace_back(severity == Severity::warning ? "warning" : "info", message);
+  }
+  void pass_messages(const nb::object& log) {
+    std::vector<std::pair<std::string, std::string>> messages;
+    {
+      const std::lock_guard lock(mutex_);
+      messages.swap(messages_);
+    }
+    for (const auto& [severity, message] : messages) log(severity, text_of(message));
+  }
+
+  void open(const Measured& measured) {
     (void)measured.scene();  // restores it when the frame was unpickled
     prepared_ = measured.prepared;
     unrendered_ = measured.unrendered;
@@ -100,6 +118,9 @@ class OutputHandle {
     rig.start_ns = start_ns_;
     rig.renderer = measured.scene().kind;
     options_.messages.has_colour = !measured.frame.ground_truth.colour.empty();
+    const Report report{
+        [this](Severity severity, std::string_view message) { add_message(severity, message); },
+        {}};
     output_ = open_output(path_, rig, options_, report);
   }
 
@@ -131,7 +152,9 @@ class OutputHandle {
   std::shared_ptr<PreparedScene> prepared_;
   std::shared_ptr<const PreparedScene> unrendered_;
   std::vector<std::shared_ptr<const Beams>> beams_;
-  std::unique_ptr<Output> output_;
+  std::mutex mutex_;                                           ///< of the messages
+  std::vector<std::pair<std::string, std::string>> messages_;  ///< severity and text
+  std::unique_ptr<Output> output_;                             ///< ends first: its threads report
 };
 
 std::vector<std::pair<std::string, std::string>> known_formats() {
@@ -163,9 +186,10 @@ void bind_output(nb::module_& module) {
            nb::arg("rig_from_imu"))
       .def("set_motion", &OutputHandle::set_motion, nb::arg("world_from_rig"), nb::arg("start_ns"),
            nb::arg("seed"), nb::arg("gravity_m_s2"))
-      .def("write", &OutputHandle::write, nb::arg("frame"), nb::arg("log").none(),
-           nb::sig("def write(self, frame: Frame, log: object | None) -> None"))
-      .def("finish", &OutputHandle::finish)
+      .def("write", &OutputHandle::write, nb::arg("frame"), nb::arg("log"),
+           nb::sig("def write(self, frame: Frame, log: object) -> None"))
+      .def("finish", &OutputHandle::finish, nb::arg("log"),
+           nb::sig("def finish(self, log: object) -> str"))
       .def("discard", &OutputHandle::discard);
 }
 
