@@ -117,7 +117,7 @@ std::vector<std::string> in_order(std::vector<std::string> paths) {
 void check_names(const std::vector<PlannedFile>& files, const FrameFileRequest& request) {
   std::set<std::filesystem::path> seen;
   for (const PlannedFile& file : files) {
-    const bool is_input = is_same_file(file.path, request.input);
+    const bool is_input = !request.input.empty() && is_same_file(file.path, request.input);
     const bool is_repeated = !seen.insert(real_path(file.path)).second;
     if (!is_input && !is_repeated) continue;
     with_option_name(request.option, [&] {
