@@ -3,9 +3,9 @@
 #include <apps/viewer/measurement_thread.hpp>
 
 #include <apps/glidar/run/advice.hpp>
-#include <glidar/core/elapsed_time.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/explain/trace_text.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/output/frame_files.hpp>
 #include <glidar/simulate/explain.hpp>
 

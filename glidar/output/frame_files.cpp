@@ -3,10 +3,9 @@
 #include <glidar/output/frame_files.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/option_name.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 
 #include <fmt/format.h>

@@ -12,7 +12,6 @@
 #include <glidar/link/control/control_server.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/udp/packet_sender.hpp>
-#include <glidar/link/udp/udp_socket.hpp>
 #include <glidar/output/rig_messages.hpp>
 
 #include <algorithm>

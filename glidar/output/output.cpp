@@ -3,9 +3,9 @@
 #include <glidar/output/output.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/bags/bag.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/imu_samples_file.hpp>
 #include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/osi/osi_trace.hpp>

@@ -5,7 +5,7 @@
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/image_files.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/config/depth_alignment_file.hpp>
+#include <glidar/io/config/depth_camera_files.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <CLI/CLI.hpp>

@@ -5,9 +5,8 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/image_files.hpp>
-#include <glidar/depth/depth_filter.hpp>
-#include <glidar/depth/depth_filter_chain.hpp>
-#include <glidar/io/config/depth_filter_text.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
+#include <glidar/io/config/depth_camera_files.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <CLI/CLI.hpp>

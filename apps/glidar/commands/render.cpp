@@ -9,7 +9,7 @@
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/output/frame_files.hpp>
 
 #include <fmt/format.h>

@@ -6,13 +6,9 @@
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/image_files.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/staged_files.hpp>
+#include <glidar/depth_camera/stereo.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
-#include <glidar/stereo/sample_pair.hpp>
-#include <glidar/stereo/stereo_depth.hpp>
-#include <glidar/stereo/stereo_match.hpp>
-#include <glidar/stereo/stereo_options.hpp>
-#include <glidar/stereo/stereo_trace.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

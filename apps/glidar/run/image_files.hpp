@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/depth/depth_image.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/files/staged_files.hpp>
 #include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/pictures/picture.hpp>
 

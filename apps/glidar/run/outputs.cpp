@@ -4,7 +4,7 @@
 
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
 #include <glidar/io/ros/image_transport.hpp>
 #include <glidar/output/network.hpp>

@@ -3,8 +3,8 @@
 #include <apps/glidar/run/pose_source.hpp>
 
 #include <apps/glidar/run/placement.hpp>
-#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/pose.hpp>
+#include <glidar/core/progress_counter.hpp>
 
 #include <fmt/format.h>
 

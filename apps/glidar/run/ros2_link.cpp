@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/ros2_link.hpp>
 
-#include <apps/glidar/options/ros2_options.hpp>
-#include <glidar/core/elapsed_time.hpp>
+#include <apps/glidar/options/message_options.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/output/network.hpp>
 #include <glidar/sensor/sensor.hpp>
 

@@ -13,9 +13,9 @@
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/stream_report.hpp>
-#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/core/progress_counter.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/link/recording.hpp>
 #include <glidar/woods2016/cloud_publisher.hpp>
