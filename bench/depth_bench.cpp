@@ -4,10 +4,10 @@
 // and the decoder of 12 fringe images of 1280x1024, for each number of threads.
 #include "ratio_reporter.hpp"
 
-#include <glidar/depth/depth_filter_chain.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
+#include <glidar/depth_camera/fringes.hpp>
 #include <glidar/math/philox.hpp>
 #include <glidar/sensor/depth_alignment.hpp>
-#include <glidar/structured_light/fringe_decoder.hpp>
 
 #include <string>
 #include <vector>

@@ -6,10 +6,10 @@
 #include "ratio_reporter.hpp"
 #include "room.hpp"
 
+#include <glidar/depth_camera/stereo.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/simulate/simulator.hpp>
-#include <glidar/stereo/stereo_match.hpp>
 
 #include <string>
 

@@ -5,8 +5,8 @@
 #include "ratio_reporter.hpp"
 
 #include <glidar/core/instruction_set.hpp>
+#include <glidar/depth_camera/stereo.hpp>
 #include <glidar/math/philox.hpp>
-#include <glidar/stereo/stereo_match.hpp>
 
 #include <string>
 

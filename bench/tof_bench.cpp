@@ -3,8 +3,7 @@
 // The time-of-flight decoder: 512x424 pixels, 3 frequencies x 3 phase steps, as for the Kinect v2.
 #include "ratio_reporter.hpp"
 
-#include <glidar/tof/sample_images.hpp>
-#include <glidar/tof/tof_decode.hpp>
+#include <glidar/depth_camera/time_of_flight.hpp>
 
 #include <string>
 

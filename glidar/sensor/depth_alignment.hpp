@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/pose.hpp>
-#include <glidar/depth/depth_image.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/sensor/optics/projection.hpp>
 
 #include <array>

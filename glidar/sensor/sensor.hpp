@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/sensor/depth_camera/depth_camera.hpp>
+#include <glidar/depth_camera/depth_camera.hpp>
 #include <glidar/sensor/lidar/doppler.hpp>
 #include <glidar/sensor/lidar/echo.hpp>
 #include <glidar/sensor/lidar/footprint.hpp>

@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/depth_from_images.hpp>
 
+#include <glidar/depth_camera/time_of_flight.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/simulate/depth_trace.hpp>
 #include <glidar/simulate/infrared_image.hpp>
 #include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
 #include <glidar/simulate/simulation.hpp>
-#include <glidar/simulate/stereo_pixel_trace.hpp>
-#include <glidar/simulate/structured_light_pixel_trace.hpp>
 #include <glidar/simulate/tof_light.hpp>
-#include <glidar/simulate/tof_pixel_trace.hpp>
-#include <glidar/tof/tof_decode.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
-#include <glidar/sensor/depth_camera/point_spread.hpp>
+#include <glidar/depth_camera/imager.hpp>
 #include <glidar/sensor/lidar/weather_echoes.hpp>
 #include <glidar/sensor/optics/projection.hpp>
 #include <glidar/sensor/sensor.hpp>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/depth_camera/time_of_flight.hpp>
 #include <glidar/sensor/sensor.hpp>
-#include <glidar/tof/tof_exposure.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/depth_camera/stereo.hpp>
 #include <glidar/simulate/direction_grid.hpp>
 #include <glidar/simulate/moving_cast.hpp>
 #include <glidar/simulate/prepared_sensor.hpp>
 #include <glidar/simulate/return_replacement.hpp>
 #include <glidar/simulate/waveform_trace.hpp>
-#include <glidar/stereo/stereo_match.hpp>
 
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "convert.hpp"
 
-#include <glidar/depth/depth_filter_chain.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/io/config/depth_alignment_file.hpp>
 #include <glidar/io/config/depth_filter_text.hpp>
 

@@ -3,9 +3,7 @@
 #include "convert.hpp"
 #include "report.hpp"
 
-#include <glidar/stereo/sample_pair.hpp>
-#include <glidar/stereo/stereo_depth.hpp>
-#include <glidar/stereo/stereo_trace.hpp>
+#include <glidar/depth_camera/stereo.hpp>
 
 #include <nanobind/stl/string.h>
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "convert.hpp"
 
+#include <glidar/depth_camera/structured_light.hpp>
 #include <glidar/io/config/structured_light_file.hpp>
-#include <glidar/sensor/depth_camera/fringe_measurement.hpp>
 
 #include <nanobind/stl/string.h>
 

@@ -4,8 +4,7 @@
 #include "frame.hpp"
 #include "report.hpp"
 
-#include <glidar/tof/sample_images.hpp>
-#include <glidar/tof/tof_trace.hpp>
+#include <glidar/depth_camera/time_of_flight.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>

@@ -5,8 +5,8 @@
 #include "demand.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/stereo/stereo_trace.hpp>
-#include <glidar/tof/tof_trace.hpp>
+#include <glidar/depth_camera/stereo.hpp>
+#include <glidar/depth_camera/time_of_flight.hpp>
 
 #include <cmath>
 #include <cstring>

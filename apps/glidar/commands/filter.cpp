@@ -6,8 +6,7 @@
 #include <apps/glidar/run/depth_images.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/printing.hpp>
-#include <glidar/depth/depth_filter.hpp>
-#include <glidar/depth/depth_filter_chain.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/io/config/depth_filter_text.hpp>
 #include <glidar/math/constants.hpp>
 

@@ -9,13 +9,9 @@
 #include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/status_shares.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/depth_camera/stereo.hpp>
 #include <glidar/io/files/staged_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
-#include <glidar/stereo/sample_pair.hpp>
-#include <glidar/stereo/stereo_depth.hpp>
-#include <glidar/stereo/stereo_match.hpp>
-#include <glidar/stereo/stereo_options.hpp>
-#include <glidar/stereo/stereo_trace.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

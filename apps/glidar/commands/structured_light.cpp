@@ -8,13 +8,13 @@
 #include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/status_shares.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/depth_camera/structured_light.hpp>
 #include <glidar/io/config/structured_light_file.hpp>
 #include <glidar/io/files/staged_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/formats/raw_image_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/sensor/depth_camera/fringe_measurement.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -9,12 +9,10 @@
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <apps/glidar/run/status_shares.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/depth_camera/time_of_flight.hpp>
 #include <glidar/io/files/staged_files.hpp>
 #include <glidar/io/formats/tof_image_file.hpp>
 #include <glidar/simulate/prepared_tof.hpp>
-#include <glidar/tof/sample_images.hpp>
-#include <glidar/tof/tof_decode.hpp>
-#include <glidar/tof/tof_trace.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

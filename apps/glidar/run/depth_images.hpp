@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/depth/depth_image.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/io/files/staged_files.hpp>
 
 #include <cstddef>

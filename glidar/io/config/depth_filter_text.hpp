@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/depth/depth_filter.hpp>
+#include <glidar/depth_camera/depth_filters.hpp>
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/sensor/depth_camera/structured_light.hpp>
+#include <glidar/depth_camera/structured_light.hpp>
 
 #include <filesystem>
 #include <string>
