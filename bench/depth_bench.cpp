@@ -6,7 +6,7 @@
 
 #include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/depth_camera/fringes.hpp>
-#include <glidar/math/philox.hpp>
+#include <glidar/math/random.hpp>
 #include <glidar/sensor/depth_alignment.hpp>
 
 #include <string>

@@ -4,7 +4,7 @@
 // the standard library: a Mersenne twister and std::normal_distribution, added to every range.
 #include "ratio_reporter.hpp"
 
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/sensor/noise/noise.hpp>
 
 #include <random>

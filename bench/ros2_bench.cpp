@@ -9,7 +9,7 @@
 #include <apps/glidar/run/delivery.hpp>
 #include <glidar/io/ros/cloud_message.hpp>
 #include <glidar/link/dds/message_sink.hpp>
-#include <glidar/link/dds/topic_reader.hpp>
+#include <glidar/link/dds/topics.hpp>
 
 #include <fcntl.h>
 #include <poll.h>

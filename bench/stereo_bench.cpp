@@ -6,7 +6,7 @@
 
 #include <glidar/core/instruction_set.hpp>
 #include <glidar/depth_camera/stereo.hpp>
-#include <glidar/math/philox.hpp>
+#include <glidar/math/random.hpp>
 
 #include <string>
 

@@ -9,7 +9,7 @@
 #include <import/polygons.hpp>
 #include <import/skin.hpp>
 
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 
 #include <assimp/importerdesc.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/decoder/helper_process.hpp>
+#include <glidar/io/decoder/decoder_process.hpp>
 
 #include <filesystem>
 #include <string>

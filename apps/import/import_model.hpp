@@ -4,7 +4,7 @@
 
 #include <import/source_model.hpp>
 
-#include <glidar/io/model/imported_model.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
 
 #include <filesystem>
 #include <functional>

@@ -17,7 +17,7 @@
 #include <import/process_limits.hpp>
 #include <import/sandbox.hpp>
 
-#include <glidar/io/decoder/helper_process.hpp>
+#include <glidar/io/decoder/decoder_process.hpp>
 #include <glidar/io/files/checksummed_block.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/model_folder.hpp>

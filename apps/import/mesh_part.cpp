@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/mesh_part.hpp>
 
-#include <glidar/io/model/crease_normals.hpp>
-#include <glidar/io/model/tangents.hpp>
-#include <glidar/io/model/vertex_weld.hpp>
+#include <glidar/io/model/vertex_attributes.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/source_model.hpp>
 
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/model_parts.hpp>
 

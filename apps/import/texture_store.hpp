@@ -5,7 +5,7 @@
 #include <import/model_files.hpp>
 #include <import/source_model.hpp>
 
-#include <glidar/io/model/imported_model.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/texture_search.hpp>
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/outputs.hpp>
-#include <glidar/core/elapsed_time.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/explain/trace_text.hpp>
 #include <glidar/simulate/explain.hpp>
 

@@ -4,9 +4,8 @@
 
 #include <apps/viewer/shown_numbers.hpp>
 #include <apps/viewer/viewer.hpp>
-#include <glidar/core/axis_angle.hpp>
 #include <glidar/core/pose.hpp>
-#include <glidar/io/config/noise_text.hpp>
+#include <glidar/io/config/sensor_options.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/portable.hpp>

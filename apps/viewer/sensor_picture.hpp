@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/viewer/colours.hpp>
+#include <apps/viewer/cloud_drawing.hpp>
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>

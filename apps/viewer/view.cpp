@@ -7,9 +7,9 @@
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/printing.hpp>
 #include <apps/viewer/screen.hpp>
-#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/core/progress_counter.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 
 #include <CLI/CLI.hpp>

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <apps/glidar/run/advice.hpp>
-#include <apps/viewer/framing.hpp>
-#include <apps/viewer/guide_lines.hpp>
+#include <apps/viewer/cloud_drawing.hpp>
 #include <apps/viewer/measurement_thread.hpp>
 #include <apps/viewer/orbit.hpp>
 #include <apps/viewer/selection.hpp>

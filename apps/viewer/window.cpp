@@ -3,7 +3,7 @@
 #include <apps/viewer/window.hpp>
 
 #include <apps/glidar/run/console.hpp>
-#include <apps/viewer/wayland_display.hpp>
+#include <apps/viewer/screen.hpp>
 #include <glidar/core/error.hpp>
 
 #include <epoxy/gl.h>

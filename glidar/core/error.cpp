@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
 
 #include <algorithm>

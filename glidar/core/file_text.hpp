@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 
 #include <cstddef>
 #include <string>

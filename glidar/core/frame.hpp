@@ -3,11 +3,10 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/core/grey_image.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/object_box.hpp>
 #include <glidar/core/pose.hpp>
-#include <glidar/core/tof_images.hpp>
+#include <glidar/core/raw_images.hpp>
 #include <glidar/math/random.hpp>
 
 #include <cstdint>

@@ -4,8 +4,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,5 +67,19 @@ std::uint32_t slot_count(const Mesh& mesh);
 /// Throws Error unless every array has its stated size, every corner is a vertex of the triangle's
 /// own range, ranges increase and every position is finite.
 void validate(const Mesh& mesh);
+
+/// The ranges of a mesh that have the same origin, as a mesh with one origin.
+struct MeshPiece {
+  Mesh mesh;
+  std::vector<std::uint32_t> triangles;  ///< of the whole mesh, one per triangle of the piece
+};
+
+/// Cuts a mesh with several origins into one piece per origin, in the order of first use. Triangles
+/// and vertices of a piece keep their order. Attributes are copied.
+std::vector<MeshPiece> cut_at_origins(const Mesh& mesh);
+
+/// A mesh of some triangles, given by ascending numbers, and of the vertices that they use. All
+/// keep their order, attributes and origins.
+Mesh extract_triangles(const Mesh& mesh, std::span<const std::uint32_t> triangles);
 
 }  // namespace glidar

@@ -3,7 +3,7 @@
 #include <glidar/core/output_frame.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 
 #include <vector>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/pose.hpp>
 
-#include <glidar/core/axis_angle.hpp>
 #include <glidar/core/error.hpp>
 
 #include <cmath>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/pose_keys.hpp>
 
-#include <glidar/core/axis_angle.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/pose.hpp>
 
 #include <algorithm>
 #include <vector>

@@ -5,9 +5,15 @@
 #include <glidar/core/report.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 
 namespace glidar {
+
+/// Seconds from `start` to now.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// Counts the finished pieces of a parallel loop and reports them to a ProgressCallback: at most
 /// kSteps times, one call at a time, with increasing fractions. Without a callback it costs a

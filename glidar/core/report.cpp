@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/report.hpp>
 
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 
 namespace glidar {
 

@@ -5,8 +5,8 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/depth_camera/imager.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/gamma.hpp>
 #include <glidar/math/random.hpp>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/grey_image.hpp>
+#include <glidar/core/raw_images.hpp>
 
 #include <Eigen/Core>
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/fringes.hpp>
 
-#include <glidar/core/decimal_text.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
 

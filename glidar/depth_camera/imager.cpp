@@ -4,11 +4,8 @@
 
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/gamma.hpp>
-#include <glidar/math/gaussian.hpp>
-#include <glidar/math/light_speed.hpp>
-#include <glidar/math/poisson.hpp>
 #include <glidar/math/simd.hpp>
 
 #include <algorithm>

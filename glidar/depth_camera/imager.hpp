@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/field.hpp>
-#include <glidar/core/grey_image.hpp>
+#include <glidar/core/raw_images.hpp>
 #include <glidar/math/random.hpp>
 #include <glidar/math/thread_pool.hpp>
 

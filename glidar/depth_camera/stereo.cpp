@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/stereo.hpp>
 
-#include <glidar/core/decimal_text.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/depth_camera/stereo_matcher.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/math/philox.hpp>
+#include <glidar/math/random.hpp>
 
 #include <algorithm>
 #include <array>

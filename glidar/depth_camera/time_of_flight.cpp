@@ -2,17 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/time_of_flight.hpp>
 
-#include <glidar/core/decimal_text.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/sequence_time.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/depth_camera/tof_decoding.hpp>
 #include <glidar/math/constants.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/gaussian.hpp>
-#include <glidar/math/light_speed.hpp>
-#include <glidar/math/poisson.hpp>
 #include <glidar/math/portable.hpp>
 #include <glidar/math/unambiguous_range.hpp>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glidar/core/field.hpp>
+#include <glidar/core/raw_images.hpp>
 #include <glidar/core/report.hpp>
-#include <glidar/core/tof_images.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/random.hpp>
 #include <glidar/math/thread_pool.hpp>

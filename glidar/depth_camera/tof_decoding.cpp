@@ -5,7 +5,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/light_speed.hpp>
 #include <glidar/math/unambiguous_range.hpp>
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/explain/trace_text.hpp>
 
-#include <glidar/core/excerpt.hpp>
-#include <glidar/io/config/noise_text.hpp>
+#include <glidar/core/text.hpp>
+#include <glidar/io/config/sensor_options.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/portable.hpp>
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <glidar/core/memory_pool.hpp>
+#include <glidar/core/point_cloud.hpp>
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -32,6 +34,26 @@ class PayloadPool {
   [[nodiscard]] Payload payload_of(std::vector<std::byte> memory, std::size_t size) const;
 
   std::shared_ptr<MemoryPool> sent_ = std::make_shared<MemoryPool>();
+};
+
+/// Clouds whose memory is reused after their last reference is released, in any thread, also after
+/// the pool is destroyed. Of the released ones it keeps kMaxKept_bytes, or one larger cloud.
+class CloudPool {
+ public:
+  static constexpr std::size_t kMaxKept_bytes = std::size_t{64} << 20U;
+
+  /// A cloud with unspecified content.
+  [[nodiscard]] std::shared_ptr<PointCloud> take();
+  /// Memory of the clouds that wait for their reuse.
+  [[nodiscard]] std::size_t kept_bytes() const;
+
+ private:
+  struct FreeList {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<PointCloud>> clouds;
+    std::size_t bytes = 0;  ///< of all of them
+  };
+  std::shared_ptr<FreeList> kept_ = std::make_shared<FreeList>();
 };
 
 }  // namespace glidar::link

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/json_value.hpp>
-#include <glidar/io/files/recorded_path.hpp>
+#include <glidar/io/files/paths.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 
 #include <utility>

@@ -20,4 +20,10 @@ inline constexpr double kMillimetre_m = 1e-3;
 inline constexpr double kMicrosecond_ns = 1e3;
 inline constexpr double kSecond_ns = 1e9;
 
+/// Speed of light in vacuum, exact by the definition of the metre.
+inline constexpr double kLight_m_per_s = 299792458.0;
+
+/// Range per round-trip time of flight.
+inline constexpr double kHalfLight_m_per_s = 0.5 * kLight_m_per_s;
+
 }  // namespace glidar

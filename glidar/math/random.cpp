@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/math/random.hpp>
 
-#include <glidar/math/philox.hpp>
-
 #include <cassert>
 
 namespace glidar {

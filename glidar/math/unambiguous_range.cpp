@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/math/unambiguous_range.hpp>
 
-#include <glidar/math/light_speed.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,9 @@
 #include <glidar/motion/motion.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/field_visitor.hpp>
 #include <glidar/core/time_text.hpp>
+#include <glidar/motion/rate_keys.hpp>
 #include <glidar/motion/times.hpp>
 
 #include <string>
@@ -11,6 +13,40 @@
 #include <utility>
 
 namespace glidar {
+
+Pose pose_at(const Spin& spin, std::int64_t t_ns) {
+  const double s = seconds_between(spin.t0_ns, t_ns);
+  return spin.pose * se3_exp(spin.rate_rad_s * s, Eigen::Vector3d::Zero());
+}
+
+void describe(Spin& spin, FieldVisitor& visitor) {
+  visit_rate(visitor, true, spin.rate_rad_s);
+}
+
+Pose pose_at(const ConstantTwist& twist, std::int64_t t_ns) {
+  const double s = seconds_between(twist.t0_ns, t_ns);
+  const Pose moved = se3_exp(twist.angular_rad_s * s, twist.linear_m_s * s);
+  return twist.frame == TwistFrame::body ? twist.pose * moved : moved * twist.pose;
+}
+
+void describe(ConstantTwist& twist, FieldVisitor& visitor) {
+  constexpr std::array<Named<TwistFrame>, 2> kFrames = {
+      {{"body", TwistFrame::body}, {"world", TwistFrame::world}}};
+  visit_rate(visitor, false, twist.angular_rad_s);
+  visit_velocity(visitor, "`[x, y, z]`", twist.linear_m_s);
+  visit_choice(visitor,
+               {"frame",
+                "`body`: rate and velocity are along the axes of the body; `world`: along those of "
+                "the world, and the velocity is that of the point of the body at the origin of the "
+                "world"},
+               kFrames, twist.frame);
+}
+
+Pose pose_at(const Mounted& mounted, std::int64_t t_ns) {
+  const auto at = [t_ns](const auto& carrier) { return carrier.pose_at(t_ns); };
+  return std::visit(at, mounted.carrier) * mounted.carrier_from_body;
+}
+
 namespace {
 
 Pose pose_at(const ConstantPose& constant, std::int64_t /*t_ns*/) {

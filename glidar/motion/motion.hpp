@@ -3,11 +3,9 @@
 #pragma once
 
 #include <glidar/core/frame.hpp>
+#include <glidar/core/pose.hpp>
 #include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
-#include <glidar/motion/constant_twist.hpp>
-#include <glidar/motion/mounted.hpp>
-#include <glidar/motion/spin.hpp>
 #include <glidar/motion/timed_poses.hpp>
 #include <glidar/motion/torque_free_rotation.hpp>
 
@@ -19,6 +17,55 @@
 #include <vector>
 
 namespace glidar {
+
+class FieldVisitor;
+
+/// Rotation in place at a constant rate: the rates of --object-rate and --sensor-rate, as in the
+/// original GLIDAR. The rate is an angular velocity in the body's own axes (right-handed, axis
+/// times rad/s), as in the kinematics that the original cites: Markley, "Attitude error
+/// representations for Kalman filtering", J. Guidance, Control, and Dynamics 26(2) (2003),
+/// equation 10. Because the rate is constant, the axis is fixed in the world too.
+struct Spin {
+  Pose pose = Pose::Identity();  ///< at t0_ns; the position is constant
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
+  std::int64_t t0_ns = 0;
+};
+
+Pose pose_at(const Spin& spin, std::int64_t t_ns);
+
+/// Keys of `spin`; files have the pose beside it, at time 0.
+void describe(Spin& spin, FieldVisitor& visitor);
+
+/// The coordinate frame of a twist.
+enum class TwistFrame : std::uint8_t {
+  body,   ///< the moving body: linear is the velocity of its origin, in its own axes
+  world,  ///< the world ("spatial twist"): linear is the velocity of the point of the body,
+          ///< extended if necessary, at the world's origin
+};
+
+/// A constant screw motion: pose exp(twist s) for a twist in the body frame, exp(twist s) pose for
+/// one in the world frame, s seconds after t0 (Lynch and Park, "Modern Robotics" (2017), section
+/// 3.3.2).
+struct ConstantTwist {
+  Pose pose = Pose::Identity();  ///< at t0_ns
+  Eigen::Vector3d angular_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linear_m_s = Eigen::Vector3d::Zero();
+  TwistFrame frame = TwistFrame::body;
+  std::int64_t t0_ns = 0;
+};
+
+Pose pose_at(const ConstantTwist& twist, std::int64_t t_ns);
+
+/// Keys of `twist`; files have the pose beside it, at time 0.
+void describe(ConstantTwist& twist, FieldVisitor& visitor);
+
+/// A part fixed to a body whose motion has a closed form for one of its points only.
+struct Mounted {
+  std::variant<TimedPoses, TorqueFreeRotation> carrier;
+  Pose carrier_from_body = Pose::Identity();
+};
+
+Pose pose_at(const Mounted& mounted, std::int64_t t_ns);
 
 /// A stationary body.
 struct ConstantPose {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/pieces_renderer.hpp>
 
-#include <glidar/core/mesh_pieces.hpp>
+#include <glidar/core/mesh.hpp>
 
 #include <algorithm>
 #include <cstddef>

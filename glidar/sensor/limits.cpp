@@ -5,7 +5,7 @@
 #include <glidar/core/dot_product.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/math/thread_pool.hpp>
 

@@ -3,8 +3,8 @@
 #include <glidar/sensor/phong_shading.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/gaussian.hpp>
 #include <glidar/math/simd.hpp>
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 #include <glidar/sensor/sensor.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/point_cloud.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/sensor/optics/sub_pixels.hpp>
 

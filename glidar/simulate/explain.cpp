@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/sensor/noise/noise.hpp>
 #include <glidar/simulate/depth_from_images.hpp>
 #include <glidar/simulate/simulate.hpp>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/function_ref.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/simulate/simulation.hpp>
 
 namespace glidar {

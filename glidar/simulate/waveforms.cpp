@@ -3,7 +3,7 @@
 #include <glidar/simulate/waveforms.hpp>
 
 #include <glidar/math/constants.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/motion/radial_velocity.hpp>
 #include <glidar/sensor/lidar/beam_surfaces.hpp>
 #include <glidar/sensor/lidar/weather_echoes.hpp>

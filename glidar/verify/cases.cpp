@@ -3,15 +3,278 @@
 #include <glidar/verify/cases.hpp>
 
 #include <glidar/math/portable.hpp>
+#include <glidar/simulate/moving_cast.hpp>
 #include <glidar/verify/comparison.hpp>
 #include <glidar/verify/probes.hpp>
+#include <glidar/verify/shapes.hpp>
+#include <glidar/verify/verify.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace glidar {
+
+/// Beams with different firing times from a moving and rotating sensor, at a moving and a static
+/// target. The exact hits follow the motion in extended precision.
+VerifyResult moving_sensor_and_target(const VerifySubject& subject,
+                                      const std::vector<Shape>& shapes);
+
+/// Such beams among many bodies, most of which move.
+VerifyResult sensor_in_traffic(const VerifySubject& subject, const std::vector<Shape>& shapes);
+
+/// The beams at the target measured by a sensor: also the poses of sensor and target, the beams
+/// without the motion, and radial velocities.
+VerifyResult measured_motion(const VerifySubject& subject, const std::vector<Shape>& shapes);
+
+namespace {
+
+constexpr std::int64_t kStamp_ns = 500'000'000;
+constexpr std::uint32_t kStep_ns = 25'000;  // between beams: a frame takes 0.1 s
+// A few hundred roundings of double: rays nearer to a silhouette are not compared.
+constexpr double kEdgeTolerance_m = 1e-12;
+
+RealMatrix cross_matrix(const RealVector& w) {
+  RealMatrix matrix;
+  matrix << 0.0L, -w.z(), w.y(), w.z(), 0.0L, -w.x(), -w.y(), w.x(), 0.0L;
+  return matrix;
+}
+
+/// A screw motion after a time (K. M. Lynch and F. C. Park, "Modern Robotics" (2017), equation
+/// 3.88), in extended precision.
+ExactPose moved(const ConstantTwist& twist, Real seconds) {
+  const RealVector angle = twist.angular_rad_s.cast<Real>() * seconds;
+  const Real theta = angle.norm();
+  const RealMatrix w = cross_matrix(angle / theta);
+  const RealMatrix turn =
+      RealMatrix::Identity() + std::sin(theta) * w + (1.0L - std::cos(theta)) * w * w;
+  const RealMatrix path = RealMatrix::Identity() + (1.0L - std::cos(theta)) / theta * w +
+                          (theta - std::sin(theta)) / theta * w * w;
+  const RealMatrix start = twist.pose.linear().cast<Real>();
+  return {.rotation = start * turn,
+          .shift = twist.pose.translation().cast<Real>() +
+                   start * (path * (twist.linear_m_s.cast<Real>() * seconds))};
+}
+
+/// The pose of an object relative to a sensor.
+ExactPose relative_to_sensor(const ExactPose& sensor, const ExactPose& object) {
+  return {.rotation = sensor.rotation.transpose() * object.rotation,
+          .shift = sensor.rotation.transpose() * (object.shift - sensor.shift)};
+}
+
+/// A shape on a screw motion, or at rest.
+struct Body {
+  const Shape& shape;
+  double scale;
+  ConstantTwist motion;
+  bool is_at_rest = false;
+
+  [[nodiscard]] ExactPose pose_after(Real seconds) const {
+    if (!is_at_rest) return moved(motion, seconds);
+    return {.rotation = motion.pose.linear().cast<Real>(),
+            .shift = motion.pose.translation().cast<Real>()};
+  }
+};
+
+Real seconds_at(std::uint32_t beam_time_ns) {
+  return (static_cast<Real>(kStamp_ns) + static_cast<Real>(beam_time_ns)) * 1e-9L;
+}
+
+/// A moving sensor and bodies, each an instance of a scene.
+struct MovingStage {
+  ConstantTwist sensor = {.pose = make_pose({0.5, -0.25, 0.0}, Eigen::Quaterniond::Identity()),
+                          .angular_rad_s = {0.3, -0.2, 0.5},
+                          .linear_m_s = {1.0, -0.5, 2.0}};
+  std::vector<Body> bodies;
+  Scene scene;
+  Motion motion = {.world_from_sensor = sensor, .world_from_instance = {}};
+
+  explicit MovingStage(std::vector<Body> all) : bodies(std::move(all)) {
+    for (const Body& body : bodies) {
+      add_shape(scene, body.shape.mesh, body.scale, body.motion.pose);
+      if (body.is_at_rest) {
+        motion.world_from_instance.emplace_back(ConstantPose{body.motion.pose});
+      } else {
+        motion.world_from_instance.emplace_back(body.motion);
+      }
+    }
+  }
+
+  /// The shapes relative to the sensor at a beam's firing time.
+  [[nodiscard]] ExactScene scene_at(std::uint32_t time_ns) const {
+    const ExactPose from = moved(sensor, seconds_at(time_ns));
+    ExactScene exact{.shapes = {}, .edge_tolerance_m = kEdgeTolerance_m};
+    for (const Body& body : bodies) {
+      exact.shapes.push_back(place_shape(
+          body.shape, body.scale, relative_to_sensor(from, body.pose_after(seconds_at(time_ns)))));
+    }
+    return exact;
+  }
+};
+
+/// A target that moves, and a body at rest.
+MovingStage target_and_rest(const std::vector<Shape>& shapes) {
+  constexpr std::uint32_t kNumber = 90050;
+  return MovingStage(
+      {{.shape = shapes[0],
+        .scale = 2.0,
+        .motion = {.pose = make_pose({0.0, 0.5, 12.0}, random_rotation(probe_uniforms(kNumber, 0))),
+                   .angular_rad_s = {-0.4, 0.7, 0.2},
+                   .linear_m_s = {3.0, -1.0, 0.5}}},
+       {.shape = shapes[2],
+        .scale = 1.5,
+        .motion = {.pose = make_pose({3.0, 1.5, 9.0}, random_rotation(probe_uniforms(kNumber, 1)))},
+        .is_at_rest = true}});
+}
+
+/// Boxes and tetrahedra of 0.3 to 1.3 m that occlude each other, 4 to 40 m ahead. Of three, two
+/// drive at up to 10 m/s and turn.
+MovingStage traffic(const std::vector<Shape>& shapes) {
+  constexpr std::uint32_t kNumber = 90052;
+  constexpr std::uint32_t kBodies = 96;
+  std::vector<Body> bodies;
+  for (std::uint32_t i = 0; i < kBodies; ++i) {
+    const auto u = probe_uniforms(kNumber, 3 * i);
+    const auto v = probe_uniforms(kNumber, 3 * i + 1);
+    const Eigen::Vector3d place = (4.0 + 36.0 * u[2]) * random_direction(u[0], u[1], 0.5);
+    bodies.push_back(
+        {.shape = shapes[i % 2 == 0 ? 0 : 2],
+         .scale = 0.3 + u[3],
+         .motion = {.pose = make_pose(place, random_rotation(probe_uniforms(kNumber, 3 * i + 2))),
+                    .angular_rad_s = {v[0] - 0.5, 2.0 * v[1], v[2]},
+                    .linear_m_s = 10.0 * random_direction(v[3], v[0], 3.0)},
+         .is_at_rest = i % 3 == 2});
+  }
+  return MovingStage(std::move(bodies));
+}
+
+/// The velocity of a point that is fixed to a body on a screw motion, world axes.
+RealVector velocity_of(const ConstantTwist& twist, const ExactPose& body, const RealVector& point) {
+  const RealVector turning = body.rotation * twist.angular_rad_s.cast<Real>();
+  return body.rotation * twist.linear_m_s.cast<Real>() + turning.cross(point - body.shift);
+}
+
+double pose_error(const PoseVector& found, const ExactPose& exact) {
+  const Eigen::Quaterniond attitude(found[3], found[4], found[5], found[6]);
+  const RealMatrix turned = attitude.toRotationMatrix().cast<Real>() - exact.rotation;
+  return static_cast<double>((found.head<3>().cast<Real>() - exact.shift).norm() + turned.norm());
+}
+
+/// The beams of the cast, as a sensor that measures radial velocities.
+Sensor moving_sensor() {
+  const Beams beams = random_probes(90051, 0.4, 0.2);
+  RayTable table;
+  table.rows = 1;
+  table.cols = beams.cols;
+  table.directions = beams.directions;
+  table.origins_m = beams.origins_m;
+  for (std::uint32_t i = 0; i < beams.cols; ++i) table.times_ns.push_back(i * double{kStep_ns});
+  constexpr double kFrame_ns = 1.1e8;
+  table.period_ns = kFrame_ns;
+  Sensor sensor;
+  sensor.optics = table;
+  sensor.rate_hz = 1e9 / kFrame_ns;
+  sensor.limits.along = Limits::Along::range;
+  sensor.doppler = Doppler{};
+  return sensor;
+}
+
+/// Compares what the frame states of a beam's motion.
+void compare_motion(const MovingStage& stage, const Frame& frame, const Beams& beams, std::size_t i,
+                    VerifyResult& result) {
+  constexpr double kBound = 1e-12;  // m, rad and m/s: some hundred roundings of double
+  const ExactPose sensor = moved(stage.sensor, seconds_at(beams.times_ns[i]));
+  const ExactPose start = moved(stage.sensor, seconds_at(0));
+  const RealVector direction = beams.directions[i].cast<Real>();
+  const RealVector origin = beams.origins_m[i].cast<Real>();
+  const RealMatrix back = start.rotation.transpose();
+  const RealVector moved_origin = back * (sensor.rotation * origin + sensor.shift - start.shift);
+  const auto error = [](const RealVector& exact, const Eigen::Vector3d& found) {
+    return static_cast<double>((found.cast<Real>() - exact).norm());
+  };
+  result.check(error(back * (sensor.rotation * direction), frame.deskewed.directions[i]), kBound);
+  result.check(error(moved_origin, frame.deskewed.origins_m[i]), kBound);
+  result.check(pose_error(frame.beam_poses.world_from_sensor[i], sensor), kBound);
+  if (frame.ground_truth.instance[i] == kInvalidId) return;
+  const Body& body = stage.bodies[frame.ground_truth.instance[i]];
+  const ExactPose place = body.pose_after(seconds_at(beams.times_ns[i]));
+  result.check(pose_error(frame.beam_poses.world_from_object[i], place), kBound);
+  const RealVector from = sensor.rotation * origin + sensor.shift;
+  const RealVector along = sensor.rotation * direction;
+  const RealVector point = from + static_cast<Real>(frame.ground_truth.range_m[i]) * along;
+  RealVector velocity = -velocity_of(stage.sensor, sensor, from);
+  if (!body.is_at_rest) velocity += velocity_of(body.motion, place, point);
+  const auto radial_m_s = static_cast<double>(velocity.dot(along));
+  result.check(frame.true_radial_velocity_m_s[i] - radial_m_s, kBound);
+  result.check(frame.radial_velocity_m_s[i] - radial_m_s, kBound);
+  result.check(frame.range_m[i] - frame.ground_truth.range_m[i], kBound);
+}
+
+/// Casts with a beam every kStep_ns and compares each with the scene of its firing time.
+VerifyResult cast_stage(const VerifySubject& subject, const MovingStage& stage, Beams beams) {
+  for (std::uint32_t i = 0; i < beams.cols; ++i) beams.times_ns.push_back(i * kStep_ns);
+  std::vector<Pose> poses;
+  for (const Body& body : stage.bodies) {
+    poses.push_back(body.is_at_rest ? body.motion.pose : pose_at(body.motion, kStamp_ns));
+  }
+  const std::unique_ptr<Renderer> renderer = subject.make(stage.scene);
+  MovingCastWorkspace memory;
+  Hits hits;
+  cast_moving({*renderer, stage.scene, stage.motion, kStamp_ns},
+              {.beams = beams,
+               .world_from_sensor = pose_at(stage.sensor, kStamp_ns),
+               .world_from_instance = poses,
+               .hit_columns = {.normal = true}},
+              memory, hits);
+  VerifyResult result;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    compare_beam(stage.scene_at(beams.times_ns[i]), beams.origins_m[i].cast<Real>(),
+                 beams.directions[i].cast<Real>(),
+                 {.instance = hits.instance[i],
+                  .primitive = hits.primitive[i],
+                  .range_m = hits.range_m[i],
+                  .normal = hits.normal[i].cast<Real>()},
+                 result);
+  }
+  return result;
+}
+
+}  // namespace
+
+VerifyResult moving_sensor_and_target(const VerifySubject& subject,
+                                      const std::vector<Shape>& shapes) {
+  return cast_stage(subject, target_and_rest(shapes), random_probes(90051, 0.4, 0.2));
+}
+
+VerifyResult sensor_in_traffic(const VerifySubject& subject, const std::vector<Shape>& shapes) {
+  return cast_stage(subject, traffic(shapes), random_probes(90053, 0.6, 0.2));
+}
+
+VerifyResult measured_motion(const VerifySubject& subject, const std::vector<Shape>& shapes) {
+  const MovingStage stage = target_and_rest(shapes);
+  const std::unique_ptr<Renderer> renderer = subject.make(stage.scene);
+  Simulator simulator(stage.scene, moving_sensor(), *renderer);
+  Frame frame;
+  frame.stamp_ns = kStamp_ns;
+  subject.measure(simulator, stage.motion, frame);
+  const std::shared_ptr<const Beams> beams = simulator.beams();
+  VerifyResult result;
+  for (std::size_t i = 0; i < beams->size(); ++i) {
+    compare_beam(stage.scene_at(beams->times_ns[i]), beams->origins_m[i].cast<Real>(),
+                 beams->directions[i].cast<Real>(),
+                 {.instance = frame.ground_truth.instance[i],
+                  .primitive = frame.ground_truth.primitive[i],
+                  .range_m = frame.ground_truth.range_m[i],
+                  .normal = frame.ground_truth.normal[i].cast<Real>()},
+                 result);
+    compare_motion(stage, frame, *beams, i, result);
+  }
+  return result;
+}
+
 namespace {
 
 constexpr double kViewOverShape = 1.15;  // field of view over the angle of the bounding sphere

@@ -14,6 +14,9 @@
 
 namespace glidar {
 
+/// The known failure of a renderer in a row's case; without a reason, the row must pass.
+KnownFailure known_failure(const AccuracyCase& row);
+
 /// A reported triangle must contain the exact point within this fraction of range and size: 2^12
 /// roundings of double, for the point and for the beam's direction.
 inline constexpr double kIdTolerance = 0x1p-40;

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/verify/comparison.hpp>
 
 #include <Eigen/Geometry>
+
 #include <array>
 #include <cstdint>
 
@@ -33,5 +35,20 @@ Beams unstructured_probes(std::vector<Eigen::Vector3d> directions,
 /// 4096 beams in random directions within an angle of +z, with origins in a square of width
 /// spread_m around the sensor's. Uses probe_uniforms() 1 to 4096 of the case.
 Beams random_probes(std::uint32_t number, double half_view_rad, double spread_m);
+
+/// A shape that beams are aimed at, relative to the sensor's position.
+struct AimTarget {
+  const PlacedShape& placed;
+  Eigen::Matrix3d sensor_from_axes;
+  std::uint32_t number;  ///< key of the random numbers
+};
+
+/// Beams at all vertices and edges whose faces are all front-facing, and beams through the scaled
+/// vertices, most of which miss the shape.
+Beams beams_at_vertices_and_edges(const AimTarget& at);
+
+/// Beams that pass the silhouette edges (between a front face and a back face) at a distance of
+/// 1e-9 to 1e-6 of the shape's radius, on either side.
+Beams beams_beside_outline(const AimTarget& at);
 
 }  // namespace glidar

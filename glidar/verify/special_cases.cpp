@@ -3,9 +3,8 @@
 #include <glidar/verify/special_cases.hpp>
 
 #include <glidar/math/portable.hpp>
-#include <glidar/verify/aimed_probes.hpp>
+#include <glidar/verify/cases.hpp>
 #include <glidar/verify/comparison.hpp>
-#include <glidar/verify/moving_case.hpp>
 #include <glidar/verify/probes.hpp>
 
 #include <algorithm>

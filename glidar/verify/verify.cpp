@@ -4,7 +4,7 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/verify/cases.hpp>
-#include <glidar/verify/known_failures.hpp>
+#include <glidar/verify/comparison.hpp>
 #include <glidar/verify/special_cases.hpp>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "report.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>

@@ -3,8 +3,7 @@
 #include "convert.hpp"
 
 #include <glidar/depth_camera/depth_filters.hpp>
-#include <glidar/io/config/depth_alignment_file.hpp>
-#include <glidar/io/config/depth_filter_text.hpp>
+#include <glidar/io/config/depth_camera_files.hpp>
 
 #include <nanobind/stl/string.h>
 

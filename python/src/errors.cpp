@@ -3,7 +3,7 @@
 #include "report.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 
 #include <nanobind/stl/string.h>
 

@@ -5,7 +5,7 @@
 #include "report.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
-#include <glidar/motion/mounted.hpp>
+#include <glidar/motion/motion.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>

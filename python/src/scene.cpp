@@ -6,8 +6,8 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/io/config/length_unit.hpp>
 #include <glidar/io/config/surface_presets.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/files/content_hash.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
 #include <glidar/io/model/model_parts.hpp>
 #include <glidar/math/single_precision.hpp>
 #include "report.hpp"

@@ -3,7 +3,7 @@
 #include "convert.hpp"
 
 #include <glidar/depth_camera/structured_light.hpp>
-#include <glidar/io/config/structured_light_file.hpp>
+#include <glidar/io/config/depth_camera_files.hpp>
 
 #include <nanobind/stl/string.h>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/core/mesh.hpp>
-#include <glidar/core/mesh_pieces.hpp>
 
 #include <gtest/gtest.h>
 

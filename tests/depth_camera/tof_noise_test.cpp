@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <depth_camera/tof_pictures.hpp>
 #include <glidar/depth_camera/time_of_flight.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/math/light_speed.hpp>
-#include <depth_camera/tof_pictures.hpp>
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/tof_images.hpp>
+#include <glidar/core/raw_images.hpp>
 #include <glidar/depth_camera/time_of_flight.hpp>
 
 #include <cstdint>

@@ -4,7 +4,6 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/link/dds/pose_decoder.hpp>
-#include <glidar/link/dds/transform_tree.hpp>
 
 #include "demand.hpp"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/png_texture.hpp>
 #include <glidar/io/pictures/font.hpp>
-#include <glidar/io/pictures/point_colours.hpp>
+#include <glidar/io/pictures/point_image.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <glidar/sensor/optics/firing_schedule.hpp>

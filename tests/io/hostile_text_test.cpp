@@ -4,8 +4,8 @@
 #include <glidar/io/config/json_text.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
-#include <glidar/io/config/yaml_budget.hpp>
-#include <glidar/io/files/recorded_path.hpp>
+#include <glidar/io/config/yaml_reader.hpp>
+#include <glidar/io/files/paths.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <tests/support/error_text.hpp>
 #include <tests/support/test_folder.hpp>

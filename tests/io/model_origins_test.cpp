@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Parts of a model that are far from each other keep the precision of parts near zero.
-#include <glidar/core/mesh_pieces.hpp>
+#include <glidar/core/mesh.hpp>
 #include <glidar/io/model/mesh_check.hpp>
 #include <glidar/io/model/model.hpp>
 

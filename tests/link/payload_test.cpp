@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 namespace glidar::link {
 namespace {
 
@@ -46,6 +50,47 @@ TEST(PayloadPool, PayloadsOutliveThePool) {
     payload = pool.take(bytes);
   }
   EXPECT_EQ(payload.bytes()[9], std::byte{3});
+}
+
+}  // namespace
+
+namespace {
+
+std::shared_ptr<PointCloud> cloud_of(CloudPool& pool, std::size_t bytes) {
+  std::shared_ptr<PointCloud> cloud = pool.take();
+  cloud->columns = {{"row", {"row"}, std::vector<std::uint8_t>(bytes)}};
+  return cloud;
+}
+
+TEST(CloudPool, ReusesTheMemoryOfAReleasedCloud) {
+  CloudPool pool;
+  std::shared_ptr<PointCloud> cloud = cloud_of(pool, 1000);
+  const PointCloud* const first = cloud.get();
+  cloud.reset();
+  EXPECT_GE(pool.kept_bytes(), 1000U);
+  cloud = pool.take();
+  EXPECT_EQ(cloud.get(), first);
+  EXPECT_EQ(pool.kept_bytes(), 0U);
+}
+
+TEST(CloudPool, KeepsLittleMemory) {
+  CloudPool pool;
+  constexpr std::size_t kQuarter_bytes = CloudPool::kMaxKept_bytes / 4;
+  std::vector<std::shared_ptr<PointCloud>> clouds;
+  for (int i = 0; i < 20; ++i) clouds.push_back(cloud_of(pool, kQuarter_bytes));
+  clouds.clear();
+  EXPECT_LE(pool.kept_bytes(), CloudPool::kMaxKept_bytes);
+  EXPECT_GE(pool.kept_bytes(), 2 * kQuarter_bytes);
+}
+
+TEST(CloudPool, KeepsOneCloudThatIsLarger) {
+  CloudPool pool;
+  auto first = cloud_of(pool, 2 * CloudPool::kMaxKept_bytes);
+  auto second = cloud_of(pool, 2 * CloudPool::kMaxKept_bytes);
+  first.reset();
+  second.reset();
+  EXPECT_GE(pool.kept_bytes(), 2 * CloudPool::kMaxKept_bytes);
+  EXPECT_LT(pool.kept_bytes(), 3 * CloudPool::kMaxKept_bytes);
 }
 
 }  // namespace

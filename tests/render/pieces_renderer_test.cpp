@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes whose parts have their own origins, in every renderer.
 #include <glidar/core/error.hpp>
-#include <glidar/core/mesh_pieces.hpp>
+#include <glidar/core/mesh.hpp>
 #include <glidar/io/model/model.hpp>
 #include <render/renderer_suite.hpp>
 

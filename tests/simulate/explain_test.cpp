@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <simulate/panels.hpp>
 #include <support/error_text.hpp>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Diffuse bounces against closed forms and quadrature.
-#include <glidar/math/light_speed.hpp>
+#include <glidar/math/constants.hpp>
 #include <simulate/tof_stage.hpp>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time-of-flight cameras from the scene to the frame.
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/math/light_speed.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <simulate/tof_stage.hpp>
 #include <support/data.hpp>

@@ -3,7 +3,7 @@
 #include "verify/spoiled_subject.hpp"
 
 #include <glidar/verify/cases.hpp>
-#include <glidar/verify/known_failures.hpp>
+#include <glidar/verify/comparison.hpp>
 
 #include <gtest/gtest.h>
 

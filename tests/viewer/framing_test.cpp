@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/viewer/framing.hpp>
+#include <apps/viewer/orbit.hpp>
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,7 @@
 #include <apps/glidar/run/printing.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/depth_camera/depth_filters.hpp>
-#include <glidar/io/config/depth_alignment_file.hpp>
-#include <glidar/io/config/depth_filter_text.hpp>
+#include <glidar/io/config/depth_camera_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 #include <glidar/math/constants.hpp>

@@ -4,7 +4,7 @@
 
 #include <apps/glidar/commands/commands.hpp>
 #include <glidar/depth_camera/imager.hpp>
-#include <glidar/io/files/staged_files.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/pictures/picture.hpp>
 
@@ -45,7 +45,7 @@ struct ImageContents {
 
 /// Adds -o and --depth-unit-mm, under the heading "Output".
 void add_output_options(CLI::App& command, const ImageContents& contents, ImageOutputs& outputs);
-/// Adds --explain; `help` says what it prints.
+/// Adds --explain; `help` states what it prints.
 void add_explain_option(CLI::App& command, const std::string& help, ImageOutputs& outputs);
 /// Adds -j and -q.
 void add_run_options(CLI::App& command, ImageOutputs& outputs);

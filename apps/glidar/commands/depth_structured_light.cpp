@@ -6,7 +6,7 @@
 #include <apps/glidar/run/printing.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/depth_camera/structured_light.hpp>
-#include <glidar/io/config/structured_light_file.hpp>
+#include <glidar/io/config/depth_camera_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/formats/raw_image_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>

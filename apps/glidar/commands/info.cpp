@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/model_options.hpp>
+#include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/printing.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/model/model_parts.hpp>
 #include <glidar/io/model/model_report.hpp>
 

@@ -12,7 +12,7 @@
 #include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/surface_presets.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/pictures/pattern_picture.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/portable.hpp>

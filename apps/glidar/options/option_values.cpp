@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/options/option_values.hpp>
 
-#include <glidar/core/axis_angle.hpp>
+#include <glidar/core/pose.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/core/text.hpp>
 

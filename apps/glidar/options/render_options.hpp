@@ -2,19 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/model/model.hpp>
+#include <glidar/render/renderer.hpp>
+
 #include <apps/glidar/options/cli_fwd.hpp>
-#include <apps/glidar/options/model_options.hpp>
 #include <apps/glidar/options/motion_options.hpp>
 #include <apps/glidar/options/output_options.hpp>
-#include <apps/glidar/options/pose_options.hpp>
 #include <apps/glidar/options/sensor_options.hpp>
-#include <glidar/render/renderer.hpp>
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
 namespace glidar::app {
+
+/// --unit --up --centre --texture-folder --no-cache --cache-folder.
+void add_model_options(CLI::App& command, ModelOptions& options);
 
 class OptionGroup;
 

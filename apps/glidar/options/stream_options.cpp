@@ -5,7 +5,7 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 
 #include <CLI/CLI.hpp>
 

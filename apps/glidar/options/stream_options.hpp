@@ -3,8 +3,8 @@
 #pragma once
 
 #include <apps/glidar/options/cli_fwd.hpp>
+#include <apps/glidar/options/message_options.hpp>
 #include <apps/glidar/options/render_options.hpp>
-#include <apps/glidar/options/ros2_options.hpp>
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/limits.hpp>
 

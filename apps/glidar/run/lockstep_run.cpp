@@ -6,8 +6,8 @@
 #include <apps/glidar/run/placed_motion.hpp>
 #include <apps/glidar/run/printing.hpp>
 #include <apps/glidar/run/reply_size.hpp>
-#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/files/input_file.hpp>
 #include <glidar/link/socket.hpp>

@@ -8,9 +8,9 @@
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/recorder.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/link/cloud_pool.hpp>
 #include <glidar/link/error_log.hpp>
 #include <glidar/link/lockstep/server.hpp>
+#include <glidar/link/payload.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 

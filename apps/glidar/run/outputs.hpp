@@ -5,7 +5,7 @@
 #include <apps/glidar/options/output_options.hpp>
 #include <glidar/core/cloud_sink.hpp>
 #include <glidar/core/report.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/file_sink.hpp>
 
 #include <cstdint>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <apps/glidar/options/motion_options.hpp>
-#include <apps/glidar/options/pose_options.hpp>
 #include <glidar/core/beams.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/motion/motion.hpp>

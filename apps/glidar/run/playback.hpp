@@ -3,7 +3,7 @@
 #pragma once
 
 #include <apps/glidar/run/interrupt.hpp>
-#include <glidar/link/foxglove/page_messages.hpp>
+#include <glidar/link/foxglove/messages.hpp>
 
 #include <cstdint>
 #include <mutex>

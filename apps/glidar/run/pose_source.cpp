@@ -3,7 +3,7 @@
 #include <apps/glidar/run/pose_source.hpp>
 
 #include <apps/glidar/run/placement.hpp>
-#include <glidar/core/elapsed_time.hpp>
+#include <glidar/core/progress_counter.hpp>
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 #include <apps/glidar/run/rig_messages.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/bags/bag.hpp>
-#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/osi/osi_trace.hpp>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/ros2_link.hpp>
 
-#include <apps/glidar/options/ros2_options.hpp>
+#include <apps/glidar/options/message_options.hpp>
 #include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/rig_messages.hpp>
-#include <glidar/core/elapsed_time.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/link/dds/message_sink.hpp>
 #include <glidar/sensor/sensor.hpp>
 

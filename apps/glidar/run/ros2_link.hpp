@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/options/ros2_options.hpp>
+#include <apps/glidar/options/message_options.hpp>
 #include <apps/glidar/run/frame_sink.hpp>
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <apps/glidar/run/rig_messages.hpp>
-#include <glidar/link/dds/clock_subscriber.hpp>
 #include <glidar/link/dds/participant.hpp>
-#include <glidar/link/dds/pose_subscriber.hpp>
+#include <glidar/link/dds/subscribers.hpp>
 #include <glidar/link/error_log.hpp>
 
 #include <cstddef>

@@ -18,8 +18,8 @@
 #include <apps/glidar/run/stream_report.hpp>
 #include <apps/glidar/run/stream_sinks.hpp>
 #include <apps/glidar/run/unused_options.hpp>
-#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/link/recording.hpp>
 #include <glidar/woods2016/cloud_publisher.hpp>

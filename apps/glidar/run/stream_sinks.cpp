@@ -21,7 +21,6 @@
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/error_log.hpp>
 #include <glidar/link/udp/packet_sender.hpp>
-#include <glidar/link/udp/udp_socket.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -3,7 +3,7 @@
 #include <glidar/io/bags/bag_poses.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/bags/bag_topics.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 #include <glidar/io/ros/published_rig.hpp>

@@ -4,7 +4,7 @@
 
 // Private to glidar/io/bags.
 
-#include <glidar/io/files/input_budget.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <cstddef>
 #include <cstdint>

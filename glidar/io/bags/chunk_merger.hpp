@@ -6,7 +6,7 @@
 
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/byte_writer.hpp>
-#include <glidar/io/files/input_budget.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <cstdint>
 #include <functional>

@@ -3,7 +3,7 @@
 #include <glidar/io/bags/mcap_reader.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/bag_file.hpp>
 #include <glidar/io/bags/byte_reader.hpp>

@@ -3,12 +3,12 @@
 #include <glidar/io/bags/rosbag2_reader.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/bags/byte_reader.hpp>
 #include <glidar/io/bags/mcap_reader.hpp>
 #include <glidar/io/bags/sqlite_bag_reader.hpp>
-#include <glidar/io/config/yaml_budget.hpp>
-#include <glidar/io/files/text_file.hpp>
+#include <glidar/io/config/yaml_reader.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -8,7 +8,6 @@
 #include <glidar/io/bags/sqlite.hpp>
 #include <glidar/io/bags/written_topics.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/files/unfinished_files.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -3,11 +3,10 @@
 #include <glidar/io/config/imu_file.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
 #include <glidar/io/config/field_json.hpp>
-#include <glidar/io/config/preset_names.hpp>
 #include <glidar/io/config/provenance.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 
 #include <system_error>

@@ -3,9 +3,9 @@
 #include <glidar/io/config/json_schema.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/pose_keys.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/core/unit_conversion.hpp>
 #include <glidar/io/config/material_keys.hpp>
 #include <glidar/io/config/motion_keys.hpp>

@@ -5,7 +5,7 @@
 // Private to the library: JSON of files, parsed within bounds.
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 
 #include <nlohmann/json.hpp>
 

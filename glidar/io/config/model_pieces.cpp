@@ -3,8 +3,8 @@
 #include <glidar/io/config/model_pieces.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
-#include <glidar/core/mesh_pieces.hpp>
+#include <glidar/core/mesh.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/model/model_parts.hpp>
 
 #include <algorithm>

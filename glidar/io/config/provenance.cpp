@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/provenance.hpp>
 
-#include <glidar/io/files/text_file.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <map>
 #include <string>

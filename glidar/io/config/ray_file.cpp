@@ -3,8 +3,8 @@
 #include <glidar/io/config/ray_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/files/input_file.hpp>
 #include <glidar/io/files/npy_head.hpp>
-#include <glidar/io/files/text_file.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <charconv>

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/rig_keys.hpp>
 
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/pose_keys.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/motion_keys.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
-#include <glidar/io/files/nearest_file.hpp>
+#include <glidar/io/files/paths.hpp>
 
 #include <algorithm>
 #include <cctype>

@@ -3,8 +3,8 @@
 #include <glidar/io/config/scene_builder.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/hits.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/model_pieces.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/model/model_parts.hpp>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/scene_plan.hpp>
 
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/pose_keys.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/imu_file.hpp>
 #include <glidar/io/config/length_unit.hpp>
 #include <glidar/io/config/motion_keys.hpp>

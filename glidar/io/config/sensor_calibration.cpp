@@ -3,10 +3,10 @@
 #include <glidar/io/config/sensor_calibration.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/config/yaml_reader.hpp>
-#include <glidar/io/files/text_file.hpp>
+#include <glidar/io/files/input_file.hpp>
 #include <glidar/io/formats/ouster_file.hpp>
 #include <glidar/io/packets/velodyne_model.hpp>
 #include <glidar/math/constants.hpp>

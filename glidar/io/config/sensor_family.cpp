@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/sensor_family.hpp>
 
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/config/preset_names.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/yaml_reader.hpp>
 
 #include <algorithm>

@@ -3,7 +3,8 @@
 #include <glidar/io/config/sensor_options.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
+#include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/sensor_calibration.hpp>
 #include <glidar/sensor/lidar/return_names.hpp>
 
@@ -16,6 +17,21 @@
 #include <utility>
 
 namespace glidar {
+
+std::string noise_text(const NoiseStep& step) {
+  const nlohmann::ordered_json json = write_struct(FieldVisitor::Mode::report, step);
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    if (key == "type") {
+      text = value.get<std::string>();
+      continue;
+    }
+    text += (text.find(' ') == std::string::npos ? " " : ", ") + key + " ";
+    text += value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  return text;
+}
+
 namespace {
 
 void require(bool holds, const std::string& option, double value, std::string allowed) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/sensor/noise/noise.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <cstdint>
@@ -10,6 +11,10 @@
 #include <vector>
 
 namespace glidar {
+
+/// A step of noise as its name and numbers in a sensor file: "range_gaussian sigma_m 0.03,
+/// sigma_per_m 0".
+std::string noise_text(const NoiseStep& step);
 
 /// Changes to a sensor that users request by option. An empty value keeps what the sensor has.
 struct SensorOptions {

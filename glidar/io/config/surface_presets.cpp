@@ -3,10 +3,10 @@
 #include <glidar/io/config/surface_presets.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/material_keys.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
-#include <glidar/io/files/data_folder.hpp>
+#include <glidar/io/files/paths.hpp>
 
 #include <algorithm>
 

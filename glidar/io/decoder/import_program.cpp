@@ -3,7 +3,7 @@
 #include <glidar/io/decoder/import_program.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/own_folders.hpp>
+#include <glidar/io/files/paths.hpp>
 
 #include <unistd.h>
 

@@ -3,7 +3,7 @@
 #include <glidar/io/files/atomic_file.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/unfinished_files.hpp>
+#include <glidar/io/files/cache_folder.hpp>
 #include <glidar/io/files/unique_fd.hpp>
 
 #include <fcntl.h>
@@ -11,17 +11,75 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 namespace glidar {
+namespace {
+
+constexpr std::size_t kSlots = 128;
+constexpr std::size_t kSlotPathBytes = 4096;
+
+// States of a slot; int, because only plain atomics are sure to work in a signal handler.
+constexpr int kFree = 0;
+constexpr int kFilling = 1;
+constexpr int kListed = 2;
+constexpr int kRemoving = 3;
+
+/// A temporary file's name in memory that a signal handler can read without allocation and locks.
+struct Slot {
+  std::atomic<int> state{kFree};
+  std::array<char, kSlotPathBytes> path{};
+};
+static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
+
+// Global, because a signal handler has no arguments.
+constinit std::array<Slot, kSlots> unfinished{};
+
+}  // namespace
+
+int list_unfinished(const std::string& path) {
+  if (path.size() >= kSlotPathBytes) return -1;
+  for (std::size_t i = 0; i < kSlots; ++i) {
+    int expected = kFree;
+    if (!unfinished[i].state.compare_exchange_strong(expected, kFilling)) continue;
+    std::memcpy(unfinished[i].path.data(), path.c_str(), path.size() + 1);
+    unfinished[i].state.store(kListed);
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+/// A slot that a handler is reading is not changed, because the process is ending.
+void unlist_unfinished(int slot) {
+  if (slot < 0) return;
+  int expected = kListed;
+  unfinished[static_cast<std::size_t>(slot)].state.compare_exchange_strong(expected, kFree);
+}
+
+void remove_unfinished_files() noexcept {
+  const int saved_errno = errno;
+  for (Slot& slot : unfinished) {
+    int expected = kListed;
+    if (slot.state.compare_exchange_strong(expected, kRemoving)) ::unlink(slot.path.data());
+  }
+  // Folders without other files are empty now, the innermost first; for files this fails.
+  for (std::size_t i = kSlots; i-- > 0;) {
+    if (unfinished[i].state.load() == kRemoving) ::rmdir(unfinished[i].path.data());
+  }
+  errno = saved_errno;
+}
+
 namespace {
 
 /// A block stays in a core's cache until the system has copied it.
@@ -304,6 +362,97 @@ void AtomicFile::write_through(std::span<const std::byte> bytes) {
     if (written < 0) fail(path_, "write", failure_ = errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
+}
+
+std::filesystem::path real_path(const std::filesystem::path& path) {
+  const std::filesystem::path whole = std::filesystem::absolute(path);
+  std::error_code no_such_folder;
+  const std::filesystem::path folder =
+      std::filesystem::canonical(whole.parent_path(), no_such_folder);
+  return no_such_folder ? whole.lexically_normal() : folder / whole.filename();
+}
+
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code no_such_file;  // a missing file equals only its own name
+  return real_path(a) == real_path(b) || std::filesystem::equivalent(a, b, no_such_file);
+}
+
+std::vector<std::string> files_of(const Scene& scene) {
+  std::vector<std::string> files;
+  for (const MeshSource& source : scene.sources) {
+    files.insert(files.end(), source.files.begin(), source.files.end());
+  }
+  return files;
+}
+
+void refuse_overwrite_of_inputs(std::span<const std::string> read,
+                                const std::filesystem::path& output) {
+  std::error_code ignored;  // inaccessible files are compared by name
+  const std::filesystem::path name = real_path(output);
+  const bool is_there = std::filesystem::exists(output, ignored);
+  const auto is_it = [&](const std::string& file) {
+    return real_path(file) == name ||
+           (is_there && std::filesystem::equivalent(file, output, ignored));
+  };
+  if (std::none_of(read.begin(), read.end(), is_it)) return;
+  throw Error({.where = output.string(),
+               .found = "is an input file, or another output writes it",
+               .remedy = "choose another name"});
+}
+
+namespace {
+
+void remove_outdated(const std::filesystem::path& path) {
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure)) return;
+  std::filesystem::remove(path, failure);
+  if (!failure) return;
+  throw Error({path.string(),
+               "cannot remove this file, which belongs to an earlier output: " + failure.message(),
+               "", "write to another folder"});
+}
+
+}  // namespace
+
+AtomicFile& StagedFiles::add(const std::filesystem::path& path) {
+  refuse_overwrite_of_inputs(protected_, path);
+  return files_.emplace_back(path);
+}
+
+void StagedFiles::add_folder(const std::filesystem::path& path) {
+  std::error_code failure;
+  if (std::filesystem::create_directory(path, failure)) {
+    const std::filesystem::path whole = std::filesystem::absolute(path);
+    folders_.push_back({whole, list_unfinished(whole.native())});
+  }
+  if (!failure) return;
+  throw Error({path.string(), "cannot create this folder: " + failure.message(), "",
+               "write to another folder"});
+}
+
+void StagedFiles::commit() {
+  std::optional<FolderLock> lock;
+  if (!is_locked_ && files_.size() + removals_.size() > 1 && !files_.empty())
+    lock.emplace(std::filesystem::absolute(files_.front().path()).parent_path());
+  for (const std::filesystem::path& path : removals_) remove_outdated(path);
+  removals_.clear();
+  for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->commit();
+  files_.clear();
+  unlist_folders();
+}
+
+void StagedFiles::clear() noexcept {
+  files_.clear();
+  removals_.clear();
+  std::error_code ignored;  // a folder that is in use by now stays
+  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
+    std::filesystem::remove(folder->path, ignored);
+  unlist_folders();
+}
+
+void StagedFiles::unlist_folders() noexcept {
+  for (const NewFolder& folder : folders_) unlist_unfinished(folder.slot);
+  folders_.clear();
 }
 
 }  // namespace glidar

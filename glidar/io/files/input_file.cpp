@@ -3,18 +3,68 @@
 #include <glidar/io/files/input_file.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
-#include <glidar/io/files/nearest_file.hpp>
+#include <glidar/core/text.hpp>
+#include <glidar/io/files/paths.hpp>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <limits>
 #include <system_error>
 #include <utility>
 
 namespace glidar {
+namespace {
+
+constexpr std::uint64_t kBudgetMiB = std::uint64_t{1} << 20U;
+constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+
+struct BudgetRule {
+  const char* name;
+  std::uint64_t floor;     ///< for an empty input
+  std::uint64_t per_byte;  ///< of the input
+  std::uint64_t max;
+};
+
+/// In the order of Budget. LZ4 expands a byte to at most 255; chunks of real bags have some MiB.
+constexpr std::array<BudgetRule, 8> kRules = {{
+    {"decompressed bytes", 256 * kBudgetMiB, 256, kUnlimited},
+    {"bytes in memory", 64 * kBudgetMiB, 64, 1024 * kBudgetMiB},
+    {"messages", 100'000, 4, kUnlimited},
+    {"topics", 4096, 1, 65'536},
+    {"bytes of names", kBudgetMiB, 1, 64 * kBudgetMiB},
+    {"numbers of a point", 4096, 1, 65'536},
+    {"values, with aliases written out", 1'000'000, 2, kUnlimited},
+    {"steps of SQLite", 5'000'000, 20, kUnlimited},
+}};
+
+}  // namespace
+
+std::uint64_t InputBudget::limit(Budget what) const {
+  const BudgetRule& rule = kRules[index(what)];
+  constexpr std::uint64_t kMaxInput = kUnlimited >> 10U;  // no product overflows
+  return std::min(rule.max, rule.floor + rule.per_byte * std::min(input_bytes_, kMaxInput));
+}
+
+void InputBudget::take_name(std::uint64_t bytes, const std::string& place) {
+  if (bytes > kMaxNameBytes) {
+    throw Error({place, fmt::format("a name of {} bytes", bytes),
+                 fmt::format("names of at most {} bytes", kMaxNameBytes),
+                 "the file is damaged or malicious"});
+  }
+  take(Budget::name_bytes, bytes, place);
+}
+
+void InputBudget::fail(Budget what, const std::string& place) const {
+  throw Error({place, fmt::format("more than {} {}", limit(what), kRules[index(what)].name),
+               fmt::format("at most so many for an input of {} bytes", input_bytes_),
+               "the file is damaged or malicious"});
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,6 +131,34 @@ std::string read_input_file(const fs::path& path, const InputFileKind& kind) {
   }
   content.resize(filled);
   return content;
+}
+
+namespace fs = std::filesystem;
+
+std::string shown(std::string_view word) {
+  constexpr std::size_t kShown = 63;
+  return excerpt(word, kShown);
+}
+
+std::string read_text_file(const fs::path& file, const TextFileKind& kind) {
+  std::string content = read_input_file(file, kind);
+  if (content.find('\0') != std::string::npos) {
+    throw Error({file.string(), "binary data", kind.name});
+  }
+  return content;
+}
+
+void require_utf8(const fs::path& file, std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = utf8_size(text.substr(at));
+    if (size == 0) {
+      const auto line =
+          std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+      throw Error({file.string() + ":" + std::to_string(line + 1), "bytes that are not UTF-8",
+                   "text in UTF-8", "convert it, for example with iconv"});
+    }
+    at += size;
+  }
 }
 
 }  // namespace glidar

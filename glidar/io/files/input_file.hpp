@@ -2,16 +2,64 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to the library and the program: opens input files.
-
 #include <glidar/io/files/unique_fd.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace glidar {
+
+/// What readers count.
+enum class Budget : std::uint8_t {
+  decompressed_bytes,  ///< by all chunks together, however often each is read
+  held_bytes,          ///< in memory together; give_back() when they are freed
+  messages,
+  topics,
+  name_bytes,  ///< of topics, types, fields and the like
+  components,  ///< of the fields of a cloud
+  values,      ///< of YAML and JSON, with aliases expanded
+  steps,       ///< of SQLite's virtual machine
+};
+
+/// Limits of one input, a file or a folder with several: each is a constant and a multiple of the
+/// size of the input, so that a small file can neither take long nor need much memory. Every reader
+/// of the input counts in the same object, before it allocates.
+class InputBudget {
+ public:
+  explicit InputBudget(std::uint64_t input_bytes) : input_bytes_(input_bytes) {}
+
+  /// Counts `amount` more. Throws Error with `place`, which names what is read, when there are more
+  /// than the limit.
+  void take(Budget what, std::uint64_t amount, const std::string& place) {
+    if (!try_take(what, amount)) fail(what, place);
+  }
+  /// The same for callers with an error of their own: false when there are more than the limit.
+  [[nodiscard]] bool try_take(Budget what, std::uint64_t amount) {
+    if (amount > limit(what) - used_[index(what)]) return false;
+    used_[index(what)] += amount;
+    return true;
+  }
+  /// The error of take().
+  [[noreturn]] void fail(Budget what, const std::string& place) const;
+  void give_back(Budget what, std::uint64_t amount) { used_[index(what)] -= amount; }
+
+  /// Counts a name. Throws Error also when it is longer than kMaxNameBytes.
+  void take_name(std::uint64_t bytes, const std::string& place);
+  static constexpr std::size_t kMaxNameBytes = 4096;
+
+  [[nodiscard]] std::uint64_t limit(Budget what) const;
+
+ private:
+  static constexpr std::size_t kBudgets = static_cast<std::size_t>(Budget::steps) + 1;
+  static constexpr std::size_t index(Budget what) { return static_cast<std::size_t>(what); }
+
+  std::uint64_t input_bytes_;
+  std::array<std::uint64_t, kBudgets> used_{};
+};
 
 /// The expected type of a file, for errors.
 struct InputFileKind {
@@ -38,5 +86,17 @@ std::string read_input_file(const std::filesystem::path& path, const InputFileKi
 /// The next bytes of an open file, at most `size`; 0 at its end. Throws Error.
 std::size_t read_some(const InputFile& file, const std::filesystem::path& path, char* to,
                       std::size_t size);
+
+using TextFileKind = InputFileKind;
+
+/// The whole file, see read_input_file. Throws Error like read_input_file, and when it contains
+/// zero bytes.
+std::string read_text_file(const std::filesystem::path& file, const TextFileKind& kind);
+
+/// Throws Error, with file and line, when a text is not UTF-8.
+void require_utf8(const std::filesystem::path& file, std::string_view text);
+
+/// A word of a file, shortened for an error; see excerpt().
+std::string shown(std::string_view word);
 
 }  // namespace glidar

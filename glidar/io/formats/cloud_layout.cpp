@@ -3,7 +3,7 @@
 #include <glidar/io/formats/cloud_layout.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,7 +6,6 @@
 #include <glidar/io/pictures/chart.hpp>
 #include <glidar/io/pictures/font.hpp>
 #include <glidar/io/pictures/png_image.hpp>
-#include <glidar/io/pictures/point_colours.hpp>
 #include <glidar/io/pictures/point_image.hpp>
 #include <glidar/math/portable.hpp>
 

@@ -4,7 +4,7 @@
 
 // Private to glidar/io: everything that distinguishes one file format from others.
 
-#include <glidar/io/files/staged_files.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_file.hpp>
 
 #include <cstdint>

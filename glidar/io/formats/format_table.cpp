@@ -3,7 +3,6 @@
 #include <glidar/io/formats/format.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
 
 #include <fmt/format.h>

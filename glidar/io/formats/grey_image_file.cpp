@@ -3,7 +3,7 @@
 #include <glidar/io/formats/grey_image_file.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/decoder/pixel_records.hpp>
+#include <glidar/io/decoder/decoder_process.hpp>
 #include <glidar/io/files/input_file.hpp>
 
 #include <fmt/format.h>

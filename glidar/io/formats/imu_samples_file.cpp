@@ -7,7 +7,7 @@
 #include <glidar/core/version.hpp>
 #include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/json_numbers.hpp>
-#include <glidar/io/files/staged_files.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/npz_archive.hpp>
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/kitti_labels.hpp>
 
-#include <glidar/core/axis_angle.hpp>
 #include <glidar/core/file_text.hpp>
+#include <glidar/core/pose.hpp>
 #include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
-#include <glidar/io/pictures/image_box.hpp>
+#include <glidar/io/pictures/point_image.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/core/text.hpp>
 #include <glidar/core/time_text.hpp>
-#include <glidar/io/files/folder_lock.hpp>
+#include <glidar/io/files/cache_folder.hpp>
 #include <glidar/io/formats/kitti_file.hpp>
 #include <glidar/io/formats/kitti_folder.hpp>
 #include <glidar/io/formats/truth_images.hpp>

@@ -3,8 +3,8 @@
 #include <glidar/io/formats/las_crs.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
-#include <glidar/io/files/text_file.hpp>
+#include <glidar/core/text.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/json_text.hpp>
-#include <glidar/io/files/text_file.hpp>
+#include <glidar/io/files/input_file.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
 

@@ -3,7 +3,7 @@
 #include <glidar/io/formats/format.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 

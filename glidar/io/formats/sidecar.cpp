@@ -5,8 +5,8 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/json_value.hpp>
 #include <glidar/io/files/content_hash.hpp>
-#include <glidar/io/files/recorded_path.hpp>
-#include <glidar/io/files/text_file.hpp>
+#include <glidar/io/files/input_file.hpp>
+#include <glidar/io/files/paths.hpp>
 
 #include <cmath>
 #include <type_traits>

@@ -6,7 +6,7 @@
 #include <glidar/core/time_text.hpp>
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/bag_poses.hpp>
-#include <glidar/io/files/text_file.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,6 @@
 #include <glidar/io/model/builtin_models.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
 #include <glidar/io/model/point_mesh.hpp>
 #include <glidar/math/random.hpp>

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/import_process.hpp>
 
-#include <glidar/core/elapsed_time.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/decoder/helper_process.hpp>
+#include <glidar/core/progress_counter.hpp>
+#include <glidar/io/decoder/decoder_process.hpp>
 #include <glidar/io/decoder/import_program.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 

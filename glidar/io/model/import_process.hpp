@@ -3,9 +3,9 @@
 #pragma once
 
 #include <glidar/core/report.hpp>
-#include <glidar/io/decoder/helper_process.hpp>
+#include <glidar/io/decoder/decoder_process.hpp>
 #include <glidar/io/files/unique_fd.hpp>
-#include <glidar/io/model/imported_model.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
 
 #include <cstdint>
 #include <filesystem>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/mesh_check.hpp>
 
-#include <glidar/core/mesh_pieces.hpp>
-#include <glidar/io/model/vertex_weld.hpp>
+#include <glidar/core/mesh.hpp>
+#include <glidar/io/model/vertex_attributes.hpp>
 
 #include <algorithm>
 #include <cstddef>

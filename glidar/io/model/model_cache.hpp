@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/io/files/cache_folder.hpp>
-#include <glidar/io/model/imported_model.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
 
 #include <cstdint>
 #include <filesystem>

@@ -3,7 +3,6 @@
 #include <glidar/io/osi/osi_trace.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/text.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/osi/object_types.hpp>

@@ -5,7 +5,7 @@
 // Both ends of the stream of a packet capture.
 
 #include <glidar/io/decoder/decoder_process.hpp>
-#include <glidar/io/files/input_budget.hpp>
+#include <glidar/io/files/input_file.hpp>
 #include <glidar/io/packets/packet_codec.hpp>
 
 #include <filesystem>

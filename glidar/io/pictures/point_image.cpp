@@ -2,14 +2,257 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/pictures/point_image.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/pictures/colour_scale.hpp>
 #include <glidar/math/portable.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
 
 namespace glidar {
+namespace {
+
+constexpr Colour kNothing = {150, 150, 156};  // returns of no object, and objects without a class
+
+/// Without the darkest colours, which are invisible on the background.
+Colour bright_ramp(double t) {
+  constexpr double kDarkest = 0.18;
+  return viridis(kDarkest + (1.0 - kDarkest) * t);
+}
+
+Colour near_bright_ramp(double t) {
+  return bright_ramp(1.0 - t);
+}
+
+/// Blue, white at the middle, red; all are bright enough for the background.
+Colour diverging_ramp(double t) {
+  constexpr std::array<Colour, 3> kColours = {{{64, 140, 255}, {232, 232, 236}, {255, 84, 56}}};
+  const double place = 2.0 * std::clamp(t, 0.0, 1.0);
+  const std::size_t below = place < 1.0 ? 0 : 1;
+  const double part = place - static_cast<double>(below);
+  const auto mix = [part](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround(a + (b - a) * part));
+  };
+  const Colour& a = kColours.at(below);
+  const Colour& b = kColours.at(below + 1);
+  return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
+}
+
+/// The value of a column for each shown point.
+std::vector<double> field_values(const CloudFile& job, const ShownPoints& shown,
+                                 std::string_view column) {
+  std::vector<double> numbers;
+  numbers.reserve(shown.entries.size());
+  std::visit(
+      [&](const auto& values) {
+        for (const std::size_t entry : shown.entries)
+          numbers.push_back(static_cast<double>(values[entry]));
+      },
+      find_column(job.cloud, column)->values);
+  return numbers;
+}
+
+PointColours colour_by_bar(const std::vector<double>& values, ColourBar bar) {
+  PointColours result;
+  for (const double value : values) {
+    result.colours.push_back(std::isfinite(value) ? bar.ramp(bar.scale.fraction(value)) : kNothing);
+  }
+  result.bar = std::move(bar);
+  return result;
+}
+
+/// The scale has 0 in its middle.
+PointColours colour_by_velocity(const CloudFile& job, const ShownPoints& shown) {
+  if (!job.context.sensor.doppler) {
+    throw Error({"colour_by", "radial_velocity: the sensor does not measure it",
+                 "height, range, intensity, ring, class or instance",
+                 "add 'doppler: {}' to a sensor file (docs/doppler.md)"});
+  }
+  const std::vector<double> values = field_values(job, shown, "radial_velocity");
+  ColourScale scale = make_colour_scale(values);
+  const double end = std::max(std::abs(scale.low), std::abs(scale.high));
+  scale.clips_low = std::any_of(values.begin(), values.end(), [end](double v) { return v < -end; });
+  scale.clips_high = std::any_of(values.begin(), values.end(), [end](double v) { return v > end; });
+  scale.low = -end;
+  scale.high = end;
+  return colour_by_bar(values, {"radial velocity", "m/s", scale, diverging_ramp});
+}
+
+PointColours colour_by_ring(const CloudFile& job, const ShownPoints& shown) {
+  if (looks_along_z(job.context.beams)) {
+    throw Error({"colour_by", "ring: a camera has no rings",
+                 "height, range, intensity, class or instance", "rings are channels of LiDARs"});
+  }
+  const std::vector<double> rings = field_values(job, shown, "ring");
+  ColourScale scale{};  // rings have no outliers
+  if (!rings.empty()) {
+    const auto [low, high] = std::minmax_element(rings.begin(), rings.end());
+    scale = {.low = *low, .high = *high, .has_values = true};
+  }
+  return colour_by_bar(rings, {"ring", "", scale, bright_ramp});
+}
+
+std::string class_name(const Scene& scene, std::uint32_t id) {
+  return id < scene.class_names.size() ? scene.class_names[id] : fmt::format("class {}", id);
+}
+
+std::string instance_name(const Scene& scene, std::uint32_t id) {
+  const auto found = std::find_if(scene.instances.begin(), scene.instances.end(),
+                                  [id](const Instance& it) { return it.id == id; });
+  return found == scene.instances.end() || found->name.empty() ? fmt::format("instance {}", id)
+                                                               : found->name;
+}
+
+/// Numbers with their names, the most frequent first.
+std::vector<LegendEntry> legend_of(const std::map<std::uint32_t, std::size_t>& counts,
+                                   const std::map<std::uint32_t, LegendEntry>& entries) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> order(counts.begin(), counts.end());
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<LegendEntry> legend;
+  for (const auto& [number, count] : order) legend.push_back(entries.at(number));
+  return legend;
+}
+
+/// The legend entry of a number in the column.
+LegendEntry entry_of(const Scene& scene, std::uint32_t number, bool is_class) {
+  if (number == kInvalidId) return {kNothing, "no object"};
+  if (!is_class) return {category_colour(number), instance_name(scene, number)};
+  // number 0 means no class
+  return {number == 0 ? kNothing : category_colour(number - 1), class_name(scene, number)};
+}
+
+PointColours colour_by_number(const CloudFile& job, const ShownPoints& shown, bool is_class) {
+  std::map<std::uint32_t, std::size_t> counts;
+  std::map<std::uint32_t, LegendEntry> entries;
+  PointColours result;
+  for (const double value : field_values(job, shown, is_class ? "class" : "instance")) {
+    const auto number = static_cast<std::uint32_t>(value);
+    if (counts[number]++ == 0) entries[number] = entry_of(job.context.scene, number, is_class);
+    result.colours.push_back(entries[number].colour);
+  }
+  result.legend = legend_of(counts, entries);
+  return result;
+}
+
+}  // namespace
+
+PointColours colour_points(const CloudFile& job, const ShownPoints& shown) {
+  switch (job.options.picture.colour_by) {
+    case ColourBy::range: {
+      const std::vector<double> values = field_values(job, shown, "range");
+      return colour_by_bar(values, {"range", "m", make_colour_scale(values), near_bright_ramp});
+    }
+    case ColourBy::intensity: {
+      const std::vector<double> values = field_values(job, shown, "intensity");
+      return colour_by_bar(
+          values,
+          {"intensity", "", make_colour_scale(values, ColourScale::Start::zero), light_grey});
+    }
+    case ColourBy::ring:
+      return colour_by_ring(job, shown);
+    case ColourBy::object_class:
+      return colour_by_number(job, shown, true);
+    case ColourBy::instance:
+      return colour_by_number(job, shown, false);
+    case ColourBy::radial_velocity:
+      return colour_by_velocity(job, shown);
+    case ColourBy::height:
+      break;
+  }
+  std::vector<double> heights_m;
+  for (const Eigen::Vector3d& point : shown.points_m) heights_m.push_back(point.z());
+  return colour_by_bar(heights_m, {"height", "m", make_colour_scale(heights_m), bright_ramp});
+}
+
+namespace {
+
+constexpr double kNearest_m = 1e-3;  ///< near plane
+
+/// Points p with normal.dot(p) >= offset are on the side that is kept.
+struct Plane {
+  Eigen::Vector3d normal;
+  double offset = 0.0;
+
+  [[nodiscard]] double height(const Eigen::Vector3d& p) const { return normal.dot(p) - offset; }
+};
+
+/// The planes through the camera and the centres of the image's outermost pixels.
+std::array<Plane, 4> sides_of(const RectifiedCamera& camera) {
+  return {{{{camera.fx, 0.0, camera.cx}},
+           {{-camera.fx, 0.0, camera.width - 1.0 - camera.cx}},
+           {{0.0, camera.fy, camera.cy}},
+           {{0.0, -camera.fy, camera.height - 1.0 - camera.cy}}}};
+}
+
+/// Vertices of a convex polygon, and a buffer for the clipped one.
+struct Polygon {
+  std::vector<Eigen::Vector3d> corners;
+  std::vector<Eigen::Vector3d> next;
+};
+
+/// Clips the polygon at a plane (Sutherland and Hodgman 1974).
+void clip(Polygon& polygon, const Plane& plane) {
+  polygon.next.clear();
+  for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
+    const Eigen::Vector3d& a = polygon.corners[i];
+    const Eigen::Vector3d& b = polygon.corners[(i + 1) % polygon.corners.size()];
+    const double above_a = plane.height(a);
+    const double above_b = plane.height(b);
+    if (above_a >= 0.0) polygon.next.push_back(a);
+    if ((above_a >= 0.0) != (above_b >= 0.0))
+      polygon.next.push_back(a + (b - a) * (above_a / (above_a - above_b)));
+  }
+  std::swap(polygon.corners, polygon.next);
+}
+
+void extend(Eigen::AlignedBox2d& box, const Polygon& polygon, const RectifiedCamera& camera) {
+  for (const Eigen::Vector3d& p : polygon.corners) {
+    box.extend(Eigen::Vector2d(camera.fx * p.x() / p.z() + camera.cx,
+                               camera.fy * p.y() / p.z() + camera.cy));
+  }
+}
+
+/// The fraction of a box that an inner box does not cover; for a flat box, of its length.
+double share_outside(const Eigen::AlignedBox2d& whole, const Eigen::AlignedBox2d& inside) {
+  double covered = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double length = whole.sizes()[axis];
+    if (length > 0.0) covered *= inside.sizes()[axis] / length;
+  }
+  return 1.0 - covered;
+}
+
+}  // namespace
+
+std::optional<ImageBox> image_box(const PlacedMesh& placed, const RectifiedCamera& camera) {
+  const Plane front{Eigen::Vector3d::UnitZ(), kNearest_m};
+  const std::array<Plane, 4> sides = sides_of(camera);
+  Eigen::AlignedBox2d whole;
+  Eigen::AlignedBox2d inside;
+  Polygon polygon;
+  for (const Triangle& triangle : placed.mesh.triangles) {
+    polygon.corners.clear();
+    for (const std::uint32_t corner : triangle) polygon.corners.push_back(placed.in_camera(corner));
+    clip(polygon, front);
+    extend(whole, polygon, camera);
+    for (const Plane& side : sides) clip(polygon, side);
+    extend(inside, polygon, camera);
+  }
+  if (inside.isEmpty()) return std::nullopt;
+  // clipped vertices may be outside by rounding
+  const Eigen::Vector2d last(camera.width - 1.0, camera.height - 1.0);
+  inside.min() = inside.min().cwiseMax(0.0).cwiseMin(last);
+  inside.max() = inside.max().cwiseMax(0.0).cwiseMin(last);
+  return ImageBox{inside, share_outside(whole, inside)};
+}
+
 namespace {
 
 constexpr double kHalfView = 0.4142135623730951;  // tan of half the vertical field of view, 45 deg

@@ -3,7 +3,7 @@
 #include <glidar/io/ros/cloud_from_message.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/files/input_budget.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <glidar/io/ros/driver.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>

@@ -3,9 +3,9 @@
 #include <glidar/io/ros/rig_publisher.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/json_numbers.hpp>
 #include <glidar/io/formats/box_json.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>

@@ -7,7 +7,7 @@
 #include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/livox_commands.hpp>
 #include <glidar/link/control/tcp_service.hpp>
-#include <glidar/link/udp/udp_socket.hpp>
+#include <glidar/link/udp/packet_sender.hpp>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/link/control/destination.hpp>
+#include <glidar/link/control/conversation.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include <glidar/link/control/ouster_api.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/json_text.hpp>
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <glidar/link/control/conversation.hpp>
-#include <glidar/link/control/destination.hpp>
 
 #include <chrono>
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include <glidar/io/ros/message_sink.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/dds/publications.hpp>
-#include <glidar/link/dds/topic_writer.hpp>
+#include <glidar/link/dds/topics.hpp>
 #include <glidar/link/dds/wake_up.hpp>
 #include <glidar/link/payload.hpp>
 

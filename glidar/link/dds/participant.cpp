@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/dds/participant.hpp>
 
-#include <glidar/core/excerpt.hpp>
-#include <glidar/link/dds/endpoint.hpp>
-#include <glidar/link/dds/local_sockets.hpp>
+#include <glidar/core/text.hpp>
+#include <glidar/link/dds/domain.hpp>
+#include <glidar/link/dds/topics.hpp>
 
 #include <dds/dds.h>
 #include <dds/ddsrt/log.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/dds/publications.hpp>
 
-#include <glidar/link/dds/endpoint.hpp>
 #include <glidar/link/dds/topic_names.hpp>
+#include <glidar/link/dds/topics.hpp>
 
 #include <dds/dds.h>
 

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Instead of the files that include Cyclone DDS in builds without it.
 #include <glidar/core/error.hpp>
-#include <glidar/link/dds/clock_subscriber.hpp>
 #include <glidar/link/dds/participant.hpp>
-#include <glidar/link/dds/pose_subscriber.hpp>
 #include <glidar/link/dds/publications.hpp>
-#include <glidar/link/dds/topic_writer.hpp>
+#include <glidar/link/dds/subscribers.hpp>
+#include <glidar/link/dds/topics.hpp>
 
 namespace glidar::dds {
 

@@ -2,14 +2,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/link/foxglove/page_messages.hpp>
+#include <glidar/link/foxglove/messages.hpp>
 #include <glidar/link/http_guard.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 
 namespace glidar::foxglove {
+
+/// A file of the page, which the program contains.
+struct PageFile {
+  std::string_view target;  ///< e.g. "/main.js"
+  std::string_view content_type;
+  std::string_view text;
+};
+
+/// The file of an HTTP target; nullptr if there is none.
+const PageFile* find_page_file(std::string_view target);
+
+/// All files.
+std::span<const PageFile> page_files();
+
+/// The text of a file in page/ by its name.
+std::string_view page_text(std::string_view file);
 
 /// The parts of an HTTP request that decide the answer.
 struct HttpRequest {

@@ -3,13 +3,57 @@
 #include <glidar/link/foxglove/messages.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/link/foxglove/json_members.hpp>
 
 #include <nlohmann/json.hpp>
 
+#include <charconv>
 #include <limits>
+#include <system_error>
 
 namespace glidar::foxglove {
+
+nlohmann::json parse_object(std::string_view text, const std::string& where) {
+  nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+  if (!value.is_object()) {
+    throw Error({.where = where,
+                 .found = value.is_discarded() ? "invalid JSON" : "JSON that is not an object",
+                 .allowed = "a JSON object"});
+  }
+  return value;
+}
+
+const nlohmann::json& member(const nlohmann::json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  if (found == object.end()) {
+    throw Error({.where = "received JSON", .found = std::string("no member '") + name + "'"});
+  }
+  return *found;
+}
+
+std::string text_member(const nlohmann::json& object, const char* name, std::size_t max_bytes) {
+  const nlohmann::json& value = member(object, name);
+  const auto* text = value.get_ptr<const std::string*>();
+  if (text == nullptr || text->size() > max_bytes) {
+    throw Error({.where = std::string("received JSON, ") + name,
+                 .found = text == nullptr ? "no text" : std::to_string(text->size()) + " bytes",
+                 .allowed = "a text of at most " + std::to_string(max_bytes) + " bytes"});
+  }
+  return *text;
+}
+
+std::uint64_t whole_number(const nlohmann::json& value, const char* name, std::uint64_t max) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > max) {
+    throw Error({.where = std::string("received JSON, ") + name,
+                 .found = "no whole number in range",
+                 .allowed = "0 to " + std::to_string(max)});
+  }
+  return value.get<std::uint64_t>();
+}
+
+std::string compact_text(const nlohmann::json& value) {
+  return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 namespace {
 
 using Json = nlohmann::json;
@@ -126,6 +170,55 @@ std::array<std::byte, 9> time_message(std::uint64_t time_ns) {
   std::array<std::byte, 9> bytes{std::byte{2}};
   put(bytes, 1, time_ns, 8);
   return bytes;
+}
+
+namespace {
+
+std::uint64_t decimal(const std::string& text) {
+  std::uint64_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) {
+    throw Error({.where = "pick, time_ns", .found = "'" + text + "'", .allowed = "decimal digits"});
+  }
+  return value;
+}
+
+}  // namespace
+
+PlaybackCommand decode_playback_command(std::string_view text) {
+  const std::string command = text_member(parse_object(text, "playback"), "command", 16);
+  if (command == "play") return PlaybackCommand::play;
+  if (command == "pause") return PlaybackCommand::pause;
+  if (command == "step") return PlaybackCommand::step;
+  throw Error({.where = "playback, command", .found = "unknown", .allowed = "play, pause, step"});
+}
+
+std::string playback_state_text(const PlaybackState& state) {
+  nlohmann::json value = {{"playing", state.is_playing},
+                          {"time_ns", std::to_string(state.time_ns)}};
+  if (state.first_ns) value["first_ns"] = std::to_string(*state.first_ns);
+  if (state.last_ns) value["last_ns"] = std::to_string(*state.last_ns);
+  return compact_text(value);
+}
+
+std::string_view playback_schema() {
+  return R"({"type":"object","properties":{"playing":{"type":"boolean"},"time_ns":{"type":"string"},)"
+         R"("first_ns":{"type":"string"},"last_ns":{"type":"string"}}})";
+}
+
+Pick decode_pick(std::string_view text) {
+  constexpr std::size_t kMaxTopic_bytes = 256;
+  constexpr std::size_t kMaxDigits = 20;
+  const nlohmann::json object = parse_object(text, "pick");
+  return {.topic = text_member(object, "topic", kMaxTopic_bytes),
+          .time_ns = decimal(text_member(object, "time_ns", kMaxDigits)),
+          .index = whole_number(member(object, "index"), "index",
+                                std::numeric_limits<std::uint32_t>::max())};
+}
+
+std::string answer_text(const char* member, const std::string& text) {
+  return compact_text({{member, text}});
 }
 
 }  // namespace glidar::foxglove

@@ -2,15 +2,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+/// Reading of received JSON; every function throws Error for anything but what it returns.
+namespace glidar::foxglove {
+
+nlohmann::json parse_object(std::string_view text, const std::string& where);
+
+const nlohmann::json& member(const nlohmann::json& object, const char* name);
+
+/// At most so many bytes.
+std::string text_member(const nlohmann::json& object, const char* name, std::size_t max_bytes);
+
+/// A whole number from 0 to `max`.
+std::uint64_t whole_number(const nlohmann::json& value, const char* name, std::uint64_t max);
+
+/// One line; invalid UTF-8 is replaced.
+std::string compact_text(const nlohmann::json& value);
+
+}  // namespace glidar::foxglove
 
 /// The Foxglove WebSocket protocol, version 1: JSON texts and little-endian binary messages, which
 /// Foxglove and Lichtblick understand. Source: the specification in the repository
@@ -80,5 +101,45 @@ std::array<std::byte, 13> message_head(SubscriptionId subscription, std::uint64_
 
 /// The time of the server: opcode 2, time in ns.
 std::array<std::byte, 9> time_message(std::uint64_t time_ns);
+
+}  // namespace glidar::foxglove
+
+/// JSON of the page that the server offers beside the Foxglove protocol.
+namespace glidar::foxglove {
+
+enum class PlaybackCommand : std::uint8_t { play, pause, step };
+
+/// {"command": "play"}, "pause" or "step". Throws Error for anything else.
+PlaybackCommand decode_playback_command(std::string_view text);
+
+/// Whether frames follow automatically.
+struct PlaybackState {
+  bool is_playing = true;
+  std::uint64_t time_ns = 0;
+  std::optional<std::uint64_t> first_ns = {};  ///< of a replay with known ends
+  std::optional<std::uint64_t> last_ns = {};
+};
+
+/// Message of kPlaybackTopic. Times are decimal texts, because JSON numbers in JavaScript have 53
+/// bits.
+std::string playback_state_text(const PlaybackState& state);
+/// The JSON Schema of these messages.
+std::string_view playback_schema();
+inline constexpr std::string_view kPlaybackTopic = "/glidar/playback";
+
+/// A point that the user has selected.
+struct Pick {
+  std::string topic;
+  std::uint64_t time_ns = 0;  ///< stamp of the message's header
+  std::uint64_t index = 0;    ///< of the point in the message
+
+  bool operator==(const Pick&) const = default;
+};
+
+/// {"topic": "/points", "time_ns": "123", "index": 4}. Throws Error for anything else.
+Pick decode_pick(std::string_view text);
+
+/// {"text": "..."} or {"error": "..."}
+std::string answer_text(const char* member, const std::string& text);
 
 }  // namespace glidar::foxglove

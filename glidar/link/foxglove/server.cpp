@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/foxglove/server.hpp>
 
-#include <glidar/core/excerpt.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/link/foxglove/client_session.hpp>
 #include <glidar/link/foxglove/http_routes.hpp>
 #include <glidar/link/foxglove/hub.hpp>

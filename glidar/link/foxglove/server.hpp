@@ -5,7 +5,6 @@
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/error_log.hpp>
 #include <glidar/link/foxglove/messages.hpp>
-#include <glidar/link/foxglove/page_messages.hpp>
 #include <glidar/link/http_guard.hpp>
 #include <glidar/link/payload.hpp>
 

@@ -3,7 +3,7 @@
 #include <glidar/render/common/hit_rule.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/math/exact_product.hpp>
+#include <glidar/math/double_double.hpp>
 #include <glidar/render/common/hit_arithmetic.hpp>
 
 #include <limits>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/imu/bias_process.hpp>
 
+#include <glidar/math/distributions.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/gaussian.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -4,7 +4,7 @@
 
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 
 #include <algorithm>
 #include <cmath>

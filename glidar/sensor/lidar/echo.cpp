@@ -4,8 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/lidar/return_names.hpp>
 

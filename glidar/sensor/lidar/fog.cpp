@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/lidar/fog.hpp>
 
+#include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/light_speed.hpp>
 #include <glidar/sensor/lidar/weather_signal.hpp>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/math/portable.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/lidar/surface_reflectance.hpp>

@@ -3,8 +3,8 @@
 #include <glidar/sensor/noise/dropout.hpp>
 
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/noise/lateral_noise.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/frame.hpp>
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/sensor/noise/noise_workspace.hpp>
 #include <glidar/sensor/noise/sampler.hpp>
 

@@ -3,7 +3,7 @@
 #include <glidar/sensor/noise/range_noise.hpp>
 
 #include <glidar/core/field_visitor.hpp>
-#include <glidar/math/light_speed.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/math/gaussian.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/sensor/noise/noise_trace.hpp>
 
 #include <initializer_list>

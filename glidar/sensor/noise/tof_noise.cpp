@@ -3,8 +3,8 @@
 #include <glidar/sensor/noise/tof_noise.hpp>
 
 #include <glidar/core/field_visitor.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/math/light_speed.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/math/unambiguous_range.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>

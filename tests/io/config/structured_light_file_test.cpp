@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/config/structured_light_file.hpp>
+#include <glidar/io/config/depth_camera_files.hpp>
 
 #include <glidar/io/config/sensor_document.hpp>
 #include <glidar/io/config/sensor_file.hpp>

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/model/crease_normals.hpp>
+#include <glidar/io/model/vertex_attributes.hpp>
 
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/io/model/tangents.hpp>
-#include <glidar/io/model/vertex_weld.hpp>
 
 #include <gtest/gtest.h>
 

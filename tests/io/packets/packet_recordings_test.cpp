@@ -4,7 +4,7 @@
 #include "packet_fixture.hpp"
 
 #include <glidar/io/bags/sqlite_bag_reader.hpp>
-#include <glidar/io/files/input_budget.hpp>
+#include <glidar/io/files/input_file.hpp>
 #include <glidar/io/packets/hesai_packet.hpp>
 #include <glidar/io/packets/ouster_codec.hpp>
 #include <glidar/io/packets/pcap_file.hpp>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Boxes of meshes in images. Expected pixels are projected by hand.
-#include <glidar/io/pictures/image_box.hpp>
+#include <glidar/io/pictures/point_image.hpp>
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/tcp_service.hpp>
-#include <glidar/link/udp/udp_socket.hpp>
+#include <glidar/link/udp/packet_sender.hpp>
 
 #include "link/foxglove/web_peers.hpp"
 #include "support/waiting.hpp"

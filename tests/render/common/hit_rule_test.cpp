@@ -5,7 +5,7 @@
 #include <glidar/render/common/hit_rule.hpp>
 
 #include <glidar/math/constants.hpp>
-#include <glidar/math/exact_product.hpp>
+#include <glidar/math/double_double.hpp>
 #include <glidar/render/common/hit_arithmetic.hpp>
 #include <render/common/rays.hpp>
 #include <support/error_text.hpp>

@@ -6,8 +6,7 @@
 #include "free_domain.hpp"
 
 #include <glidar/link/dds/participant.hpp>
-#include <glidar/link/dds/topic_reader.hpp>
-#include <glidar/link/dds/topic_writer.hpp>
+#include <glidar/link/dds/topics.hpp>
 #include "support/waiting.hpp"
 
 #include <poll.h>

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/dds/pose_subscriber.hpp>
+#include <glidar/link/dds/subscribers.hpp>
 
 #include "participants.hpp"
-
-#include <glidar/link/dds/clock_subscriber.hpp>
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "participants.hpp"
 
-#include <glidar/link/dds/local_sockets.hpp>
+#include <glidar/link/dds/domain.hpp>
 #include <glidar/link/dds/message_sink.hpp>
 
 #include <io/ros/sample_messages.hpp>

@@ -6,8 +6,8 @@
 #include "program.hpp"
 
 #include <glidar/io/bags/bag.hpp>
-#include <glidar/link/dds/pose_subscriber.hpp>
-#include <glidar/link/dds/topic_writer.hpp>
+#include <glidar/link/dds/subscribers.hpp>
+#include <glidar/link/dds/topics.hpp>
 
 #include <io/ros/sample_messages.hpp>
 
