@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/panels.hpp>
 
-#include <apps/viewer/shown_numbers.hpp>
-#include <apps/viewer/viewer.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/io/config/sensor_options.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
@@ -12,13 +10,30 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <apps/viewer/viewer.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <string>
 #include <string_view>
 
 namespace glidar::app {
+
+double rounded(double value, int decimals) {
+  const double unit = power_of_ten(decimals);
+  const double scaled = value * unit;
+  constexpr double kAllWhole = 9007199254740992.0;  // 2^53: larger numbers have no fraction
+  if (!(std::abs(scaled) < kAllWhole)) return value;
+  return std::round(scaled) / unit + 0.0;  // -0 + 0 is +0
+}
+
+std::string without_negative_zeros(const std::string& text) {
+  // a minus that is not within a word, before zeros that are not part of a longer number or word
+  static const std::regex kSign(R"((^|\W)-(?=0[0.]*(?![\w.])))");
+  return std::regex_replace(text, kSign, "$1");
+}
+
 namespace {
 
 /// Replaces characters that the window's font lacks.

@@ -5,9 +5,9 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/link/connection_guard.hpp>
-#include <glidar/link/heap_trimmer.hpp>
 #include <glidar/link/listener.hpp>
 
+#include <malloc.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -32,6 +32,22 @@
 #include <vector>
 
 namespace glidar::link {
+namespace {
+
+/// Less than this is used again soon.
+constexpr std::size_t kWorthwhile_bytes = std::size_t{8} << 20U;
+
+}  // namespace
+
+void HeapTrimmer::check(Clock::time_point now) {
+  if (checks_left_ == 0 || now - last_ < kPause) return;
+  last_ = now;
+  --checks_left_;
+#ifdef __GLIBC__
+  if (::mallinfo2().fordblks >= kWorthwhile_bytes) ::malloc_trim(0);
+#endif
+}
+
 namespace {
 
 bool begins_any(const std::string& begin, std::span<const std::string> topics) {

@@ -8,7 +8,6 @@
 #include <glidar/math/double_double.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/motion/elliptic.hpp>
-#include <glidar/motion/integral_table.hpp>
 #include <glidar/motion/rate_keys.hpp>
 #include <glidar/motion/times.hpp>
 

@@ -3,15 +3,37 @@
 #pragma once
 
 #include <glidar/core/hits.hpp>
+#include <glidar/core/material.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/render/hit_block.hpp>
-#include <glidar/render/lookup_texture.hpp>
+#include <glidar/render/lanes.hpp>
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace glidar {
+
+/// The colours of a texture, stored for fast access: four bytes per texel, in tiles of 4x4
+/// texels, one per cache line. The four texels around a point, and those of neighbouring hits, are
+/// then mostly close together in memory.
+class LookupTexture {
+ public:
+  LookupTexture() = default;
+  explicit LookupTexture(const Texture& texture);
+
+  [[nodiscard]] bool is_empty() const { return texels_.empty(); }
+
+  /// The rgb at sixteen texture coordinates, bit-identical to sample().
+  void sample(const TextureUse& use, const Lanes<float>& u, const Lanes<float>& v,
+              Lanes3<float>& rgb) const;
+
+ private:
+  std::uint32_t width_ = 0;
+  std::uint32_t height_ = 0;
+  std::uint32_t tile_columns_ = 0;
+  std::vector<std::uint32_t> texels_;  ///< red in the lowest byte, then green and blue
+};
 
 /// The colours of equation (5) and the scale of random errors at hits: those of the material times
 /// those of textures and vertex colours.

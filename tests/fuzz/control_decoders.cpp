@@ -7,9 +7,9 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/packets/livox_codec.hpp>
 #include <glidar/io/packets/packet_bytes.hpp>
+#include <glidar/link/control/control_server.hpp>
 #include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/livox_commands.hpp>
-#include <glidar/link/control/ptc_commands.hpp>
 
 #include <array>
 #include <string_view>

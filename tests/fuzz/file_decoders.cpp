@@ -14,7 +14,7 @@
 #include <glidar/io/bags/bag_poses.hpp>
 #include <glidar/io/bags/bag_records.hpp>
 #include <glidar/io/config/imu_file.hpp>
-#include <glidar/io/config/ray_file.hpp>
+#include <glidar/io/config/optics_keys.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_calibration.hpp>
 #include <glidar/io/config/sensor_file.hpp>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/heap_trimmer.hpp>
+#include <glidar/link/socket.hpp>
 
 #include <gtest/gtest.h>
 

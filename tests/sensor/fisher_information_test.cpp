@@ -4,7 +4,6 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/random.hpp>
-#include <glidar/sensor/displacement_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

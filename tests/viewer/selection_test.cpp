@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/viewer/selection.hpp>
+#include <apps/viewer/viewer.hpp>
 
 #include <tests/viewer/viewer_fixture.hpp>
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/io: how the plan of a scene becomes a scene.
-
 #include <glidar/io/config/scene_plan.hpp>
 
 #include <functional>

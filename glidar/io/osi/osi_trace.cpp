@@ -5,21 +5,188 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/text.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/osi/object_types.hpp>
-#include <glidar/io/osi/osi_values.hpp>
+#include <glidar/math/elementary.hpp>
 #include <glidar/motion/kinematics.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <variant>
 
 namespace glidar::osi {
+namespace {
+
+constexpr std::uint64_t kPedestrianType = 3;
+constexpr std::uint64_t kAnimalType = 4;
+
+/// A value of an enumeration and the class that selects it.
+struct NamedType {
+  std::string_view class_name;
+  std::uint64_t value;
+};
+
+/// MovingObject::Type of what is no vehicle.
+constexpr std::array kMovingTypes = {
+    NamedType{"pedestrian", kPedestrianType},
+    NamedType{"person", kPedestrianType},
+    NamedType{"people", kPedestrianType},
+    NamedType{"human", kPedestrianType},
+    NamedType{"adult", kPedestrianType},
+    NamedType{"child", kPedestrianType},
+    NamedType{"animal", kAnimalType},
+    NamedType{"dog", kAnimalType},
+    NamedType{"cat", kAnimalType},
+    NamedType{"horse", kAnimalType},
+    NamedType{"cow", kAnimalType},
+    NamedType{"sheep", kAnimalType},
+    NamedType{"deer", kAnimalType},
+    NamedType{"bird", kAnimalType},
+};
+
+/// MovingObject::VehicleClassification::Type.
+constexpr std::array kVehicleTypes = {
+    NamedType{"vehicle", kOtherType},
+    NamedType{"car", 4},
+    NamedType{"small_car", 2},
+    NamedType{"compact_car", 3},
+    NamedType{"medium_car", 4},
+    NamedType{"luxury_car", 5},
+    NamedType{"van", 6},
+    NamedType{"delivery_van", 6},
+    NamedType{"truck", 7},
+    NamedType{"heavy_truck", 7},
+    NamedType{"lorry", 7},
+    NamedType{"semitrailer", 8},
+    NamedType{"trailer", 9},
+    NamedType{"motorcycle", 10},
+    NamedType{"motorbike", 10},
+    NamedType{"motorcyclist", 10},
+    NamedType{"bicycle", 11},
+    NamedType{"bike", 11},
+    NamedType{"cyclist", 11},
+    NamedType{"bicyclist", 11},
+    NamedType{"bus", 12},
+    NamedType{"tram", 13},
+    NamedType{"train", 14},
+    NamedType{"wheelchair", 15},
+    NamedType{"semitractor", 16},
+    NamedType{"standup_scooter", 17},
+    NamedType{"scooter", 17},
+    NamedType{"work_machine", 19},
+    NamedType{"tractor", 19},
+    NamedType{"excavator", 19},
+    NamedType{"watercraft", 20},
+    NamedType{"boat", 20},
+    NamedType{"ship", 20},
+    NamedType{"aircraft", 21},
+    NamedType{"airplane", 21},
+    NamedType{"helicopter", 21},
+};
+
+constexpr std::array kStationaryTypes = {
+    NamedType{"bridge", 2},  NamedType{"building", 3},    NamedType{"pole", 4},
+    NamedType{"pylon", 5},   NamedType{"delineator", 6},  NamedType{"tree", 7},
+    NamedType{"barrier", 8}, NamedType{"vegetation", 9},  NamedType{"curbstone", 10},
+    NamedType{"wall", 11},   NamedType{"speed_bump", 17},
+};
+
+std::string normalised(std::string_view class_name) {
+  std::string name = lower_case(class_name);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  return name;
+}
+
+/// The value of a name; 0 if it is not in the table.
+template <std::size_t Count>
+std::uint64_t value_in(const std::array<NamedType, Count>& types, std::string_view name) {
+  const auto found = std::find_if(types.begin(), types.end(), [name](const NamedType& type) {
+    return type.class_name == name;
+  });
+  return found != types.end() ? found->value : 0;
+}
+
+}  // namespace
+
+MovingType moving_type(std::string_view class_name) {
+  const std::string name = normalised(class_name);
+  if (const std::uint64_t vehicle = value_in(kVehicleTypes, name)) return {kVehicleType, vehicle};
+  const std::uint64_t type = value_in(kMovingTypes, name);
+  return {.type = type != 0 ? type : kOtherType};
+}
+
+std::uint64_t stationary_type(std::string_view class_name) {
+  const std::uint64_t type = value_in(kStationaryTypes, normalised(class_name));
+  return type != 0 ? type : kOtherType;
+}
+
+namespace {
+
+/// -pi to pi, the same bits on every machine.
+double angle_rad(double y, double x) {
+  const double turns = atan2_turns(y, x);
+  return 2.0 * std::numbers::pi * (turns > 0.5 ? turns - 1.0 : turns);
+}
+
+}  // namespace
+
+ProtobufMessage interface_version() {
+  constexpr std::uint64_t kMajor = 3;
+  constexpr std::uint64_t kMinor = 8;
+  constexpr std::uint64_t kPatch = 0;
+  return ProtobufMessage().integer(1, kMajor).integer(2, kMinor).integer(3, kPatch);
+}
+
+ProtobufMessage timestamp(std::int64_t t_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const std::int64_t rest_ns = t_ns % kSecond_ns;
+  const std::int64_t nanos = rest_ns < 0 ? rest_ns + kSecond_ns : rest_ns;
+  const std::int64_t seconds = t_ns / kSecond_ns - (rest_ns < 0 ? 1 : 0);
+  return ProtobufMessage().integer(1, seconds).integer(2, nanos);
+}
+
+ProtobufMessage identifier(std::uint64_t value) {
+  return ProtobufMessage().integer(1, value);
+}
+
+ProtobufMessage vector3(const Eigen::Vector3d& value) {
+  return ProtobufMessage().real(1, value.x()).real(2, value.y()).real(3, value.z());
+}
+
+ProtobufMessage orientation(const Eigen::Matrix3d& rotation) {
+  const double cos_pitch =
+      std::sqrt(rotation(0, 0) * rotation(0, 0) + rotation(1, 0) * rotation(1, 0));
+  const double pitch = angle_rad(-rotation(2, 0), cos_pitch);
+  // looking straight up or down, only yaw - roll or yaw + roll is defined: roll is 0 then
+  constexpr double kLocked = 1e-12;
+  const bool is_locked = cos_pitch < kLocked;
+  const double roll = is_locked ? 0.0 : angle_rad(rotation(2, 1), rotation(2, 2));
+  const double yaw = is_locked ? angle_rad(-rotation(0, 1), rotation(1, 1))
+                               : angle_rad(rotation(1, 0), rotation(0, 0));
+  return ProtobufMessage().real(1, roll).real(2, pitch).real(3, yaw);
+}
+
+ProtobufMessage mounting_position(const Pose& vehicle_from_sensor) {
+  return ProtobufMessage()
+      .message(1, vector3(vehicle_from_sensor.translation()))
+      .message(2, orientation(vehicle_from_sensor.linear()));
+}
+
+ProtobufMessage spherical(const Eigen::Vector3d& point_m) {
+  const double level_m = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
+  return ProtobufMessage()
+      .real(1, std::sqrt(level_m * level_m + point_m.z() * point_m.z()))
+      .real(2, angle_rad(point_m.y(), point_m.x()))
+      .real(3, angle_rad(point_m.z(), level_m));
+}
+
 namespace {
 
 /// The id of the rig as the host vehicle; ids of instances have 32 bits.

@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/point_cloud.hpp>
+#include <glidar/core/pose.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/osi/protobuf_message.hpp>
@@ -16,9 +17,45 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glidar::osi {
+
+inline constexpr std::uint64_t kOtherType = 1;    ///< of all enumerations of types
+inline constexpr std::uint64_t kVehicleType = 2;  ///< of MovingObject::Type
+
+/// The types of a moving object.
+struct MovingType {
+  std::uint64_t type = kOtherType;          ///< MovingObject::Type
+  std::uint64_t vehicle_type = kOtherType;  ///< MovingObject::VehicleClassification::Type
+};
+
+/// The types of a class, by its name in any case, with spaces, '-' or '_' between words; other
+/// names have the type "other".
+MovingType moving_type(std::string_view class_name);
+
+/// StationaryObject::Classification::Type of a class, by the same rules for names.
+std::uint64_t stationary_type(std::string_view class_name);
+
+}  // namespace glidar::osi
+
+// Messages of osi_common.proto and osi_version.proto.
+namespace glidar::osi {
+
+/// The identifier that refers to no object.
+inline constexpr std::uint64_t kNoObject = ~std::uint64_t{0};
+
+/// InterfaceVersion: the version of OSI whose messages are written.
+ProtobufMessage interface_version();
+ProtobufMessage timestamp(std::int64_t t_ns);
+ProtobufMessage identifier(std::uint64_t value);
+ProtobufMessage vector3(const Eigen::Vector3d& value);
+/// Orientation3d: the angles of R = Rz(yaw) Ry(pitch) Rx(roll), rad.
+ProtobufMessage orientation(const Eigen::Matrix3d& rotation);
+ProtobufMessage mounting_position(const Pose& vehicle_from_sensor);
+/// Spherical3d of a point: its distance, azimuth to the left and elevation.
+ProtobufMessage spherical(const Eigen::Vector3d& point_m);
 
 /// A sensor whose frames are written.
 struct OsiSensor {

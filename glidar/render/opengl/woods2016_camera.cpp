@@ -4,7 +4,6 @@
 #include <glidar/render/opengl/draw_state.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/woods2016_drawing.hpp>
-#include <glidar/render/opengl/woods2016_target.hpp>
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/visible_depths.hpp>

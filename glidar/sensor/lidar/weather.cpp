@@ -5,7 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/sensor/lidar/drop_size_distribution.hpp>
+#include <glidar/sensor/lidar/precipitation.hpp>
 
 namespace glidar {
 namespace {

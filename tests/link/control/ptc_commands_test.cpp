@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/control/ptc_commands.hpp>
+#include <glidar/link/control/control_server.hpp>
 
 #include "control_fixture.hpp"
 

@@ -3,7 +3,7 @@
 #include <glidar/sensor/lidar/weather.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/sensor/lidar/drop_size_distribution.hpp>
+#include <glidar/sensor/lidar/precipitation.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <gtest/gtest.h>
