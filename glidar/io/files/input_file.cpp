@@ -132,8 +132,6 @@ std::string read_input_file(const fs::path& path, const InputFileKind& kind) {
   return content;
 }
 
-namespace fs = std::filesystem;
-
 std::string shown(std::string_view word) {
   constexpr std::size_t kShown = 63;
   return excerpt(word, kShown);

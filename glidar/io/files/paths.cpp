@@ -17,8 +17,6 @@ namespace glidar {
 
 namespace fs = std::filesystem;
 
-namespace fs = std::filesystem;
-
 std::vector<fs::path> own_folders() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -31,8 +29,6 @@ std::vector<fs::path> own_folders() {
   }
   return {program.parent_path().parent_path()};
 }
-
-namespace fs = std::filesystem;
 
 fs::path data_folder(const std::string& name, const char* variable) {
   std::error_code error;
