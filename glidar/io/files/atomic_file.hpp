@@ -129,7 +129,7 @@ class StagedFiles {
   StagedFiles& operator=(const StagedFiles&) = delete;
   ~StagedFiles() { clear(); }
 
-  /// Files that must not be overwritten; they must outlive this object.
+  /// Files that must not be overwritten.
   void protect(std::span<const std::string> read) { protected_.assign(read.begin(), read.end()); }
   /// Commits without a lock: the caller holds one that excludes other programs.
   void set_locked() { is_locked_ = true; }
