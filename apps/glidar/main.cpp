@@ -33,10 +33,11 @@ namespace {
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
+/// The subcommand of the command line, or its tool.
 const CLI::App& chosen(const CLI::App& program) {
   const std::vector<const CLI::App*> subcommands =
       program.get_subcommands([](const CLI::App* command) { return command->parsed(); });
-  return subcommands.empty() ? program : *subcommands.front();
+  return subcommands.empty() ? program : chosen(*subcommands.front());
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {
@@ -48,7 +49,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
 }
 
 /// The error for a word that is neither an option nor a subcommand, with a suggestion.
-std::string explain_extra(const CLI::App& program, const Commands& commands, std::string word) {
+std::string explain_extra(const CLI::App& program, std::string word) {
   const CLI::App& command = chosen(program);
   word = word.substr(0, word.find('='));
   if (word.starts_with('-')) {
@@ -56,15 +57,23 @@ std::string explain_extra(const CLI::App& program, const Commands& commands, std
     return nearest.empty() ? fmt::format("unknown option {}; see --help", word)
                            : fmt::format("unknown option {}; did you mean {}?", word, nearest);
   }
-  if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
-  std::vector<std::string> names = {"--help", "--version"};
-  for (const auto& [name, run] : commands) names.push_back(name);
+  std::vector<std::string> names = subcommand_names(command);
+  if (names.empty()) return fmt::format("unexpected word '{}'; see --help", word);
+  for (const std::string& name : names) {
+    const std::vector<std::string> tools = subcommand_names(*command.get_subcommand(name));
+    if (std::ranges::find(tools, word) == tools.end()) continue;
+    return fmt::format("'{1}' is a tool of '{0}': glidar {0} {1}", name, word);
+  }
+  if (&command == &program) names.insert(names.end(), {"--help", "--version"});
   const std::string nearest = closest_match(word, names);
-  return nearest.empty()
-             ? fmt::format(
-                   "'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",
-                   word)
-             : fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
+  if (!nearest.empty()) {
+    return fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
+  }
+  if (&command != &program) {
+    return fmt::format("'{}' is no tool; allowed: {}", word, fmt::join(names, ", "));
+  }
+  return fmt::format("'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",
+                     word);
 }
 
 /// The options that a message of CLI11 names, in their order there. Its other words depend on its
@@ -152,12 +161,11 @@ int parse_and_run(CLI::App& program, const Commands& commands,
     return report_error(std::string(error.what()) + "; see --help for what it takes");
   } catch (const CLI::ParseError& error) {
     const std::string extra = first_extra(program);
-    if (!extra.empty()) return report_error(explain_extra(program, commands, extra));
+    if (!extra.empty()) return report_error(explain_extra(program, extra));
     const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-    return report_error(fmt::format(
-        "{}; see {}--help", is_missing ? explain_missing(chosen(program)) : error.what(),
-        &chosen(program) == &program ? "glidar "
-                                     : fmt::format("glidar {} ", chosen(program).get_name())));
+    return report_error(fmt::format("{}; see {} --help",
+                                    is_missing ? explain_missing(chosen(program)) : error.what(),
+                                    full_name(chosen(program))));
   }
   for (const auto& [name, run] : commands) {
     if (program.got_subcommand(name)) return run();
@@ -200,11 +208,7 @@ std::vector<Subcommand> all_subcommands() {
           subcommand("campaign", add_campaign),
           subcommand("sensors", add_sensors),
           subcommand("schema", add_schema),
-          subcommand("filter", add_filter),
-          subcommand("align", add_align),
-          subcommand("stereo", add_stereo),
-          subcommand("structured-light", add_structured_light),
-          subcommand("tof", add_tof),
+          subcommand("depth", add_depth),
           subcommand("verify", add_verify),
           subcommand("completion", add_completion)};
 }
@@ -240,8 +244,10 @@ void append_option(const std::string& word, std::vector<std::string>& words) {
 std::vector<std::string> tidied(std::vector<std::string> given, std::string& section) {
   const bool asks_help = !given.empty() && given.front() == "help";
   if (asks_help) given.erase(given.begin());
-  if (asks_help && (given.empty() || is_subcommand(given.front())))
-    given.insert(given.begin() + (given.empty() ? 0 : 1), "--help");
+  if (asks_help && (given.empty() || is_subcommand(given.front()))) {
+    const bool has_tool = given.size() > 1 && given.front() == "depth" && given[1][0] != '-';
+    given.insert(given.begin() + (given.empty() ? 0 : has_tool ? 2 : 1), "--help");
+  }
   const std::string command = given.empty() ? "" : given.front();
   if (command == "campaign") return given;  // it has its own command line
   const bool has_height = command == "render" || command == "view" || command == "stream";
@@ -273,7 +279,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar sensors
   glidar verify
 More: glidar help render; also for view, stream, replay, decode, explain, info, campaign,
-sensors, schema, filter, align, stereo, structured-light, tof, verify and completion)";
+sensors, schema, depth, verify and completion)";
 
 /// Parses the command line and runs the chosen subcommand; returns the exit code.
 int run_program(int argc, char** argv) {

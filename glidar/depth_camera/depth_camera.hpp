@@ -23,7 +23,7 @@ class FieldVisitor;
 /// sensor's optics are the left camera; the right one has the same, displaced along +x.
 struct ActiveStereo {
   static constexpr TypeInfo kType = {"active_stereo",
-                                     "infrared images of a dot pattern, matched by glidar stereo"};
+                                     "infrared images of a dot pattern, matched by glidar depth stereo"};
 
   /// What the left image is matched with.
   enum class Reference : std::uint8_t {

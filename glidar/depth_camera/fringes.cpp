@@ -29,7 +29,6 @@ constexpr NumberRule kPeriodRule = {2.0, 16384.0, false, "pixels from 2 to 16384
 constexpr NumberRule kGammaRule = {0.1, 10.0, false, "a number from 0.1 to 10"};
 constexpr std::array<Named<FringeAxis>, 2> kAxisNames = {
     {{"columns", FringeAxis::columns}, {"rows", FringeAxis::rows}}};
-constexpr double kMaxGrey = 255.0;
 
 bool within(const WholeRule& rule, std::uint32_t value) {
   return value >= rule.min && value <= rule.max;
@@ -159,7 +158,7 @@ std::vector<std::uint16_t> pattern_line(const FringePatterns& patterns, std::siz
   line.reserve(encoded_size(patterns));
   for (std::uint32_t i = 0; i < encoded_size(patterns); ++i) {
     const double level = encoded_level(fringe_light(patterns, image, i), patterns.gamma);
-    line.push_back(static_cast<std::uint16_t>(std::floor(level * kMaxGrey + 0.5)));
+    line.push_back(static_cast<std::uint16_t>(std::floor(level * kMaxPatternLevel + 0.5)));
   }
   return line;
 }
@@ -185,77 +184,8 @@ GreyImage make_pattern(const FringePatterns& patterns, std::size_t image) {
 
 namespace {
 
-constexpr WholeRule kLevelRule = {0, 65535};
-constexpr std::size_t kGrain = 4096;
-
-void decode_pixel(const structured_light::Decoder& decoder, std::size_t pixel,
-                  DecodedFringes& decoded) {
-  const structured_light::FringeEvidence found = gather_evidence(decoder, pixel);
-  if (decoder.patterns.steps > 0) {
-    decoded.phase_rad[pixel] = static_cast<float>(kTwoPi * found.turns);
-  }
-  decoded.modulation[pixel] = static_cast<float>(found.modulation);
-  decoded.mean_level[pixel] = static_cast<float>(found.mean_level);
-  decoded.status[pixel] = status_of(decoder, found);
-  if (decoded.status[pixel] == FringeStatus::valid) {
-    decoded.coordinate_px[pixel] = static_cast<float>(found.place_px);
-  }
-}
-
-}  // namespace
-
-const char* to_string(FringeStatus status) {
-  static constexpr const char* kNames[kFringeStatusCount] = {
-      "valid", "saturated", "low_modulation", "weak_code", "inconsistent", "outside"};
-  return kNames[static_cast<std::size_t>(status)];
-}
-
-void describe(FringeDecoding& decoding, FieldVisitor& visitor) {
-  visitor.number({"min_modulation", "least amplitude of the fringes, grey levels"}, kFromZero,
-                 decoding.min_modulation);
-  visitor.number(
-      {"min_code_difference",
-       "least difference between an image of the Gray code and its inverse, grey levels; "
-       "half of it to the mean, without inverses"},
-      kFromZero, decoding.min_code_difference);
-  visitor.number({"max_code_error",
-                  "greatest difference between phase and Gray code, periods; 0.25 without noise"},
-                 structured_light::kMaxCodeErrorRule, decoding.max_code_error);
-  visitor.whole_number(
-      {"saturation_level", "grey level of saturated pixels; 0: the greatest of the pixel type"},
-      kLevelRule, decoding.saturation_level);
-}
-
-DecodedFringes decode_fringes(std::span<const GreyImage> images, const FringePatterns& patterns,
-                              const FringeDecoding& decoding, ThreadPool* pool) {
-  const structured_light::Decoder decoder =
-      structured_light::make_decoder(images, patterns, decoding);
-  const GreyImage& first = images.front();
-  const std::size_t pixels = first.level.size();
-  DecodedFringes decoded = {first.width,
-                            first.height,
-                            std::vector<float>(pixels, kNaNf),
-                            std::vector<float>(pixels, kNaNf),
-                            std::vector<float>(pixels),
-                            std::vector<float>(pixels),
-                            std::vector<FringeStatus>(pixels)};
-  const auto decode_range = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) decode_pixel(decoder, i, decoded);
-  };
-  if (pool == nullptr) {
-    decode_range(0, pixels);
-  } else {
-    pool->parallel_for(pixels, kGrain, decode_range);
-  }
-  return decoded;
-}
-
-}  // namespace glidar
-
-namespace glidar::structured_light {
-
 /// Allowed values of FringeDecoding::max_code_error.
-inline constexpr NumberRule kMaxCodeErrorRule = {0.25, 0.5, false, "periods from 0.25 to 0.5"};
+constexpr NumberRule kMaxCodeErrorRule = {0.25, 0.5, false, "periods from 0.25 to 0.5"};
 
 /// What is the same for all pixels.
 struct Decoder {
@@ -266,10 +196,6 @@ struct Decoder {
   std::uint32_t bits = 0;
   std::uint32_t saturation_level = 0;
 };
-
-/// Throws Error as decode_fringes(). Refers to its arguments.
-Decoder make_decoder(std::span<const GreyImage> images, const FringePatterns& patterns,
-                     const FringeDecoding& decoding);
 
 /// A stripe by its Gray code.
 struct Stripe {
@@ -290,23 +216,6 @@ struct FringeEvidence {
   double code_error = 0.0;  ///< between phase and code, periods
   double place_px = 0.0;    ///< coordinate, also of pixels that fail a test
 };
-FringeEvidence gather_evidence(const Decoder& decoder, std::size_t pixel);
-
-// The tests, in their order.
-bool is_unsaturated(const Decoder& decoder, const FringeEvidence& pixel);
-bool has_modulation(const Decoder& decoder, const FringeEvidence& pixel);
-/// Between two stripes, one bit is not certain. Either of them leads to the same period.
-bool is_code_certain(const Decoder& decoder, const FringeEvidence& pixel);
-bool is_consistent(const Decoder& decoder, const FringeEvidence& pixel);
-bool is_inside(const Decoder& decoder, const FringeEvidence& pixel);
-
-/// The first test that fails.
-FringeStatus status_of(const Decoder& decoder, const FringeEvidence& pixel);
-
-/// Least difference that makes a bit certain, levels.
-double min_code_difference(const Decoder& decoder);
-
-namespace {
 
 double level(const Decoder& decoder, std::size_t image, std::size_t pixel) {
   return decoder.images[image].level[pixel];
@@ -316,7 +225,7 @@ bool has_fringes(const Decoder& decoder) {
   return !decoder.steps.empty();
 }
 
-void measure_fringes(const Decoder& decoder, std::size_t pixel, FringeEvidence& evidence) {
+void measure_phase(const Decoder& decoder, std::size_t pixel, FringeEvidence& evidence) {
   const auto count = static_cast<double>(decoder.steps.size());
   double sine = 0.0;
   double cosine = 0.0;
@@ -337,6 +246,11 @@ double mean_of_code(const Decoder& decoder, std::size_t pixel) {
   for (std::size_t i = first; i < decoder.images.size(); ++i) sum += level(decoder, i, pixel);
   const std::size_t count = decoder.images.size() - first;
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+/// Least difference that makes a bit certain, levels.
+double min_code_difference(const Decoder& decoder) {
+  return decoder.decoding.min_code_difference * (decoder.patterns.has_inverses ? 1.0 : 0.5);
 }
 
 Stripe read_stripe(const Decoder& decoder, std::size_t pixel, double mean) {
@@ -394,8 +308,7 @@ void validate_decoding(const FringeDecoding& decoding) {
                  kMaxCodeErrorRule.allowed);
 }
 
-}  // namespace
-
+/// Throws Error as decode_fringes(). Refers to its arguments.
 Decoder make_decoder(std::span<const GreyImage> images, const FringePatterns& patterns,
                      const FringeDecoding& decoding) {
   validate(patterns);
@@ -420,7 +333,7 @@ FringeEvidence gather_evidence(const Decoder& decoder, std::size_t pixel) {
     evidence.max_level = std::max(evidence.max_level, level(decoder, i, pixel));
   }
   if (has_fringes(decoder)) {
-    measure_fringes(decoder, pixel, evidence);
+    measure_phase(decoder, pixel, evidence);
   } else {
     evidence.mean_level = mean_of_code(decoder, pixel);
   }
@@ -443,6 +356,7 @@ bool has_modulation(const Decoder& decoder, const FringeEvidence& pixel) {
   return !has_fringes(decoder) || pixel.modulation >= decoder.decoding.min_modulation;
 }
 
+/// Between two stripes, one bit is not certain. Either of them leads to the same period.
 bool is_code_certain(const Decoder& decoder, const FringeEvidence& pixel) {
   const Stripe& stripe = pixel.stripe;
   if (stripe.weak_bits == 0) return true;
@@ -458,6 +372,7 @@ bool is_inside(const Decoder& decoder, const FringeEvidence& pixel) {
   return pixel.place_px >= -0.5 && pixel.place_px <= encoded_size(decoder.patterns) - 0.5;
 }
 
+/// The first test that fails.
 FringeStatus status_of(const Decoder& decoder, const FringeEvidence& pixel) {
   if (!is_unsaturated(decoder, pixel)) return FringeStatus::saturated;
   if (!has_modulation(decoder, pixel)) return FringeStatus::low_modulation;
@@ -466,17 +381,70 @@ FringeStatus status_of(const Decoder& decoder, const FringeEvidence& pixel) {
   return is_inside(decoder, pixel) ? FringeStatus::valid : FringeStatus::outside;
 }
 
-double min_code_difference(const Decoder& decoder) {
-  return decoder.decoding.min_code_difference * (decoder.patterns.has_inverses ? 1.0 : 0.5);
+constexpr WholeRule kLevelRule = {0, 65535};
+constexpr std::size_t kGrain = 4096;
+
+void decode_pixel(const Decoder& decoder, std::size_t pixel, DecodedFringes& decoded) {
+  const FringeEvidence found = gather_evidence(decoder, pixel);
+  if (decoder.patterns.steps > 0) {
+    decoded.phase_rad[pixel] = static_cast<float>(kTwoPi * found.turns);
+  }
+  decoded.modulation[pixel] = static_cast<float>(found.modulation);
+  decoded.mean_level[pixel] = static_cast<float>(found.mean_level);
+  decoded.status[pixel] = status_of(decoder, found);
+  if (decoded.status[pixel] == FringeStatus::valid) {
+    decoded.coordinate_px[pixel] = static_cast<float>(found.place_px);
+  }
 }
 
-}  // namespace glidar::structured_light
+}  // namespace
 
-namespace glidar {
+const char* to_string(FringeStatus status) {
+  static constexpr const char* kNames[kFringeStatusCount] = {
+      "valid", "saturated", "low_modulation", "weak_code", "inconsistent", "outside"};
+  return kNames[static_cast<std::size_t>(status)];
+}
+
+void describe(FringeDecoding& decoding, FieldVisitor& visitor) {
+  visitor.number({"min_modulation", "least amplitude of the fringes, grey levels"}, kFromZero,
+                 decoding.min_modulation);
+  visitor.number(
+      {"min_code_difference",
+       "least difference between an image of the Gray code and its inverse, grey levels; "
+       "half of it to the mean, without inverses"},
+      kFromZero, decoding.min_code_difference);
+  visitor.number({"max_code_error",
+                  "greatest difference between phase and Gray code, periods; 0.25 without noise"},
+                 kMaxCodeErrorRule, decoding.max_code_error);
+  visitor.whole_number(
+      {"saturation_level", "grey level of saturated pixels; 0: the greatest of the pixel type"},
+      kLevelRule, decoding.saturation_level);
+}
+
+DecodedFringes decode_fringes(std::span<const GreyImage> images, const FringePatterns& patterns,
+                              const FringeDecoding& decoding, ThreadPool* pool) {
+  const Decoder decoder = make_decoder(images, patterns, decoding);
+  const GreyImage& first = images.front();
+  const std::size_t pixels = first.level.size();
+  DecodedFringes decoded = {first.width,
+                            first.height,
+                            std::vector<float>(pixels, kNaNf),
+                            std::vector<float>(pixels, kNaNf),
+                            std::vector<float>(pixels),
+                            std::vector<float>(pixels),
+                            std::vector<FringeStatus>(pixels)};
+  const auto decode_range = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) decode_pixel(decoder, i, decoded);
+  };
+  if (pool == nullptr) {
+    decode_range(0, pixels);
+  } else {
+    pool->parallel_for(pixels, kGrain, decode_range);
+  }
+  return decoded;
+}
+
 namespace {
-
-using structured_light::Decoder;
-using structured_light::FringeEvidence;
 
 std::string certainty_text(const Decoder& decoder, const FringeEvidence& pixel) {
   return "least difference of a bit " + decimal_text(pixel.stripe.min_difference) +
@@ -526,7 +494,7 @@ std::string level_line(const FringeTrace& trace, const char* name, std::size_t b
 FringeTrace explain_fringes(std::span<const GreyImage> images, const FringePatterns& patterns,
                             const FringeDecoding& decoding,
                             std::array<std::uint32_t, 2> column_row) {
-  const Decoder decoder = structured_light::make_decoder(images, patterns, decoding);
+  const Decoder decoder = make_decoder(images, patterns, decoding);
   require_pixel(images.front(), column_row);
   const auto [column, row] = column_row;
   const std::size_t index = std::size_t{row} * images.front().width + column;

@@ -20,6 +20,9 @@ class FieldVisitor;
 /// Which coordinate of the projector the patterns encode: fringes are columns or rows.
 enum class FringeAxis : std::uint8_t { columns, rows };
 
+/// Greatest level of the images: they have 8 bits.
+inline constexpr double kMaxPatternLevel = 255.0;
+
 /// A sequence of images that a projector shows one after the other: phase-shifted fringes, then a
 /// Gray code whose stripes are half a fringe wide, the coarsest first, each followed by its
 /// inverse.

@@ -27,7 +27,7 @@ constexpr WholeRule kPathRule = {4, 8};
 constexpr WholeRule kUniquenessRule = {0, 99};
 constexpr WholeRule kToleranceRule = {0, 4096};
 constexpr WholeRule kGreyRule = {0, 65535};
-constexpr WholeRule kStepRule = {0, 4096};
+constexpr WholeRule kDisparityStepRule = {0, 4096};
 constexpr NumberRule kPenaltyRule = {0.0, 1000.0, false, "a number from 0 to 1000"};
 constexpr NumberRule kFactorRule = {-0.15, 0.15, false, "a number from -0.15 to 0.15"};
 constexpr NumberRule kTextureRule = {0.0, 65535.0, false, "a number from 0 to 65535"};
@@ -43,18 +43,18 @@ constexpr std::array<Named<StereoSubpixel>, 3> kSubpixelNames = {
      {"parabola", StereoSubpixel::parabola},
      {"none", StereoSubpixel::none}}};
 
-constexpr const char* kPlace = "stereo option ";
+constexpr const char* kOptionPlace = "stereo option ";
 
 void require_whole(const char* key, const WholeRule& rule, std::uint32_t value) {
   if (value >= rule.min && value <= rule.max) return;
   throw Error(
-      {kPlace + std::string(key), "is " + std::to_string(value),
+      {kOptionPlace + std::string(key), "is " + std::to_string(value),
        "a whole number from " + std::to_string(rule.min) + " to " + std::to_string(rule.max), ""});
 }
 
 void require_number_within(const char* key, const NumberRule& rule, double value) {
   if (accepts(rule, value)) return;
-  throw Error({kPlace + std::string(key), "is " + number_text(value), rule.allowed, ""});
+  throw Error({kOptionPlace + std::string(key), "is " + number_text(value), rule.allowed, ""});
 }
 
 std::int32_t box_area(const StereoOptions& options) {
@@ -63,22 +63,22 @@ std::int32_t box_area(const StereoOptions& options) {
 
 void validate_combinations(const StereoOptions& options) {
   if (options.box_px % 2 == 0) {
-    throw Error({kPlace + std::string("box_px"), "is even: " + std::to_string(options.box_px),
+    throw Error({kOptionPlace + std::string("box_px"), "is even: " + std::to_string(options.box_px),
                  "1, 3, 5, 7 or 9", "use a box with a centre"});
   }
   if (options.paths != 4 && options.paths != 8) {
     throw Error(
-        {kPlace + std::string("paths"), "is " + std::to_string(options.paths), "4 or 8", ""});
+        {kOptionPlace + std::string("paths"), "is " + std::to_string(options.paths), "4 or 8", ""});
   }
   if (options.p2 < options.p1) {
-    throw Error({kPlace + std::string("p2"), "is below p1: " + number_text(options.p2),
+    throw Error({kOptionPlace + std::string("p2"), "is below p1: " + number_text(options.p2),
                  "at least p1, " + number_text(options.p1), ""});
   }
   const std::int32_t greatest =
       static_cast<std::int32_t>(census_bits(options.census)) * box_area(options) +
       penalty_p2(options);
   if (greatest > kMaxPathCost) {
-    throw Error({kPlace + std::string("p2"),
+    throw Error({kOptionPlace + std::string("p2"),
                  "census bits x box pixels + P2 is " + std::to_string(greatest),
                  "at most " + std::to_string(kMaxPathCost), "use a lower p2 or a smaller box"});
   }
@@ -118,7 +118,7 @@ void describe(StereoOptions& options, FieldVisitor& visitor) {
       {"saturation_level", "grey level of saturated pixels; 0: the greatest of the pixel type"},
       kGreyRule, options.saturation_level);
   visitor.whole_number({"steps_per_px", "disparities are multiples of 1/this; 0: not rounded"},
-                       kStepRule, options.steps_per_px);
+                       kDisparityStepRule, options.steps_per_px);
 }
 
 std::uint32_t census_bits(StereoCensus census) {
@@ -149,7 +149,7 @@ void validate(const StereoOptions& options) {
   require_whole("uniqueness_percent", kUniquenessRule, options.uniqueness_percent);
   require_whole("left_right_px", kToleranceRule, options.left_right_px);
   require_whole("saturation_level", kGreyRule, options.saturation_level);
-  require_whole("steps_per_px", kStepRule, options.steps_per_px);
+  require_whole("steps_per_px", kDisparityStepRule, options.steps_per_px);
   require_number_within("p1", kPenaltyRule, options.p1);
   require_number_within("p2", kPenaltyRule, options.p2);
   require_number_within("a_factor", kFactorRule, options.a_factor);
@@ -405,8 +405,8 @@ std::string format_stereo_trace(const StereoTrace& trace) {
 
 namespace {
 
-constexpr std::uint32_t kWidth = 320;
-constexpr std::uint32_t kHeight = 200;
+constexpr std::uint32_t kPairWidth = 320;
+constexpr std::uint32_t kPairHeight = 200;
 constexpr std::int64_t kDiscColumn = 190;  // in the left image
 constexpr std::int64_t kDiscRow = 90;
 constexpr std::int64_t kDiscRadius = 50;
@@ -444,12 +444,12 @@ std::uint16_t level_at(std::int64_t column, std::uint32_t row, std::int64_t disp
 StereoPair sample_stereo_pair() {
   StereoPair pair;
   for (GreyImage* image : {&pair.left, &pair.right}) {
-    image->width = kWidth;
-    image->height = kHeight;
-    image->level.reserve(std::size_t{kWidth} * kHeight);
+    image->width = kPairWidth;
+    image->height = kPairHeight;
+    image->level.reserve(std::size_t{kPairWidth} * kPairHeight);
   }
-  for (std::uint32_t row = 0; row < kHeight; ++row) {
-    for (std::int64_t column = 0; column < kWidth; ++column) {
+  for (std::uint32_t row = 0; row < kPairHeight; ++row) {
+    for (std::int64_t column = 0; column < kPairWidth; ++column) {
       pair.left.level.push_back(level_at(column, row, 0));
       pair.right.level.push_back(
           level_at(column + kSampleFar_px, row, std::int64_t{kSampleNear_px} - kSampleFar_px));

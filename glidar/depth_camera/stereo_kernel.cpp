@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/stereo_kernel.hpp>
 
-// Vectors of 16-bit and 8-bit integers of the instruction set that kernel.cpp is compiled for, in
-// namespace glidar::stereo::GLIDAR_KERNEL.
-#ifndef GLIDAR_KERNEL
-#define GLIDAR_KERNEL baseline
-#endif
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,9 +9,18 @@
 #include <immintrin.h>
 #endif
 
+// This file is compiled once for each instruction set.
+#ifndef GLIDAR_KERNEL
+#define GLIDAR_KERNEL baseline
+#endif
+#define GLIDAR_STEREO_STRING_OF(word) #word
+#define GLIDAR_STEREO_STRING(word) GLIDAR_STEREO_STRING_OF(word)
+#define GLIDAR_INLINE [[gnu::always_inline]] inline
+
 namespace glidar::stereo::GLIDAR_KERNEL {
 namespace {
 
+// Vectors of 16-bit and 8-bit integers.
 #if defined(__AVX512BW__)
 constexpr std::size_t kVectorBytes = 64;
 #elif defined(__AVX2__)
@@ -29,8 +33,6 @@ constexpr std::size_t kWords = kVectorBytes / sizeof(std::int16_t);
 using Words = std::int16_t __attribute__((vector_size(kVectorBytes)));
 using Bytes = std::uint8_t __attribute__((vector_size(kVectorBytes)));
 using HalfBytes = std::uint8_t __attribute__((vector_size(kVectorBytes / 2)));
-
-#define GLIDAR_INLINE [[gnu::always_inline]] inline
 
 /// A vector from any address: one instruction, without the alignment that a reference requires.
 template <class Vector>
@@ -172,15 +174,6 @@ GLIDAR_INLINE Bytes bit_counts(Bytes value) {
   return (value + (shifted(value, 4) & broadcast_byte(0x0F))) & broadcast_byte(0x0F);
 #endif
 }
-
-}  // namespace
-}  // namespace glidar::stereo::GLIDAR_KERNEL
-
-#define GLIDAR_STEREO_STRING_OF(word) #word
-#define GLIDAR_STEREO_STRING(word) GLIDAR_STEREO_STRING_OF(word)
-
-namespace glidar::stereo::GLIDAR_KERNEL {
-namespace {
 
 // Inner loops that select the winner of each pixel.
 constexpr int kGreatestSum = 32767;

@@ -92,8 +92,8 @@ struct WinnerRow {
   std::int16_t* mirror_winner = nullptr;  ///< width + lanes: lane of right pixel width - 1 - i
 };
 
-/// The inner loops, compiled for one instruction set. kernel.cpp is compiled once for each, with
-/// GLIDAR_KERNEL as its name.
+/// The inner loops, compiled for one instruction set. stereo_kernel.cpp is compiled once for each,
+/// with GLIDAR_KERNEL as its name.
 struct Kernel {
   const char* name;  ///< "baseline", "avx2", "avx512"
   void (*census)(const CensusRow& row);

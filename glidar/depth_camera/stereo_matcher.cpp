@@ -23,7 +23,7 @@
 
 namespace glidar::stereo {
 
-// Of kernel.cpp, which is compiled for each instruction set.
+// Of stereo_kernel.cpp, which is compiled for each instruction set.
 namespace baseline {
 extern const Kernel kKernel;
 }

@@ -65,8 +65,6 @@ void validate_baseline(const std::string& where, const Pose& projector_from_came
 
 namespace {
 
-constexpr double kMaxGrey = 255.0;
-
 /// Solid angle of the rectangle from the axis to (x, y) on the plane z = 1, with their signs.
 double solid_angle_sr(double x, double y) {
   const double turns = atan2_turns(x * y, std::sqrt(1.0 + x * x + y * y));
@@ -123,7 +121,7 @@ std::vector<float> projected_line(const FringePatterns& patterns, const Projecto
                                   std::size_t image) {
   std::vector<double> line;
   for (const std::uint16_t level : pattern_line(patterns, image)) {
-    const double share = level / kMaxGrey;
+    const double share = level / kMaxPatternLevel;
     line.push_back(light.gamma == 1.0 ? share : portable_pow(share, light.gamma));
   }
   return blurred(line, light.blur_px);

@@ -22,7 +22,8 @@
 #include <numbers>
 #include <string>
 
-namespace glidar::tof {
+namespace glidar {
+namespace {
 
 /// A number with the rule that it must follow.
 struct CheckedNumber {
@@ -32,8 +33,6 @@ struct CheckedNumber {
 };
 
 /// Throws Error naming `place` and the key of the first number that its rule does not accept.
-void require_numbers(const std::string& place, std::initializer_list<CheckedNumber> numbers);
-
 void require_numbers(const std::string& place, std::initializer_list<CheckedNumber> numbers) {
   for (const auto& [key, rule, value] : numbers) {
     if (!accepts(rule, value)) {
@@ -41,11 +40,6 @@ void require_numbers(const std::string& place, std::initializer_list<CheckedNumb
     }
   }
 }
-
-}  // namespace glidar::tof
-
-namespace glidar {
-namespace {
 
 constexpr WholeRule kTapRule = {3, kMaxTofTaps};
 constexpr NumberRule kFrequencyRule = {1.0, 1e12, false, "hertz from 1 to 1e12"};
@@ -58,7 +52,7 @@ constexpr std::array<Named<TofUnwrapping>, 2> kUnwrappingNames = {
 /// Periods of the highest frequency that best_fit tries at most.
 constexpr double kMaxPeriods = 1000.0;
 
-constexpr const char* kPlace = "time-of-flight option ";
+constexpr const char* kTofPlace = "time-of-flight option ";
 
 std::string list_text(const std::vector<double>& values) {
   std::string text;
@@ -69,21 +63,21 @@ std::string list_text(const std::vector<double>& values) {
 void validate_frequencies(const TofOptions& options) {
   const std::vector<double>& f = options.frequencies_hz;
   if (f.empty() || f.size() > kMaxTofFrequencies) {
-    throw Error({kPlace + std::string("frequencies_hz"),
+    throw Error({kTofPlace + std::string("frequencies_hz"),
                  "has " + std::to_string(f.size()) + " frequencies",
                  "1 to " + std::to_string(kMaxTofFrequencies), ""});
   }
   for (const double f_hz : f)
-    tof::require_numbers(kPlace, {{"frequencies_hz", kFrequencyRule, f_hz}});
+    require_numbers(kTofPlace, {{"frequencies_hz", kFrequencyRule, f_hz}});
   const double periods =
       unambiguous_range_m(f) * *std::max_element(f.begin(), f.end()) / kHalfLight_m_per_s;
   if (periods > kMaxPeriods + 0.5) {
-    throw Error({kPlace + std::string("frequencies_hz"),
+    throw Error({kTofPlace + std::string("frequencies_hz"),
                  "their greatest common divisor is below a thousandth of the greatest",
                  "frequencies in simple ratios", "round them to whole MHz"});
   }
   if (options.amplitude_gain.empty() || options.amplitude_gain.size() == f.size()) return;
-  throw Error({kPlace + std::string("amplitude_gain"),
+  throw Error({kTofPlace + std::string("amplitude_gain"),
                "has " + std::to_string(options.amplitude_gain.size()) + " numbers for " +
                    std::to_string(f.size()) + " frequencies",
                "one for each, or none", ""});
@@ -93,7 +87,8 @@ void validate_unwrapping(const TofOptions& options) {
   if (options.unwrapping != TofUnwrapping::kinect_v2) return;
   const std::vector<double>& f = options.frequencies_hz;
   if (f.size() == 3 && f[0] == 5.0 * f[1] && 2.0 * f[2] == 15.0 * f[1]) return;
-  throw Error({kPlace + std::string("unwrapping"), "kinect_v2 with frequencies_hz " + list_text(f),
+  throw Error({kTofPlace + std::string("unwrapping"),
+               "kinect_v2 with frequencies_hz " + list_text(f),
                "three frequencies in the ratio 10 : 2 : 15, such as 80, 16 and 120 MHz",
                "use best_fit for others"});
 }
@@ -157,36 +152,36 @@ void describe(TofOptions& options, FieldVisitor& visitor) {
 
 void validate(const TofOptions& options) {
   if (options.taps < kTapRule.min || options.taps > kTapRule.max) {
-    throw Error({kPlace + std::string("taps"), "is " + std::to_string(options.taps),
+    throw Error({kTofPlace + std::string("taps"), "is " + std::to_string(options.taps),
                  "a whole number from 3 to " + std::to_string(kMaxTofTaps), ""});
   }
   validate_frequencies(options);
   validate_unwrapping(options);
   for (const double gain : options.amplitude_gain) {
-    tof::require_numbers(kPlace, {{"amplitude_gain", kAboveZero, gain}});
+    require_numbers(kTofPlace, {{"amplitude_gain", kAboveZero, gain}});
   }
   const TofMisfitTest& misfit = options.misfit_test;
   const TofFilter filter = options.filter.value_or(TofFilter{});
   const TofEdgeTest edge = options.edge_test.value_or(TofEdgeTest{});
-  tof::require_numbers(kPlace,
-                       {{"saturation_level", kUpToInfinity, options.saturation_level},
-                        {"min_amplitude", kFromZero, options.min_amplitude},
-                        {"min_amplitude_sum", kFromZero, options.min_amplitude_sum},
-                        {"misfit_test.min_rad", kFromZero, misfit.min_rad},
-                        {"misfit_test.max_rad", kFromZero, misfit.max_rad},
-                        {"misfit_test.scale", kFromZero, misfit.scale},
-                        {"misfit_test.exponent", kExponentRule, misfit.exponent},
-                        {"filter.min_amplitude", kFromZero, filter.min_amplitude},
-                        {"filter.phase_weight", kFromZero, filter.phase_weight},
-                        {"filter.max_phase_change", kFromZero, filter.max_phase_change},
-                        {"edge_test.amplitude_deviation", kFromZero, edge.amplitude_deviation},
-                        {"edge_test.min_mean_amplitude", kFromZero, edge.min_mean_amplitude},
-                        {"edge_test.near_step_m", kFromZero, edge.near_step_m},
-                        {"edge_test.far_step_m", kFromZero, edge.far_step_m},
-                        {"edge_test.max_step_m", kFromZero, edge.max_step_m},
-                        {"edge_test.mean_step_m", kFromZero, edge.mean_step_m},
-                        {"near_m", kFromZero, options.near_m},
-                        {"far_m", kUpToInfinity, options.far_m}});
+  require_numbers(kTofPlace,
+                  {{"saturation_level", kUpToInfinity, options.saturation_level},
+                   {"min_amplitude", kFromZero, options.min_amplitude},
+                   {"min_amplitude_sum", kFromZero, options.min_amplitude_sum},
+                   {"misfit_test.min_rad", kFromZero, misfit.min_rad},
+                   {"misfit_test.max_rad", kFromZero, misfit.max_rad},
+                   {"misfit_test.scale", kFromZero, misfit.scale},
+                   {"misfit_test.exponent", kExponentRule, misfit.exponent},
+                   {"filter.min_amplitude", kFromZero, filter.min_amplitude},
+                   {"filter.phase_weight", kFromZero, filter.phase_weight},
+                   {"filter.max_phase_change", kFromZero, filter.max_phase_change},
+                   {"edge_test.amplitude_deviation", kFromZero, edge.amplitude_deviation},
+                   {"edge_test.min_mean_amplitude", kFromZero, edge.min_mean_amplitude},
+                   {"edge_test.near_step_m", kFromZero, edge.near_step_m},
+                   {"edge_test.far_step_m", kFromZero, edge.far_step_m},
+                   {"edge_test.max_step_m", kFromZero, edge.max_step_m},
+                   {"edge_test.mean_step_m", kFromZero, edge.mean_step_m},
+                   {"near_m", kFromZero, options.near_m},
+                   {"far_m", kUpToInfinity, options.far_m}});
 }
 
 TofOptions kinect_v2_options() {
@@ -298,19 +293,18 @@ void describe(TofCamera& camera, FieldVisitor& visitor) {
 }
 
 void validate(const TofCamera& camera) {
-  tof::require_numbers(kCameraPlace,
-                       {{"signal_electrons", kAboveZero, camera.signal_electrons},
-                        {"ambient_electrons", kFromZero, camera.ambient_electrons},
-                        {"dark_electrons", kFromZero, camera.dark_electrons},
-                        {"read_noise_electrons", kFromZero, camera.read_noise_electrons},
-                        {"electrons_per_level", kAboveZero, camera.electrons_per_level},
-                        {"step_interval_s", kFromZero, camera.step_interval_s}});
+  require_numbers(kCameraPlace, {{"signal_electrons", kAboveZero, camera.signal_electrons},
+                                 {"ambient_electrons", kFromZero, camera.ambient_electrons},
+                                 {"dark_electrons", kFromZero, camera.dark_electrons},
+                                 {"read_noise_electrons", kFromZero, camera.read_noise_electrons},
+                                 {"electrons_per_level", kAboveZero, camera.electrons_per_level},
+                                 {"step_interval_s", kFromZero, camera.step_interval_s}});
   if (camera.full_well_electrons != kInfinity) {
-    tof::require_numbers(kCameraPlace,
-                         {{"full_well_electrons", kAboveZero, camera.full_well_electrons}});
+    require_numbers(kCameraPlace,
+                    {{"full_well_electrons", kAboveZero, camera.full_well_electrons}});
   }
   for (const double contrast : camera.contrast) {
-    tof::require_numbers(kCameraPlace, {{"contrast", kContrastRule, contrast}});
+    require_numbers(kCameraPlace, {{"contrast", kContrastRule, contrast}});
   }
   require_whole_value("sub_rays", kSubRayRule, camera.sub_rays);
   require_whole_value("bounces", kBounceRule, camera.bounces);
@@ -428,7 +422,7 @@ namespace {
 
 using tof::Decoding;
 using tof::EdgeEvidence;
-using tof::PixelEvidence;
+using tof::TofEvidence;
 
 std::string limit_text(double limit, unsigned decimals) {
   return limit == kInfinity ? "none" : decimal_text(limit, decimals);
@@ -451,7 +445,7 @@ std::string edge_text(const EdgeEvidence& edge, const TofOptions& options) {
          " (edge from " + decimal_text(options.filter->max_phase_change, 3) + ")";
 }
 
-std::vector<TofTest> list_tests(const PixelEvidence& pixel, const EdgeEvidence& edge,
+std::vector<TofTest> list_tests(const TofEvidence& pixel, const EdgeEvidence& edge,
                                 const TofOptions& options) {
   const std::string depth = "depth " + decimal_text(pixel.depth_m, 3) + " m, ";
   return {{TofStatus::not_illuminated, pixel.is_illuminated,
@@ -491,8 +485,8 @@ std::vector<TofCandidate> list_candidates(const tof::Unwrapping& unwrapping,
   return candidates;
 }
 
-void copy_frequencies(const TofImages& images, const TofOptions& options,
-                      const PixelEvidence& pixel, std::size_t index, TofTrace& trace) {
+void copy_frequencies(const TofImages& images, const TofOptions& options, const TofEvidence& pixel,
+                      std::size_t index, TofTrace& trace) {
   trace.frequencies_hz = options.frequencies_hz;
   for (std::size_t f = 0; f < images.frequencies; ++f) {
     trace.amplitude.push_back(pixel.amplitude[f]);
@@ -538,7 +532,7 @@ TofTrace explain_tof(const TofImages& images, const TofOptions& options,
   require_pixel(images, column_row);
   const auto [column, row] = column_row;
   const std::size_t index = std::size_t{row} * images.width + column;
-  const PixelEvidence pixel =
+  const TofEvidence pixel =
       gather_evidence(decoding.phasors, decoding.unwrapping, options, calibration, index);
   const EdgeEvidence edge = gather_edge_evidence(decoding.depths, decoding.phasors, options, index);
   TofTrace trace{.column = column,
@@ -571,8 +565,8 @@ std::string format_tof_trace(const TofTrace& trace) {
 
 namespace {
 
-constexpr std::uint32_t kWidth = 160;
-constexpr std::uint32_t kHeight = 120;
+constexpr std::uint32_t kSampleWidth = 160;
+constexpr std::uint32_t kSampleHeight = 120;
 constexpr double kFocal_px = 150.0;
 constexpr double kDisc_m = 1.2;
 constexpr double kWall_m = 3.0;
@@ -591,8 +585,8 @@ bool is_within(double column, double row, double from, double to) {
 
 /// At a position in pixels from the corner of the image.
 Surface surface_at(double column, double row) {
-  const double x = column - 0.5 * kWidth;
-  const double y = row - 0.5 * kHeight;
+  const double x = column - 0.5 * kSampleWidth;
+  const double y = row - 0.5 * kSampleHeight;
   if (x * x + y * y < 900.0) return {kDisc_m, 0.7};
   const double depth_m = kWall_m / (1.0 - 0.8 * x / kFocal_px);
   if (is_within(column, row, 36.0, 60.0)) return {depth_m, 0.001};
@@ -602,8 +596,8 @@ Surface surface_at(double column, double row) {
 
 /// Range over depth at a position.
 double range_per_depth(double column, double row) {
-  const double x = (column - 0.5 * kWidth) / kFocal_px;
-  const double y = (row - 0.5 * kHeight) / kFocal_px;
+  const double x = (column - 0.5 * kSampleWidth) / kFocal_px;
+  const double y = (row - 0.5 * kSampleHeight) / kFocal_px;
   return std::sqrt(1.0 + x * x + y * y);
 }
 
@@ -660,16 +654,16 @@ TofSample sample_tof_images() {
   const TofSteps steps = make_tof_steps(camera);
   TofSample sample;
   sample.options = camera.decoder;
-  sample.images = {kWidth, kHeight, 3, 3};
-  sample.images.level.resize(std::size_t{9} * kWidth * kHeight);
-  for (std::uint32_t row = 0; row < kHeight; ++row) {
-    for (std::uint32_t column = 0; column < kWidth; ++column) {
-      const std::size_t pixel = std::size_t{row} * kWidth + column;
+  sample.images = {kSampleWidth, kSampleHeight, 3, 3};
+  sample.images.level.resize(std::size_t{9} * kSampleWidth * kSampleHeight);
+  for (std::uint32_t row = 0; row < kSampleHeight; ++row) {
+    for (std::uint32_t column = 0; column < kSampleWidth; ++column) {
+      const std::size_t pixel = std::size_t{row} * kSampleWidth + column;
       expose_pixel(camera, light_at(camera, steps, column, row), pixel, sample.images);
       const double u = column + 0.5;
       const double v = row + 0.5;
       sample.depth_per_range.push_back(static_cast<float>(1.0 / range_per_depth(u, v)));
-      const double from_centre = portable_hypot(u - 0.5 * kWidth, v - 0.5 * kHeight);
+      const double from_centre = portable_hypot(u - 0.5 * kSampleWidth, v - 0.5 * kSampleHeight);
       sample.is_illuminated.push_back(from_centre < kLitRadius_px ? 1 : 0);
     }
   }

@@ -176,7 +176,7 @@ Unwrapped kinect_v2(const Unwrapping& u, const PerFrequency& turns) {
   return result;
 }
 
-double misfit_limit_rad(const TofMisfitTest& test, const PixelEvidence& pixel,
+double misfit_limit_rad(const TofMisfitTest& test, const TofEvidence& pixel,
                         std::size_t frequencies) {
   if (test.exponent == 0.0) return std::clamp(test.scale, test.min_rad, test.max_rad);
   const double* const first = pixel.amplitude.data();
@@ -243,8 +243,7 @@ void resize(const PhasorImage& phasors, Decoding& decoding) {
 }
 
 /// The result of a pixel without the tests of edges.
-void store(const PixelEvidence& pixel, const TofOptions& options, std::size_t i,
-           Decoding& decoding) {
+void store(const TofEvidence& pixel, const TofOptions& options, std::size_t i, Decoding& decoding) {
   TofMeasurement& result = decoding.measurement;
   const std::size_t pixels = result.status.size();
   const TofStatus status = find_status(pixel, options);
@@ -362,10 +361,10 @@ Unwrapped unwrap(const Unwrapping& u, const PerFrequency& turns) {
   return u.method == TofUnwrapping::kinect_v2 ? kinect_v2(u, turns) : best_fit(u, turns);
 }
 
-PixelEvidence gather_evidence(const PhasorImage& phasors, const Unwrapping& unwrapping,
-                              const TofOptions& options, const TofCalibration& calibration,
-                              std::size_t pixel) {
-  PixelEvidence found;
+TofEvidence gather_evidence(const PhasorImage& phasors, const Unwrapping& unwrapping,
+                            const TofOptions& options, const TofCalibration& calibration,
+                            std::size_t pixel) {
+  TofEvidence found;
   found.is_illuminated =
       calibration.is_illuminated.empty() || calibration.is_illuminated[pixel] != 0;
   found.is_saturated = phasors.is_saturated[pixel] != 0;
@@ -384,16 +383,16 @@ PixelEvidence gather_evidence(const PhasorImage& phasors, const Unwrapping& unwr
   return found;
 }
 
-bool has_signal(const PixelEvidence& pixel, const TofOptions& options) {
+bool has_signal(const TofEvidence& pixel, const TofOptions& options) {
   return pixel.min_amplitude > 0.0 && pixel.min_amplitude >= options.min_amplitude &&
          pixel.amplitude_sum >= options.min_amplitude_sum;
 }
 
-bool has_fit(const PixelEvidence& pixel) {
+bool has_fit(const TofEvidence& pixel) {
   return pixel.unwrapped.misfit_rad <= pixel.misfit_limit_rad && pixel.unwrapped.range_m >= 0.0;
 }
 
-TofStatus find_status(const PixelEvidence& pixel, const TofOptions& options) {
+TofStatus find_status(const TofEvidence& pixel, const TofOptions& options) {
   if (!pixel.is_illuminated) return TofStatus::not_illuminated;
   if (pixel.is_saturated) return TofStatus::saturated;
   if (!has_signal(pixel, options)) return TofStatus::low_signal;

@@ -87,7 +87,7 @@ Unwrapped unwrap_candidate(const Unwrapping& unwrapping, const PerFrequency& tur
 Unwrapped unwrap(const Unwrapping& unwrapping, const PerFrequency& turns);
 
 /// All that the tests of a pixel alone compare.
-struct PixelEvidence {
+struct TofEvidence {
   PerFrequency amplitude = {};
   PerFrequency turns = {};  ///< phases in [0, 1)
   double amplitude_sum = 0.0;
@@ -99,15 +99,15 @@ struct PixelEvidence {
   bool is_saturated = false;
 };
 
-PixelEvidence gather_evidence(const PhasorImage& phasors, const Unwrapping& unwrapping,
-                              const TofOptions& options, const TofCalibration& calibration,
-                              std::size_t pixel);
+TofEvidence gather_evidence(const PhasorImage& phasors, const Unwrapping& unwrapping,
+                            const TofOptions& options, const TofCalibration& calibration,
+                            std::size_t pixel);
 
-bool has_signal(const PixelEvidence& pixel, const TofOptions& options);
-bool has_fit(const PixelEvidence& pixel);
+bool has_signal(const TofEvidence& pixel, const TofOptions& options);
+bool has_fit(const TofEvidence& pixel);
 
 /// The first of the tests before those of edges that the pixel fails.
-TofStatus find_status(const PixelEvidence& pixel, const TofOptions& options);
+TofStatus find_status(const TofEvidence& pixel, const TofOptions& options);
 
 /// Depths and amplitudes of all pixels, which the edge test compares.
 struct DecodedDepths {

@@ -653,7 +653,7 @@ bool Socket::is_open(const ConnectionId& connection) const {
   return impl_->guard() == nullptr || impl_->guard()->is_open(connection);
 }
 
-void wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
+bool wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
               std::chrono::milliseconds at_most) {
   std::vector<zmq::pollitem_t> items;
   for (const Socket* socket : sockets) {
@@ -661,9 +661,10 @@ void wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
   }
   if (descriptor >= 0) items.push_back({nullptr, descriptor, ZMQ_POLLIN, 0});
   try {
-    zmq::poll(items, at_most);
+    return zmq::poll(items, at_most) > 0;
   } catch (const zmq::error_t& error) {
     if (error.num() != EINTR) throw;
+    return false;
   }
 }
 

@@ -230,14 +230,14 @@ class Socket {
   void note_subscription(const Message& message);
   [[nodiscard]] bool has_full_queue() const;
 
-  friend void wait_for(std::initializer_list<const Socket*>, int, std::chrono::milliseconds);
+  friend bool wait_for(std::initializer_list<const Socket*>, int, std::chrono::milliseconds);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
 /// Blocks until one of the sockets has a message, the file descriptor (-1: none) is readable, the
-/// time is over, or a signal arrives.
-void wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
+/// time is over, or a signal arrives. True in the first two cases.
+bool wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
               std::chrono::milliseconds at_most);
 
 }  // namespace glidar::link

@@ -38,11 +38,9 @@ class IntegralTable {
   std::vector<Segment> segments_;
 };
 
-}  // namespace glidar
-
-// + - * / and square roots only, so that results are bit-identical on any machine. The parameter is
-// m = k^2; its complement 1 - m is stored separately, so that m near 1 stays exact.
-namespace glidar {
+// Jacobi's elliptic functions and integrals in double precision, from + - * / and square roots
+// only, so that results are bit-identical on any machine. The parameter is m = k^2; its complement
+// 1 - m is stored separately, so that m near 1 stays exact.
 
 struct JacobiValues {
   double sn = 0.0;

@@ -22,6 +22,11 @@ std::string describe_displacement(const Vector6& displacement, double length_m);
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+/// A displacement in words, in its own coordinate frame: a translation, or a rotation about an axis
+/// through a point, with a pitch if it is a screw motion. Lengths much smaller than `length_m` are
+/// omitted.
+std::string describe_displacement(const Vector6& displacement, double length_m);
+
 struct FisherOptions {
   double sigma_m = 0.01;  ///< of every range, if the frame has no sigma_m
   /// The coordinate frame of the displacement; identity: the sensor frame.

@@ -33,7 +33,7 @@ double diffuse_reflectance(const HitSurface& surface) {
 }
 
 /// f for light from `to_light`, of length 1, that a surface sends to `to_camera`.
-double reflection(const SurfacePoint& point, const Eigen::Vector3d& to_light,
+double reflection(const LitPoint& point, const Eigen::Vector3d& to_light,
                   const Eigen::Vector3d& to_camera) {
   const HitSurface& surface = point.surface;
   if (std::holds_alternative<Lambert>(*surface.brdf)) return surface.reflectance;
@@ -42,7 +42,7 @@ double reflection(const SurfacePoint& point, const Eigen::Vector3d& to_light,
   return backscatter(*surface.brdf, surface.reflectance, std::min(cosine, 1.0)) / cosine;
 }
 
-double projector_radiance(const InfraredLights& lights, const SurfacePoint& point,
+double projector_radiance(const InfraredLights& lights, const LitPoint& point,
                           const Eigen::Vector3d& to_camera) {
   const Eigen::Vector3d path = point.position_m - lights.projector_m;
   const double intensity = lights.projector(path);
@@ -54,7 +54,7 @@ double projector_radiance(const InfraredLights& lights, const SurfacePoint& poin
   return intensity / square * cosine * reflection(point, to_light, to_camera);
 }
 
-double sun_radiance(const InfraredLights& lights, const SurfacePoint& point,
+double sun_radiance(const InfraredLights& lights, const LitPoint& point,
                     const Eigen::Vector3d& to_camera) {
   const double cosine = point.normal.dot(lights.sun_direction);
   if (!(lights.sun_w_per_m2 > 0.0 && cosine > 0.0)) return 0.0;
@@ -345,7 +345,7 @@ void find_radiance(const Simulation& s, const InfraredView& view) {
 
 }  // namespace
 
-InfraredRadiance infrared_radiance(const InfraredLights& lights, const SurfacePoint& point) {
+InfraredRadiance infrared_radiance(const InfraredLights& lights, const LitPoint& point) {
   const Eigen::Vector3d to_camera = -point.position_m.normalized();
   const double share = point.surface.opacity * std::numbers::inv_pi;
   return {.projector = share * projector_radiance(lights, point, to_camera),

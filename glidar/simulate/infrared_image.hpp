@@ -35,7 +35,7 @@ struct InfraredRadiance {
 };
 
 /// A point of a surface.
-struct SurfacePoint {
+struct LitPoint {
   Eigen::Vector3d position_m;  ///< in the frame of the camera
   Eigen::Vector3d normal;      ///< of length 1
   HitSurface surface;
@@ -48,7 +48,7 @@ struct SurfacePoint {
 /// camera in one place see the backscatter itself. E of the projector is its intensity /
 /// distance^2. Ambient light comes evenly from all sides. Radiance is proportional to the
 /// surface's opacity: light that passes through it does not return.
-InfraredRadiance infrared_radiance(const InfraredLights& lights, const SurfacePoint& point);
+InfraredRadiance infrared_radiance(const InfraredLights& lights, const LitPoint& point);
 
 /// Radiance where no surface is: that of the surroundings that cause the ambient irradiance.
 double background_radiance(const InfraredLights& lights);

@@ -115,7 +115,7 @@ class StereoTest:
 
 @dataclass(frozen=True)
 class StereoTrace:
-    """How a pixel got its disparity or status. ``str`` is what ``glidar stereo --explain`` prints."""
+    """How a pixel got its disparity or status. ``str`` is what ``glidar depth stereo --explain`` prints."""
 
     status: StereoStatus
     winner_px: int

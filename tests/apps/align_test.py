@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar align: images, the file of the cameras, errors."""
+"""glidar depth align: images, the file of the cameras, errors."""
 
 import unittest
 
@@ -22,25 +22,25 @@ class AlignCommand(PngTest):
         self.store("d.png", [[2000] * 8] * 4)
 
     def test_fills_the_finer_image(self):
-        done = self.succeed("align", "d.png", "--cameras", "cameras.yaml", "-o", "aligned.png")
+        done = self.succeed("depth", "align", "d.png", "--cameras", "cameras.yaml", "-o", "aligned.png")
         self.assertEqual(done.stdout, "100.0 % of pixels with depth, 100.0 % after alignment\nwrote aligned.png\n")
         self.assertEqual(self.grey_rows("aligned.png"), [[2000] * 16] * 8)
 
     def test_depths_are_along_the_boresight_of_either_camera(self):
         for options, depth in (((), 2500), (("--keep-depth",), 2000)):
-            self.succeed("align", "d.png", "--cameras", "moved.yaml", *options, "-o", "aligned.png")
+            self.succeed("depth", "align", "d.png", "--cameras", "moved.yaml", *options, "-o", "aligned.png")
             rows = self.grey_rows("aligned.png")
             self.assertEqual(rows[4][8], depth)
             self.assertEqual(rows[0][0], 0)  # beside the image that the depth camera sees
 
     def test_several_images_keep_their_names(self):
         self.store("e.png", [[1000] * 8] * 4)
-        self.succeed("align", "d.png", "e.png", "--cameras", "cameras.yaml", "-o", "out", "--quiet")
+        self.succeed("depth", "align", "d.png", "e.png", "--cameras", "cameras.yaml", "-o", "out", "--quiet")
         self.assertEqual(self.grey_rows("out/e.png"), [[1000] * 16] * 8)
 
     def test_the_file_of_the_cameras_is_not_overwritten(self):
         before = self.bytes_of("cameras.yaml")
-        self.refused("align", "d.png", "--cameras", "cameras.yaml", "-o", "cameras.yaml")
+        self.refused("depth", "align", "d.png", "--cameras", "cameras.yaml", "-o", "cameras.yaml")
         self.assertEqual(self.bytes_of("cameras.yaml"), before)
 
     def test_errors_name_what_is_wrong(self):
@@ -55,12 +55,12 @@ class AlignCommand(PngTest):
         )
         for arguments, text in cases:
             with self.subTest(arguments):
-                self.assertIn(text, self.refused("align", *arguments))
+                self.assertIn(text, self.refused("depth", "align", *arguments))
 
     def test_inputs_are_not_overwritten(self):
         before = self.bytes_of("cameras.yaml"), self.bytes_of("d.png")
         for name in ("cameras.yaml", "d.png"):
-            self.assertIn("is an input file", self.refused("align", "d.png", "--cameras", "cameras.yaml", "-o", name))
+            self.assertIn("is an input file", self.refused("depth", "align", "d.png", "--cameras", "cameras.yaml", "-o", name))
         self.assertEqual((self.bytes_of("cameras.yaml"), self.bytes_of("d.png")), before)
 
 

@@ -26,7 +26,7 @@ class Help(CliTest):
     def test_examples_of_every_help_run(self):
         lines = []
         for level in ([], ["render"], ["explain"], ["view"], ["stream"], ["info"], ["sensors"],
-                      ["stereo"], ["tof"], ["verify"]):
+                      ["depth", "stereo"], ["depth", "tof"], ["depth"], ["verify"]):
             text = self.succeed(*level, "--help").stdout
             own = text[text.index("Examples:"):].split("With your own files:")[0]
             lines += re.findall(r"(?m)^  (glidar .*)$", own)
@@ -57,8 +57,9 @@ class Help(CliTest):
         self.succeed(*arguments, "--frames", "1")
 
     def test_help_has_one_line_of_at_most_100_characters_per_option(self):
-        for level in ("render", "view", "stream", "replay", "decode", "info", "filter", "stereo", "tof", "verify"):
-            text = self.succeed(level, "--help").stdout
+        for level in ("render", "view", "stream", "replay", "decode", "info", "depth filter",
+                      "depth stereo", "depth tof", "verify"):
+            text = self.succeed(*level.split(), "--help").stdout
             self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
             self.assertLessEqual(max(len(line) for line in text.split("\n")), 100)
             self.assertNotRegex(text, r"(?m)^ {20}", "an option takes a second line")
@@ -79,7 +80,16 @@ class Words(CliTest):
     def test_help_of_a_subcommand_is_its_help(self):
         self.assertEqual(self.succeed("help", "info").stdout, self.succeed("info", "--help").stdout)
         self.assertEqual(self.succeed("help").stdout, self.succeed("--help").stdout)
+        for words in ([], ["stereo"], ["stereo", "output"]):
+            self.assertEqual(self.succeed("help", "depth", *words).stdout, self.succeed("depth", *words[:1], "--help", *words[1:]).stdout)
         self.assertIn("did you mean --version?", self.refused("version"))
+
+    def test_tools_without_their_subcommand_are_named(self):
+        self.assertIn("'tof' is a tool of 'depth': glidar depth tof", self.refused("tof", "builtin:disc"))
+        self.assertIn("'sterio' is no subcommand; did you mean stereo?", self.refused("depth", "sterio"))
+        self.assertIn("'x' is no tool; allowed: filter, align, stereo, structured-light, tof", self.refused("depth", "x"))
+        self.assertIn("a subcommand is required; see glidar depth --help", self.refused("depth"))
+        self.assertIn("unknown option --cencus; did you mean --census?", self.refused("depth", "stereo", "builtin:dots", "--cencus", "9x9"))
 
     def test_help_of_a_section_lists_its_options_only(self):
         text = self.succeed("help", "render", "fisher").stdout
@@ -102,7 +112,8 @@ class Words(CliTest):
 
     def test_completions_know_commands_options_and_presets(self):
         self.write("glidar.bash", self.succeed("completion", "bash").stdout)
-        for words, expected in ((["st"], "stream stereo structured-light"), (["render", "--col"], "--columns --colour-by --columns-per-turn"),
+        for words, expected in ((["st"], "stream"), (["depth", "st"], "stereo structured-light"),
+                                (["depth", "stereo", "--cen"], "--census"), (["render", "--col"], "--columns --colour-by --columns-per-turn"),
                                 (["render", "--sensor", "VLP-1"], "VLP-16"), (["help", "sch"], "schema")):
             script = f"source glidar.bash; COMP_WORDS=(glidar {' '.join(words)}); COMP_CWORD={len(words)}; _glidar; echo ${{COMPREPLY[@]}}"
             done = subprocess.run(["bash", "-c", script], cwd=self.folder, capture_output=True, text=True, check=True)

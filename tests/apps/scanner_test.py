@@ -60,7 +60,7 @@ class ScannerCommands(PngTest):
             self.store(f"i_{i:02}.png", [[257 * level for level in image[64 * row:64 * row + 64]] for row in range(48)])
         names = [f"i_{i:02}.png" for i in range(IMAGES)]
         self.write("setup.yaml", SCANNER.replace("  patterns:", "  decoding: {min_modulation: 1028, min_code_difference: 1028}\n  patterns:"))
-        self.succeed("structured-light", "setup.yaml", *names, "-o", "d.depth.png")
+        self.succeed("depth", "structured-light", "setup.yaml", *names, "-o", "d.depth.png")
         rendered, decoded = self.grey_rows("v.depth.png"), self.grey_rows("d.depth.png")
         pairs = [(a, b) for one, other in zip(rendered, decoded) for a, b in zip(one, other) if a > 0]
         self.assertGreater(len(pairs), 300)
@@ -69,7 +69,7 @@ class ScannerCommands(PngTest):
 
     def test_the_array_of_all_images_decodes_to_the_rendered_depth(self):
         self.succeed(*RENDER, "scanner.yaml", "-o", "v.patterns.npy", "-o", "v.depth.png", "--depth-scale", "10000")
-        self.succeed("structured-light", "scanner.yaml", "v.patterns.npy", "-o", "d.depth.png")
+        self.succeed("depth", "structured-light", "scanner.yaml", "v.patterns.npy", "-o", "d.depth.png")
         pairs = [pair for rows in zip(self.grey_rows("v.depth.png"), self.grey_rows("d.depth.png")) for pair in zip(*rows)]
         self.assertGreater(sum(a > 0 for a, _ in pairs), 300)
         self.assertTrue(all(abs(a - b) <= 1 for a, b in pairs if a > 0))
@@ -89,7 +89,7 @@ class ScannerCommands(PngTest):
                  ("short.npy", "fewer numbers"), ("turned.npy", "64x48"), ("few.npy", "one for each pattern"))
         for name, text in cases:
             with self.subTest(name):
-                self.assertIn(text, self.refused("structured-light", "scanner.yaml", name, "-o", "d.depth.npy"))
+                self.assertIn(text, self.refused("depth", "structured-light", "scanner.yaml", name, "-o", "d.depth.npy"))
 
     def test_explain_prints_the_images_and_tests_of_a_pixel(self):
         self.succeed(*RENDER, "scanner.yaml", "-o", "v.pcd", "-o", "v.patterns.npy")
@@ -137,7 +137,7 @@ class ScannerCommands(PngTest):
         self.assertFalse(Path(self.folder, "v.pcd").exists())
 
     def test_patterns_of_a_sensor_file_have_the_size_of_its_projector(self):
-        done = self.succeed("structured-light", "scanner.yaml", "--patterns", "out")
+        done = self.succeed("depth", "structured-light", "scanner.yaml", "--patterns", "out")
         self.assertEqual(done.stdout, "wrote out/pattern_00.png to out/pattern_11.png (12 files)\n")
         self.assertEqual(struct.unpack(">II", self.bytes_of("out/pattern_03.png")[16:24]), (128, 80))
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stereo: files, the trace of a pixel, errors."""
+"""glidar depth stereo: files, the trace of a pixel, errors."""
 
 import os
 import struct
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cli_support import CliTest
 
-SAMPLE = ("stereo", "builtin:dots", "--disparities", "64")
+SAMPLE = ("depth", "stereo", "builtin:dots", "--disparities", "64")
 
 
 def png(width, height, rows, colour=0, bits=8):
@@ -58,7 +58,7 @@ class StereoCommand(CliTest):
         for name, (convert, colour, bits) in kinds.items():
             self.store("l.png", png(90, 20, convert(levels), colour, bits))
             self.store("r.png", png(90, 20, convert(shifted), colour, bits))
-            self.succeed("stereo", "l.png", "r.png", "--disparities", "24", "-o", f"{name}_disparity.npy")
+            self.succeed("depth", "stereo", "l.png", "r.png", "--disparities", "24", "-o", f"{name}_disparity.npy")
             results.append(self.bytes_of(f"{name}_disparity.npy"))
         self.assertEqual(results[0], results[1])
         self.assertEqual(results[0], results[2])
@@ -77,7 +77,7 @@ class StereoCommand(CliTest):
         self.assertEqual(self.bytes_of("a_disparity.npy"), self.bytes_of("b_disparity.npy"))
 
     def expect_error(self, message, *arguments):
-        done = self.run_program("stereo", *arguments)
+        done = self.run_program("depth", "stereo", *arguments)
         self.assertEqual(done.returncode, 2, done.stdout)
         self.assertIn(message, done.stderr)
         self.assertFalse([name for name in os.listdir(self.folder) if name.startswith(("disparity", "depth"))])
@@ -114,7 +114,7 @@ class StereoCommand(CliTest):
     def test_inputs_are_not_overwritten(self):
         data = png(90, 20, noise(90, 20))
         self.store("status.png", data)
-        done = self.run_program("stereo", "status.png", "status.png", "--disparities", "16", "-o", "status.png")
+        done = self.run_program("depth", "stereo", "status.png", "status.png", "--disparities", "16", "-o", "status.png")
         self.assertEqual(done.returncode, 2)
         self.assertEqual(self.bytes_of("status.png"), data)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar structured-light: patterns, decoding, errors."""
+"""glidar depth structured-light: patterns, decoding, errors."""
 
 import math
 import struct
@@ -43,7 +43,7 @@ class StructuredLightCommand(PngTest):
             self.store(name, [row, row])
 
     def test_patterns_are_images_of_the_projector(self):
-        done = self.succeed("structured-light", "setup.yaml", "--patterns", "out")
+        done = self.succeed("depth", "structured-light", "setup.yaml", "--patterns", "out")
         self.assertEqual(done.stdout, "wrote out/pattern_00.png to out/pattern_11.png (12 files)\n")
         header = self.bytes_of("out/pattern_03.png")[16:26]
         self.assertEqual(struct.unpack(">IIBB", header), (120, 4, 8, 0))
@@ -51,7 +51,7 @@ class StructuredLightCommand(PngTest):
     def test_images_become_depth_with_the_cause_of_each_hole(self):
         self.take_images()
         outputs = ("depth.npy", "depth.png", "coordinate.npy", "phase.npy", "modulation.npy", "part_status.npy", "status.png")
-        done = self.succeed("structured-light", "setup.yaml", *IMAGES, *(word for name in outputs for word in ("-o", name)))
+        done = self.succeed("depth", "structured-light", "setup.yaml", *IMAGES, *(word for name in outputs for word in ("-o", name)))
         self.assertTrue(done.stdout.startswith("60x2 pixels: 96.7 % valid, 1.7 % saturated, 1.7 % low_modulation\n"), done.stdout)
         depth = struct.unpack("<120f", self.bytes_of("depth.npy")[-480:])
         for x, value in enumerate(depth[:60]):
@@ -67,12 +67,12 @@ class StructuredLightCommand(PngTest):
         self.take_images()
         self.store("small.png", [[1] * 60] * 3)
         for arguments in ((*IMAGES[:11], "small.png"), IMAGES[1:]):
-            self.refused("structured-light", "setup.yaml", *arguments, "-o", "depth.npy", "--patterns", "out")
+            self.refused("depth", "structured-light", "setup.yaml", *arguments, "-o", "depth.npy", "--patterns", "out")
             self.assertFalse(Path(self.folder, "out").exists())
 
     def test_the_setup_is_not_overwritten(self):
         self.write("pattern_00.png", SETUP)
-        self.refused("structured-light", "pattern_00.png", "--patterns", ".")
+        self.refused("depth", "structured-light", "pattern_00.png", "--patterns", ".")
         self.assertEqual(self.bytes_of("pattern_00.png").decode(), SETUP)
         self.assertFalse(Path(self.folder, "pattern_01.png").exists())
 
@@ -80,14 +80,14 @@ class StructuredLightCommand(PngTest):
         self.take_images()
         self.store("small.png", [[1] * 60] * 3)
         self.store("byte.png", [[1] * 60] * 2, bits=8)
-        odd_first = self.refused("structured-light", "setup.yaml", "small.png", *IMAGES[1:], "-o", "depth.npy")
+        odd_first = self.refused("depth", "structured-light", "setup.yaml", "small.png", *IMAGES[1:], "-o", "depth.npy")
         self.assertIn("small.png: has 60x3 pixels; allowed: 60x2", odd_first)
-        mixed = self.refused("structured-light", "setup.yaml", *IMAGES[:11], "byte.png", "-o", "depth.npy")
+        mixed = self.refused("depth", "structured-light", "setup.yaml", *IMAGES[:11], "byte.png", "-o", "depth.npy")
         self.assertIn("byte.png: 8 bits; allowed: 16 bits, as i_00.png", mixed)
 
     def test_patterns_without_an_image_are_refused(self):
         self.write("none.yaml", SETUP.replace("steps: 4, period_px: 20", "steps: 0, period_px: 1000"))
-        self.assertIn("patterns.period_px", self.refused("structured-light", "none.yaml", "--patterns", "out"))
+        self.assertIn("patterns.period_px", self.refused("depth", "structured-light", "none.yaml", "--patterns", "out"))
 
     def test_errors_name_what_is_wrong(self):
         self.take_images()
@@ -106,14 +106,14 @@ class StructuredLightCommand(PngTest):
         )
         for arguments, text in cases:
             with self.subTest(arguments):
-                self.assertIn(text, self.refused("structured-light", *arguments))
+                self.assertIn(text, self.refused("depth", "structured-light", *arguments))
 
     def test_patterns_do_not_replace_images(self):
         patterns = [f"out/pattern_{i:02}.png" for i in range(len(IMAGES))]
         Path(self.folder, "out").mkdir()
         self.take_images(patterns)
         before = self.bytes_of(patterns[0])
-        command = ("structured-light", "setup.yaml", *patterns, "-o", "phase.npy", "--patterns", "out")
+        command = ("depth", "structured-light", "setup.yaml", *patterns, "-o", "phase.npy", "--patterns", "out")
         self.assertIn("out/pattern_00.png: is an input file", self.refused(*command))
         self.assertEqual(self.bytes_of(patterns[0]), before)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar tof: decoded files beside those of the simulation, the trace of a pixel, errors."""
+"""glidar depth tof: decoded files beside those of the simulation, the trace of a pixel, errors."""
 
 import math
 import re
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from png_support import PngTest
 
-SAMPLE = ("tof", "builtin:disc")
+SAMPLE = ("depth", "tof", "builtin:disc")
 WIDTH, HEIGHT, TAPS = 24, 16, 4
 SENSOR = f"""
 name: test camera
@@ -57,7 +57,7 @@ class TofCommand(PngTest):
         self.succeed("render", "room.yaml", "--sensor", "s.yaml", "-o", "a.tof.npy", "-o", "a.npy", "-o", "a.depth.png", "-o",
                      "a.ir.png", "--no-sidecar")
         names = [quantity + suffix for quantity in ("depth", "range", "amplitude", "status") for suffix in (".npy", ".png")]
-        done = self.succeed("tof", "a.tof.npy", "--sensor", "s.yaml", *(word for name in names for word in ("-o", name)))
+        done = self.succeed("depth", "tof", "a.tof.npy", "--sensor", "s.yaml", *(word for name in names for word in ("-o", name)))
         self.assertRegex(done.stdout, rf"^{WIDTH}x{HEIGHT} pixels: \d+\.\d % valid")
         pixels = WIDTH * HEIGHT
         simulated, decoded = self.floats("a.npy", pixels), self.floats("depth.npy", pixels)
@@ -74,7 +74,7 @@ class TofCommand(PngTest):
     def test_a_preset_with_a_lens_has_the_depths_of_its_simulation(self):
         self.succeed("render", "builtin:asteroid", "--sensor", "Kinect-v2", "--depth-model", "physical", "-o", "k.tof.npy", "-o",
                      "k.depth.png", "--no-sidecar")
-        self.succeed("tof", "k.tof.npy", "--sensor", "Kinect-v2", "-o", "depth.png")
+        self.succeed("depth", "tof", "k.tof.npy", "--sensor", "Kinect-v2", "-o", "depth.png")
         pairs = [pair for rows in zip(self.grey_rows("depth.png"), self.grey_rows("k.depth.png"), strict=True)
                  for pair in zip(*rows, strict=True)]
         others = [abs(a - b) for a, b in pairs if a != b]
@@ -108,7 +108,7 @@ class TofCommand(PngTest):
         shape = (2, TAPS, HEIGHT, WIDTH)
         for name, data in (("a", npy(shape, values)), ("b", npy(shape, values, "<f8")), ("c", npy(shape, values, version=2))):
             self.store_bytes(f"{name}.npy", data)
-            self.succeed("tof", f"{name}.npy", "--sensor", "s.yaml", "-o", f"{name}_status.npy", "-o", f"{name}_amplitude.npy")
+            self.succeed("depth", "tof", f"{name}.npy", "--sensor", "s.yaml", "-o", f"{name}_status.npy", "-o", f"{name}_amplitude.npy")
         for name in "bc":
             self.assertEqual(self.bytes_of(f"{name}_status.npy"), self.bytes_of("a_status.npy"))
             self.assertEqual(self.bytes_of(f"{name}_amplitude.npy"), self.bytes_of("a_amplitude.npy"))
@@ -122,7 +122,7 @@ class TofCommand(PngTest):
                 if sign < 0 and "u" in kind:
                     continue
                 self.store_bytes("a.npy", npy((2, TAPS, HEIGHT, WIDTH), [sign * value for value in values], kind))
-                self.succeed("tof", "a.npy", "--sensor", "s.yaml", "-o", "amplitude.npy", "-o", "range.npy")
+                self.succeed("depth", "tof", "a.npy", "--sensor", "s.yaml", "-o", "amplitude.npy", "-o", "range.npy")
                 results.add(self.bytes_of("amplitude.npy") + self.bytes_of("range.npy"))
             self.assertEqual(len(results), 1)
 
@@ -132,7 +132,7 @@ class TofCommand(PngTest):
         tiny[0], tiny[1] = math.inf, -math.inf
         for kind in ("<f2", "<f4"):
             self.store_bytes("a.npy", npy((2, TAPS, HEIGHT, WIDTH), tiny, kind))
-            self.succeed("tof", "a.npy", "--sensor", "plain.yaml", "-o", f"{kind[1:]}_amplitude.npy", "-o", f"{kind[1:]}_status.npy")
+            self.succeed("depth", "tof", "a.npy", "--sensor", "plain.yaml", "-o", f"{kind[1:]}_amplitude.npy", "-o", f"{kind[1:]}_status.npy")
         self.assertEqual(self.bytes_of("f2_status.npy")[-WIDTH * HEIGHT:][:2], b"\2\2")
         for name in ("amplitude.npy", "status.npy"):
             self.assertEqual(self.bytes_of(f"f2_{name}"), self.bytes_of(f"f4_{name}"))
@@ -157,12 +157,12 @@ class TofCommand(PngTest):
         for name, (data, words) in cases.items():
             self.store_bytes(f"{name}.npy", data)
             with self.subTest(name):
-                self.assertIn(words, self.refused("tof", f"{name}.npy", "--sensor", "s.yaml", "-o", "depth.npy"))
-        self.assertIn("missing.npy", self.refused("tof", "missing.npy", "--sensor", "s.yaml", "-o", "depth.npy"))
+                self.assertIn(words, self.refused("depth", "tof", f"{name}.npy", "--sensor", "s.yaml", "-o", "depth.npy"))
+        self.assertIn("missing.npy", self.refused("depth", "tof", "missing.npy", "--sensor", "s.yaml", "-o", "depth.npy"))
 
     def test_bad_options_are_errors(self):
         self.store_bytes("a.npy", npy((2, TAPS, HEIGHT, WIDTH), [1.0] * (2 * TAPS * HEIGHT * WIDTH)))
-        raw, output = ("tof", "a.npy"), ("-o", "depth.npy")
+        raw, output = ("depth", "tof", "a.npy"), ("-o", "depth.npy")
         cases = {
             "add --sensor": (*raw, *output), "leave --sensor out": (*SAMPLE, *output, "--sensor", "Kinect-v2"),
             "is no time-of-flight camera": (*raw, *output, "--sensor", "D435"),
@@ -176,11 +176,11 @@ class TofCommand(PngTest):
     def test_inputs_are_not_overwritten(self):
         data = npy((2, TAPS, HEIGHT, WIDTH), [1.0] * (2 * TAPS * HEIGHT * WIDTH))
         self.store_bytes("depth.npy", data)
-        self.refused("tof", "depth.npy", "--sensor", "s.yaml", "-o", "depth.npy")
+        self.refused("depth", "tof", "depth.npy", "--sensor", "s.yaml", "-o", "depth.npy")
         self.assertEqual(self.bytes_of("depth.npy"), data)
         self.write("range.npy", SENSOR)
         self.assertIn("range.npy: is an input file, or another output writes it",
-                      self.refused("tof", "depth.npy", "--sensor", "range.npy", "-o", "range.npy"))
+                      self.refused("depth", "tof", "depth.npy", "--sensor", "range.npy", "-o", "range.npy"))
         self.assertEqual(self.bytes_of("range.npy").decode(), SENSOR)
 
 

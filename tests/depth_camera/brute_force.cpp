@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <stereo/brute_force.hpp>
+#include <depth_camera/brute_force.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/depth_filters.hpp>
 
-#include <depth/librealsense_results.hpp>
+#include <depth_camera/librealsense_results.hpp>
 #include <glidar/core/error.hpp>
 #include <support/error_text.hpp>
 
@@ -13,9 +13,9 @@
 namespace glidar {
 namespace {
 
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using Depths = std::vector<std::uint16_t>;
 
 DepthImage filter_once(const std::vector<DepthFilter>& filters, const DepthImage& image,

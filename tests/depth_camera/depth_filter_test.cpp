@@ -10,7 +10,7 @@
 namespace glidar {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::string error_of(const std::vector<DepthFilter>& filters) {
   return error_text([&] { validate(filters); });

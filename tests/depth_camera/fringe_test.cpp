@@ -16,7 +16,7 @@
 namespace glidar {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <depth/librealsense_results.hpp>
+#include <depth_camera/librealsense_results.hpp>
 
 namespace glidar::test {
 

@@ -3,8 +3,8 @@
 #include <glidar/depth_camera/stereo.hpp>
 
 #include <glidar/core/instruction_set.hpp>
-#include <stereo/brute_force.hpp>
-#include <stereo/test_pairs.hpp>
+#include <depth_camera/brute_force.hpp>
+#include <depth_camera/test_pairs.hpp>
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace glidar {
 namespace {
 
 using testing::BruteForce;
-using testing::StereoPair;
+using testing::TestPair;
 
 /// Every cost and status of a match as bytes, with NaN compared by bits.
 std::string bytes_of(const StereoMatch& match) {
@@ -31,7 +31,7 @@ std::string bytes_of(const StereoMatch& match) {
   return bytes;
 }
 
-void expect_brute_force_costs(const StereoPair& pair, const StereoOptions& options) {
+void expect_brute_force_costs(const TestPair& pair, const StereoOptions& options) {
   const BruteForce expected(pair.left, pair.right, options);
   for (const InstructionSet set : usable_instruction_sets()) {
     const StereoMatch match = match_stereo(
@@ -64,17 +64,17 @@ std::size_t count_status(const StereoMatch& match, StereoStatus status) {
 }
 
 TEST(StereoCosts, EqualTheirDefinitionWithEightPaths) {
-  const StereoPair pair = testing::shifted_noise(40, 30, 5);
+  const TestPair pair = testing::shifted_noise(40, 30, 5);
   expect_brute_force_costs(pair, {.disparities = 16});
 }
 
 TEST(StereoCosts, EqualTheirDefinitionWithFourPaths) {
-  const StereoPair pair = testing::shifted_noise(40, 30, 5);
+  const TestPair pair = testing::shifted_noise(40, 30, 5);
   expect_brute_force_costs(pair, {.disparities = 16, .paths = 4});
 }
 
 TEST(StereoCosts, EqualTheirDefinitionForEveryCensusAndBox) {
-  const StereoPair pair = testing::shifted_noise(37, 19, 3);
+  const TestPair pair = testing::shifted_noise(37, 19, 3);
   for (const StereoCensus census :
        {StereoCensus::window_9x9, StereoCensus::window_7x7, StereoCensus::symmetric_7x7}) {
     for (const std::uint32_t box_px : {1U, 3U, 9U}) {
@@ -84,7 +84,7 @@ TEST(StereoCosts, EqualTheirDefinitionForEveryCensusAndBox) {
 }
 
 TEST(StereoCosts, EqualTheirDefinitionForSearchesOfAnyWidthAndStart) {
-  const StereoPair pair = testing::shifted_noise(80, 9, 3);
+  const TestPair pair = testing::shifted_noise(80, 9, 3);
   for (const std::uint32_t disparities : {2U, 31U, 32U, 33U, 64U, 75U}) {
     expect_brute_force_costs(pair, {.min_disparity_px = 5, .disparities = disparities});
   }
@@ -96,7 +96,7 @@ TEST(StereoCosts, EqualTheirDefinitionInImagesSmallerThanTheWindow) {
 }
 
 TEST(StereoCosts, EqualTheirDefinitionAtTheGreatestPenalty) {
-  const StereoPair pair = testing::shifted_noise(40, 12, 5);
+  const TestPair pair = testing::shifted_noise(40, 12, 5);
   StereoOptions options = {.disparities = 20, .box_px = 9, .p1 = 0.0, .p2 = 53.1};
   expect_brute_force_costs(pair, options);  // 48 x 81 + 4301 of 8191
   options.p1 = options.p2;
@@ -104,7 +104,7 @@ TEST(StereoCosts, EqualTheirDefinitionAtTheGreatestPenalty) {
 }
 
 TEST(StereoMatch, IsTheSameForEveryNumberOfThreadsAndInstructionSet) {
-  const StereoPair pair = testing::step_pair(211, 67, 9, 30, 90, 150);
+  const TestPair pair = testing::step_pair(211, 67, 9, 30, 90, 150);
   const StereoOptions options = {.disparities = 45};
   const std::string expected =
       bytes_of(match_stereo(pair.left, pair.right, options, {.keeps_costs = true}));
@@ -124,8 +124,8 @@ TEST(StereoMatch, IsTheSameForEveryNumberOfThreadsAndInstructionSet) {
 TEST(StereoMatch, IsTheSameFromAMatcherThatHasMatchedOtherPairs) {
   const StereoOptions options = {.disparities = 30};
   StereoMatcher matcher(options);
-  const StereoPair large = testing::shifted_noise(90, 50, 12);
-  const StereoPair small = testing::shifted_noise(60, 40, 7);
+  const TestPair large = testing::shifted_noise(90, 50, 12);
+  const TestPair small = testing::shifted_noise(60, 40, 7);
   (void)matcher.match(large.left, large.right);
   EXPECT_EQ(bytes_of(matcher.match(small.left, small.right)),
             bytes_of(match_stereo(small.left, small.right, options)));
@@ -133,7 +133,7 @@ TEST(StereoMatch, IsTheSameFromAMatcherThatHasMatchedOtherPairs) {
 
 TEST(StereoMatch, FindsShiftsOfWholePixelsExactly) {
   for (const std::uint32_t shift : {1U, 7U, 20U, 38U}) {
-    const StereoPair pair =
+    const TestPair pair =
         testing::dot_pair(240, 120, [&](double) { return static_cast<double>(shift); });
     const StereoMatch match =
         match_stereo(pair.left, pair.right, {.disparities = 40, .subpixel = StereoSubpixel::none});
@@ -146,7 +146,7 @@ double pixel_locking(const StereoOptions& options) {
   double greatest = 0.0;
   for (int k = 0; k < 16; ++k) {
     const double shift = 20.0 + k / 16.0;
-    const StereoPair pair = testing::dot_pair(240, 120, [&](double) { return shift; });
+    const TestPair pair = testing::dot_pair(240, 120, [&](double) { return shift; });
     const StereoMatch match = match_stereo(pair.left, pair.right, options);
     double sum = 0.0;
     for (const float disparity : match.disparity_px) {
@@ -169,7 +169,7 @@ TEST(StereoMatch, LocksByLessThanAThirtiethOfAPixelWithAFittedAFactor) {
 TEST(StereoMatch, HasABandWithoutDisparityLeftOfANearObject) {
   const std::uint32_t far_px = 10;
   const std::uint32_t near_px = 34;
-  const StereoPair pair = testing::step_pair(260, 80, far_px, near_px, 140, 200);
+  const TestPair pair = testing::step_pair(260, 80, far_px, near_px, 140, 200);
   const StereoMatch match = match_stereo(pair.left, pair.right, {.disparities = 48});
   double band = 0.0;
   for (std::size_t y = 10; y < 70; ++y) {
@@ -182,7 +182,7 @@ TEST(StereoMatch, HasABandWithoutDisparityLeftOfANearObject) {
 }
 
 TEST(StereoMatch, HasABorderOfTheDisparityPlusHalfAWindowOnTheLeft) {
-  const StereoPair pair = testing::shifted_noise(260, 60, 57);
+  const TestPair pair = testing::shifted_noise(260, 60, 57);
   const StereoMatch match = match_stereo(pair.left, pair.right, {.disparities = 96});
   for (std::size_t y = 0; y < 60; ++y) {
     std::size_t x = 0;
@@ -194,7 +194,7 @@ TEST(StereoMatch, HasABorderOfTheDisparityPlusHalfAWindowOnTheLeft) {
 }
 
 TEST(StereoMatch, RoundsToTheStepsOfAPixel) {
-  const StereoPair pair = testing::dot_pair(120, 60, [](double row) { return 10.0 + row / 60.0; });
+  const TestPair pair = testing::dot_pair(120, 60, [](double row) { return 10.0 + row / 60.0; });
   for (const std::uint32_t steps : {1U, 8U, 32U}) {
     const StereoMatch match =
         match_stereo(pair.left, pair.right, {.disparities = 24, .steps_per_px = steps});
@@ -231,7 +231,7 @@ TEST(StereoMatch, ReportsAmbiguityWhereNothingMatches) {
 }
 
 TEST(StereoMatch, ReportsDisparitiesAtTheEndsOfTheSearchAsOutOfRange) {
-  const StereoPair pair = testing::shifted_noise(160, 40, 20);
+  const TestPair pair = testing::shifted_noise(160, 40, 20);
   const StereoMatch below =
       match_stereo(pair.left, pair.right, {.min_disparity_px = 20, .disparities = 30});
   EXPECT_EQ(below.status[20 * 160 + 100], StereoStatus::out_of_range);
@@ -242,7 +242,7 @@ TEST(StereoMatch, ReportsDisparitiesAtTheEndsOfTheSearchAsOutOfRange) {
 }
 
 TEST(StereoMatch, ReportsOccludedPixelsAsALeftRightMismatch) {
-  const StereoPair pair = testing::step_pair(260, 80, 10, 34, 140, 200);
+  const TestPair pair = testing::step_pair(260, 80, 10, 34, 140, 200);
   const StereoOptions options = {.disparities = 48, .uniqueness_percent = 0};
   const StereoMatch match = match_stereo(pair.left, pair.right, options);
   EXPECT_EQ(match.status[40 * 260 + 130], StereoStatus::left_right);
@@ -253,7 +253,7 @@ TEST(StereoMatch, ReportsOccludedPixelsAsALeftRightMismatch) {
 }
 
 TEST(StereoMatch, HasADisparityExactlyWhereTheStatusIsValid) {
-  const StereoPair pair = testing::step_pair(211, 67, 9, 30, 90, 150);
+  const TestPair pair = testing::step_pair(211, 67, 9, 30, 90, 150);
   const StereoMatch match = match_stereo(pair.left, pair.right, {.disparities = 45});
   for (std::size_t i = 0; i < match.status.size(); ++i) {
     EXPECT_EQ(std::isnan(match.disparity_px[i]), match.status[i] != StereoStatus::valid);
@@ -261,7 +261,7 @@ TEST(StereoMatch, HasADisparityExactlyWhereTheStatusIsValid) {
 }
 
 TEST(StereoMatch, TakesGreyLevelsOf16Bits) {
-  StereoPair pair = testing::shifted_noise(120, 40, 11);
+  TestPair pair = testing::shifted_noise(120, 40, 11);
   for (GreyImage* image : {&pair.left, &pair.right}) {
     image->max_level = 65535;
     for (std::uint16_t& level : image->level) level = static_cast<std::uint16_t>(level * 257);
@@ -272,7 +272,7 @@ TEST(StereoMatch, TakesGreyLevelsOf16Bits) {
 }
 
 TEST(StereoMatch, ReportsProgressUpToOne) {
-  const StereoPair pair = testing::shifted_noise(60, 40, 7);
+  const TestPair pair = testing::shifted_noise(60, 40, 7);
   std::vector<double> fractions;
   (void)match_stereo(pair.left, pair.right, {.disparities = 16},
                      {.progress = [&](double done) { fractions.push_back(done); }});

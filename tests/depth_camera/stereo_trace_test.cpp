@@ -3,8 +3,8 @@
 #include <glidar/depth_camera/stereo.hpp>
 
 #include <glidar/depth_camera/stereo_matcher.hpp>
-#include <stereo/brute_force.hpp>
-#include <stereo/test_pairs.hpp>
+#include <depth_camera/brute_force.hpp>
+#include <depth_camera/test_pairs.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,10 +15,10 @@ namespace glidar {
 namespace {
 
 using testing::BruteForce;
-using testing::StereoPair;
+using testing::TestPair;
 
 TEST(StereoTrace, HasTheCostsOfTheDefinition) {
-  const StereoPair pair = testing::shifted_noise(40, 30, 5);
+  const TestPair pair = testing::shifted_noise(40, 30, 5);
   const StereoOptions options = {.disparities = 16};
   const BruteForce expected(pair.left, pair.right, options);
   const StereoTrace trace = explain_stereo(pair.left, pair.right, options, {31, 12});
@@ -31,7 +31,7 @@ TEST(StereoTrace, HasTheCostsOfTheDefinition) {
 }
 
 TEST(StereoTrace, HasTheEvidenceThatLedToTheStatusOfEveryPixel) {
-  const StereoPair pair = testing::step_pair(120, 30, 5, 20, 60, 90);
+  const TestPair pair = testing::step_pair(120, 30, 5, 20, 60, 90);
   const StereoOptions options = {.disparities = 30};
   stereo::CostVolume volume;
   const StereoMatch match =
@@ -45,7 +45,7 @@ TEST(StereoTrace, HasTheEvidenceThatLedToTheStatusOfEveryPixel) {
 }
 
 TEST(StereoTrace, HasTheDisparityOfTheMatch) {
-  const StereoPair pair = testing::dot_pair(120, 40, [](double) { return 9.4; });
+  const TestPair pair = testing::dot_pair(120, 40, [](double) { return 9.4; });
   const StereoOptions options = {.disparities = 24, .a_factor = 0.04};
   const StereoMatch match = match_stereo(pair.left, pair.right, options);
   const StereoTrace trace = explain_stereo(pair.left, pair.right, options, {70, 20});
@@ -55,7 +55,7 @@ TEST(StereoTrace, HasTheDisparityOfTheMatch) {
 }
 
 TEST(StereoTrace, ListsTheFailedTestOfAPixelWithoutDisparity) {
-  const StereoPair pair = testing::step_pair(260, 80, 10, 34, 140, 200);
+  const TestPair pair = testing::step_pair(260, 80, 10, 34, 140, 200);
   const StereoOptions options = {.disparities = 48, .uniqueness_percent = 0};
   const StereoTrace trace = explain_stereo(pair.left, pair.right, options, {130, 40});
   ASSERT_EQ(trace.tests.size(), 6U);
@@ -66,7 +66,7 @@ TEST(StereoTrace, ListsTheFailedTestOfAPixelWithoutDisparity) {
 }
 
 TEST(StereoTrace, TextMarksTheWinner) {
-  const StereoPair pair = testing::shifted_noise(60, 30, 7);
+  const TestPair pair = testing::shifted_noise(60, 30, 7);
   const StereoOptions options = {.disparities = 16, .subpixel = StereoSubpixel::none};
   const StereoTrace trace = explain_stereo(pair.left, pair.right, options, {40, 15});
   const std::string text = format_stereo_trace(trace);

@@ -14,7 +14,7 @@
 namespace glidar {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 StructuredLight setup_of(const Distortion& distortion, FringeAxis axis) {
   StructuredLight setup;

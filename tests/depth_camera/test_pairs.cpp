@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <stereo/test_pairs.hpp>
+#include <depth_camera/test_pairs.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -58,8 +58,8 @@ GreyImage noise_image(std::uint32_t width, std::uint32_t height, std::uint32_t s
   return image;
 }
 
-StereoPair shifted_noise(std::uint32_t width, std::uint32_t height, std::uint32_t disparity_px) {
-  StereoPair pair = {noise_image(width, height, 1), noise_image(width, height, 2)};
+TestPair shifted_noise(std::uint32_t width, std::uint32_t height, std::uint32_t disparity_px) {
+  TestPair pair = {noise_image(width, height, 1), noise_image(width, height, 2)};
   for (std::size_t y = 0; y < height; ++y) {
     for (std::size_t x = disparity_px; x < width; ++x) {
       pair.left.level[y * width + x] = pair.right.level[y * width + x - disparity_px];
@@ -68,9 +68,9 @@ StereoPair shifted_noise(std::uint32_t width, std::uint32_t height, std::uint32_
   return pair;
 }
 
-StereoPair dot_pair(std::uint32_t width, std::uint32_t height,
+TestPair dot_pair(std::uint32_t width, std::uint32_t height,
                     const std::function<double(double row)>& disparity_px) {
-  StereoPair pair = {flat_image(width, height, 0), flat_image(width, height, 0)};
+  TestPair pair = {flat_image(width, height, 0), flat_image(width, height, 0)};
   std::vector<double> left(std::size_t{width} * height, 20.0);
   std::vector<double> right = left;
   std::mt19937 words(7);
@@ -87,9 +87,9 @@ StereoPair dot_pair(std::uint32_t width, std::uint32_t height,
   return pair;
 }
 
-StereoPair step_pair(std::uint32_t width, std::uint32_t height, std::uint32_t far_px,
+TestPair step_pair(std::uint32_t width, std::uint32_t height, std::uint32_t far_px,
                      std::uint32_t near_px, std::uint32_t begin, std::uint32_t end) {
-  StereoPair pair = {noise_image(width, height, 3), noise_image(width, height, 4)};
+  TestPair pair = {noise_image(width, height, 3), noise_image(width, height, 4)};
   for (std::size_t y = 0; y < height; ++y) {
     std::uint16_t* const right = pair.right.level.data() + y * width;
     const std::uint16_t* const left = pair.left.level.data() + y * width;

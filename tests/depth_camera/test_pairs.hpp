@@ -9,7 +9,7 @@
 
 namespace glidar::testing {
 
-struct StereoPair {
+struct TestPair {
   GreyImage left;
   GreyImage right;
 };
@@ -21,15 +21,15 @@ GreyImage flat_image(std::uint32_t width, std::uint32_t height, std::uint16_t le
 GreyImage noise_image(std::uint32_t width, std::uint32_t height, std::uint32_t seed);
 
 /// A right image of noise, and a left one in which every pixel is `disparity_px` further right.
-StereoPair shifted_noise(std::uint32_t width, std::uint32_t height, std::uint32_t disparity_px);
+TestPair shifted_noise(std::uint32_t width, std::uint32_t height, std::uint32_t disparity_px);
 
 /// Smooth random dots (Gaussians of 0.9 px), drawn at exact positions: those of the left image are
 /// `disparity_px(row)` px further right.
-StereoPair dot_pair(std::uint32_t width, std::uint32_t height,
+TestPair dot_pair(std::uint32_t width, std::uint32_t height,
                     const std::function<double(double row)>& disparity_px);
 
 /// Dots on two planes: the columns from `begin` to `end` of the left image have the near disparity.
-StereoPair step_pair(std::uint32_t width, std::uint32_t height, std::uint32_t far_px,
+TestPair step_pair(std::uint32_t width, std::uint32_t height, std::uint32_t far_px,
                      std::uint32_t near_px, std::uint32_t begin, std::uint32_t end);
 
 }  // namespace glidar::testing

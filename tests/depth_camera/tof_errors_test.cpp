@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/time_of_flight.hpp>
 #include <support/error_text.hpp>
-#include <tof/tof_pictures.hpp>
+#include <depth_camera/tof_pictures.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <tof/tof_pictures.hpp>
+#include <depth_camera/tof_pictures.hpp>
 
 #include <utility>
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <depth_camera/tof_pictures.hpp>
 #include <glidar/depth_camera/time_of_flight.hpp>
 #include <glidar/math/constants.hpp>
-#include <tof/tof_pictures.hpp>
 
 #include <gtest/gtest.h>
 

@@ -18,9 +18,8 @@ sys.path.insert(0, str(ROOT / "tests/support"))
 from skipping import IN_CTEST, skip  # noqa: E402
 
 LIBRARIES = os.environ.get("GLIDAR_LIBRARIES", "")
-READER = ["io/config/field_json", "io/config/provenance", "io/config/yaml_budget", "io/config/yaml_field_reader",
-          "io/config/yaml_reader", "io/files/input_budget", "io/files/input_file", "io/files/nearest_file",
-          "io/files/text_file"]
+READER = ["io/config/field_json", "io/config/provenance", "io/config/yaml_field_reader", "io/config/yaml_reader",
+          "io/files/input_file"]
 KEYS_TEST = """
 TEST(Example, KeysAreReadAndWritten) {
   glidar::NoiseStep step;

@@ -142,6 +142,18 @@ TEST_F(PoseReceiverTest, DoesNotReportASimulatorThatEndedAsLost) {
   EXPECT_TRUE(said.empty());
 }
 
+TEST_F(PoseReceiverTest, IsReadyIfASimulatorSentAllItsPosesAndLeftBeforeItsReplyWasRead) {
+  start();
+  ASSERT_TRUE(soon([&] { return !receiver->is_ready() && simulator->hand.receive().has_value(); }));
+  simulator->send(pose(1));
+  simulator->send(encode_shutdown("v"));
+  simulator.reset();  // without a reply, as if it came too late
+  ASSERT_TRUE(soon([&] { return receiver->is_ready(); }));
+  EXPECT_EQ(next_timestamp(), 1U);
+  EXPECT_EQ(next_timestamp(), std::nullopt);
+  EXPECT_TRUE(receiver->is_over());
+}
+
 TEST_F(PoseReceiverTest, ReconnectsToARestartedSimulator) {
   start();
   ASSERT_TRUE(shake());

@@ -24,11 +24,7 @@ Command add_stream(CLI::App& program, const std::vector<std::string>& arguments)
 Command add_replay(CLI::App& program);
 Command add_sensors(CLI::App& program);
 Command add_schema(CLI::App& program);
-Command add_align(CLI::App& program);
-Command add_filter(CLI::App& program);
-Command add_stereo(CLI::App& program);
-Command add_structured_light(CLI::App& program);
-Command add_tof(CLI::App& program);
+Command add_depth(CLI::App& program);
 Command add_verify(CLI::App& program);
 /// Call it last: it prints all subcommands of the program, which must outlive it.
 Command add_completion(CLI::App& program);

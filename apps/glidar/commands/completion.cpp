@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/help_text.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <glidar/core/version.hpp>
@@ -26,6 +27,22 @@ Exit codes: 0 done, 2 no such shell.)";
 
 std::vector<const CLI::App*> commands_of(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App*) { return true; });
+}
+
+/// The subcommands, and after each its tools.
+std::vector<const CLI::App*> commands_and_tools(const CLI::App& program) {
+  std::vector<const CLI::App*> all;
+  for (const CLI::App* command : commands_of(program)) {
+    all.push_back(command);
+    for (const CLI::App* tool : commands_of(*command)) all.push_back(tool);
+  }
+  return all;
+}
+
+/// The name without that of the program: "render", "depth stereo".
+std::string words_of(const CLI::App& command) {
+  const std::string name = full_name(command);
+  return name.substr(name.find(' ') + 1);
 }
 
 /// The options that have a name, not the hidden ones.
@@ -85,33 +102,45 @@ std::string zsh_text(std::string_view text) {
 }
 
 std::string bash_script(const CLI::App& program) {
-  std::string cases;
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(program)) {
-    names.push_back(command->get_name());
+  std::string tools;
+  std::string options;
+  for (const CLI::App* command : commands_and_tools(program)) {
+    std::string& cases = commands_of(*command).empty() ? options : tools;
+    const bool has_options = &cases == &options;
     cases +=
-        fmt::format("    {}) words='{}' ;;\n", command->get_name(), joined(all_names(*command)));
+        fmt::format("    '{}') {}='{}' ;;\n", words_of(*command), has_options ? "words" : "tools",
+                    joined(has_options ? all_names(*command) : subcommand_names(*command)));
   }
-  return fmt::format(R"(# bash completion of glidar {}
+  return fmt::format(R"(# bash completion of glidar {0}
 _glidar() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words=''
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words='' tools=''
+  local command=${{COMP_WORDS[1]}}
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
-    COMPREPLY=($(compgen -W '{} help --help --version' -- "$current"))
+    COMPREPLY=($(compgen -W '{1} help --help --version' -- "$current"))
     return
   fi
-  case ${{COMP_WORDS[1]}} in
-    help) words='{}' ;;
-{}  esac
+  case $command in
+{2}  esac
+  if [[ $tools ]]; then
+    if ((COMP_CWORD == 2)); then
+      COMPREPLY=($(compgen -W "$tools" -- "$current"))
+      return
+    fi
+    command+=" ${{COMP_WORDS[2]}}"
+  fi
+  case $command in
+    help) words='{1}' ;;
+{3}  esac
   if [[ $previous == --sensor ]]; then
-    COMPREPLY=($(compgen -W '{}' -- "$current"))
-  elif [[ $current == -* || ${{COMP_WORDS[1]}} == help ]]; then
+    COMPREPLY=($(compgen -W '{4}' -- "$current"))
+  elif [[ $current == -* || $command == help ]]; then
     COMPREPLY=($(compgen -W "$words" -- "$current"))
   fi
 }}
 complete -o default -F _glidar glidar
 )",
-                     version(), joined(names), joined(names), cases, preset_names());
+                     version(), joined(subcommand_names(program)), tools, options, preset_names());
 }
 
 /// The lines of _arguments for an option.
@@ -127,19 +156,31 @@ std::string zsh_option(const CLI::Option& option) {
   return lines;
 }
 
+/// The names with their descriptions, for _describe.
+std::string zsh_commands(const CLI::App& owner) {
+  std::string words;
+  for (const CLI::App* command : commands_of(owner)) {
+    words += fmt::format(" '{}:{}'", command->get_name(), zsh_text(command->get_description()));
+  }
+  return words;
+}
+
 std::string zsh_script(const CLI::App& program) {
-  std::string commands;
+  std::string tools;
   std::string cases;
-  for (const CLI::App* command : commands_of(program)) {
-    commands += fmt::format(" '{}:{}'", command->get_name(), zsh_text(command->get_description()));
-    cases += fmt::format("    {}) _arguments -S", command->get_name());
+  for (const CLI::App* command : commands_and_tools(program)) {
+    if (!commands_of(*command).empty()) {
+      tools += fmt::format("    {}) tools=({}) ;;\n", words_of(*command), zsh_commands(*command));
+      continue;
+    }
+    cases += fmt::format("    '{}') _arguments -S", words_of(*command));
     for (const CLI::Option* option : options_of(*command)) cases += zsh_option(*option);
     cases += " \\\n      '*:file:_files' ;;\n";
   }
   return fmt::format(R"(#compdef glidar
 # zsh completion of glidar {}
 _glidar() {{
-  local -a commands=({})
+  local -a commands=({}) tools=()
   if ((CURRENT == 2)); then
     _describe command commands
     return
@@ -149,16 +190,34 @@ _glidar() {{
   ((CURRENT--))
   case $command in
 {}  esac
+  if (($#tools)); then
+    if ((CURRENT == 2)); then
+      _describe tool tools
+      return
+    fi
+    command+=" $words[2]"
+    shift words
+    ((CURRENT--))
+  fi
+  case $command in
+{}  esac
 }}
 _glidar "$@"
 )",
-                     version(), commands, cases);
+                     version(), zsh_commands(program), tools, cases);
 }
 
 std::string fish_script(const CLI::App& program) {
   std::string text = fmt::format("# fish completion of glidar {}\n", version());
-  for (const CLI::App* command : commands_of(program)) {
-    text += fmt::format("complete -c glidar -n __fish_use_subcommand -f -a {} -d '{}'\n",
+  for (const CLI::App* command : commands_and_tools(program)) {
+    const CLI::App& owner = *command->get_parent();
+    const std::string condition =
+        &owner == &program
+            ? "__fish_use_subcommand"
+            : fmt::format(
+                  "'__fish_seen_subcommand_from {}; and not __fish_seen_subcommand_from {}'",
+                  owner.get_name(), joined(subcommand_names(owner)));
+    text += fmt::format("complete -c glidar -n {} -f -a {} -d '{}'\n", condition,
                         command->get_name(), escaped(command->get_description(), "'\\"));
     for (const CLI::Option* option : options_of(*command)) {
       text += fmt::format("complete -c glidar -n '__fish_seen_subcommand_from {}'",
@@ -191,8 +250,8 @@ std::string manual(const CLI::App& program) {
       ".TH GLIDAR 1 \"\" \"glidar {}\" \"User Commands\"\n.SH NAME\nglidar \\- {}\n.SH SYNOPSIS\n"
       ".B glidar\nCOMMAND [OPTIONS] ...\n.SH COMMANDS\n",
       version(), roff(program.get_description()));
-  for (const CLI::App* command : commands_of(program)) {
-    text += fmt::format(".SS \"glidar {}\"\n{}\n", roff(command->get_name()),
+  for (const CLI::App* command : commands_and_tools(program)) {
+    text += fmt::format(".SS \"glidar {}\"\n{}\n", roff(words_of(*command)),
                         roff(command->get_description()));
     for (const CLI::Option* option : options_of(*command)) {
       const std::string value = takes_value(*option) ? " " + option->get_type_name() : "";

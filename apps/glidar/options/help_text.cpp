@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
-#include <vector>
 
 namespace glidar::app {
 namespace {
@@ -62,6 +61,19 @@ std::string section_help(const CLI::App& command, const std::string& words) {
     text += layout.make_group(heading, false, command.get_options(is_under));
   }
   return text;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(one->get_name());
+  }
+  return names;
+}
+
+std::string full_name(const CLI::App& command) {
+  const CLI::App* owner = command.get_parent();
+  return (owner == nullptr ? "" : full_name(*owner) + " ") + command.get_name();
 }
 
 void use_help_layout(CLI::App& program) {

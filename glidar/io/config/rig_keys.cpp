@@ -9,7 +9,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
-#include <glidar/io/files/paths.hpp>
+#include <glidar/io/files/input_file.hpp>
 
 #include <algorithm>
 #include <cctype>

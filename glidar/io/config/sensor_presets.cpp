@@ -67,8 +67,6 @@ std::vector<fs::path> yaml_files(const fs::path& folder) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 std::vector<fs::path> sensor_files() {
   return yaml_files(sensor_folder());
 }

@@ -129,8 +129,8 @@ class StagedFiles {
   StagedFiles& operator=(const StagedFiles&) = delete;
   ~StagedFiles() { clear(); }
 
-  /// Files that must not be overwritten; they must outlive this object.
-  void protect(std::span<const std::string> read) { protected_ = read; }
+  /// Files that must not be overwritten.
+  void protect(std::span<const std::string> read) { protected_.assign(read.begin(), read.end()); }
   /// Commits without a lock: the caller holds one that excludes other programs.
   void set_locked() { is_locked_ = true; }
   /// A new file, to be written to and finished by the caller. Throws Error like AtomicFile, and
@@ -162,7 +162,7 @@ class StagedFiles {
 
   void unlist_folders() noexcept;
 
-  std::span<const std::string> protected_;
+  std::vector<std::string> protected_;
   std::list<AtomicFile> files_;  // an AtomicFile does not move
   std::vector<NewFolder> folders_;
   std::vector<std::filesystem::path> removals_;

@@ -4,7 +4,6 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/files/paths.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -133,8 +132,6 @@ std::string read_input_file(const fs::path& path, const InputFileKind& kind) {
   return content;
 }
 
-namespace fs = std::filesystem;
-
 std::string shown(std::string_view word) {
   constexpr std::size_t kShown = 63;
   return excerpt(word, kShown);
@@ -159,6 +156,18 @@ void require_utf8(const fs::path& file, std::string_view text) {
     }
     at += size;
   }
+}
+
+std::string nearest_file(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::vector<std::string> names;
+  std::error_code error;  // an unreadable folder has no suggestions
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  std::sort(names.begin(), names.end());  // the order of folder entries depends on the file system
+  return closest_match(path.filename().string(), names);
 }
 
 }  // namespace glidar

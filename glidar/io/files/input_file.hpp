@@ -99,4 +99,8 @@ void require_utf8(const std::filesystem::path& file, std::string_view text);
 /// A word of a file, shortened for an error; see excerpt().
 std::string shown(std::string_view word);
 
+/// The name in a path's folder that is most similar to the path's file name; empty when none is
+/// similar. For suggestions when a file is missing.
+std::string nearest_file(const std::filesystem::path& path);
+
 }  // namespace glidar

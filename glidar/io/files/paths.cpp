@@ -17,20 +17,6 @@ namespace glidar {
 
 namespace fs = std::filesystem;
 
-std::string nearest_file(const fs::path& path) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::vector<std::string> names;
-  std::error_code error;  // an unreadable folder has no suggestions
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    names.push_back(entry->path().filename().string());
-  }
-  std::sort(names.begin(), names.end());  // the order of folder entries depends on the file system
-  return closest_match(path.filename().string(), names);
-}
-
-namespace fs = std::filesystem;
-
 std::vector<fs::path> own_folders() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -43,8 +29,6 @@ std::vector<fs::path> own_folders() {
   }
   return {program.parent_path().parent_path()};
 }
-
-namespace fs = std::filesystem;
 
 fs::path data_folder(const std::string& name, const char* variable) {
   std::error_code error;

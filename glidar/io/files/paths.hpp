@@ -9,10 +9,6 @@
 
 namespace glidar {
 
-/// The name in a path's folder that is most similar to the path's file name; empty when none is
-/// similar. For suggestions when a file is missing.
-std::string nearest_file(const std::filesystem::path& path);
-
 /// Folders that contain the installed files of this code (share/glidar, libexec/glidar), so
 /// that a moved installation finds its files: those of the shared library with this code (its
 /// own folder and the one above), else the one above the running program's.

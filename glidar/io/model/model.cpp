@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/mesh.hpp>
-#include <glidar/io/files/paths.hpp>
+#include <glidar/io/files/input_file.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/io/model/import_process.hpp>
 #include <glidar/io/model/model_cache.hpp>

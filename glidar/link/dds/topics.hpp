@@ -15,6 +15,7 @@
 #include <string>
 
 struct dds_qos;
+struct ddsi_serdata;
 struct ddsi_sertype;
 
 namespace glidar::dds {
@@ -35,14 +36,10 @@ struct Topic {
 Topic create_topic(const Participant& participant, const std::string& full_name,
                    const ros::MessageType& type, std::size_t max_received_bytes);
 
-}  // namespace glidar::dds
-
-// before they are written and deserialized after they are read, so that one codec (glidar/io/ros)
-// serves files and networks. The types carry no type information of XTypes: Cyclone DDS 0.10.2
-// crashes when a reader announces that of a newer implementation.
-struct ddsi_serdata;
-
-namespace glidar::dds {
+// Serialized types: the types of topics as Cyclone DDS sees them. Messages are serialized before
+// they are written and deserialized after they are read, so that one codec (glidar/io/ros) serves
+// files and networks. The types carry no type information of XTypes: Cyclone DDS 0.10.2 crashes
+// when a reader announces that of a newer implementation.
 
 /// A type without keys in XCDR1. Received messages above `max_received_bytes` are discarded.
 /// The caller gives it to dds_create_topic_sertype().
@@ -82,10 +79,6 @@ class TopicReader {
   std::int32_t topic_ = 0;
   std::int32_t handle_ = 0;
 };
-
-}  // namespace glidar::dds
-
-namespace glidar::dds {
 
 /// Publishes the messages of a ROS topic. Keeps the last `qos.depth` messages until all reliable
 /// readers have acknowledged them. A reader that is slower than the writer misses the older ones:

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 using Bytes = std::vector<std::byte>;
 
-constexpr std::uint64_t kMaxPayload = std::uint64_t{1} << 24U;
+constexpr std::uint64_t kMaxRingRecord = std::uint64_t{1} << 24U;
 
 /// Both ends of the memory and of the pipe beside it.
 struct Ends {
@@ -39,7 +39,7 @@ struct Ends {
               const ssize_t got = ::read(fd, to.data(), to.size());
               return static_cast<std::size_t>(std::max<ssize_t>(got, 0));
             },
-            "run.db3", kMaxPayload, std::make_shared<SharedRing>(memory.get())};
+            "run.db3", kMaxRingRecord, std::make_shared<SharedRing>(memory.get())};
   }
 };
 
@@ -111,7 +111,7 @@ using ::testing::HasSubstr;
 
 using Bytes = std::vector<std::byte>;
 
-constexpr std::uint64_t kMaxPayload = std::uint64_t{1} << 22U;
+constexpr std::uint64_t kMaxRecord = std::uint64_t{1} << 22U;
 
 /// What a writer writes.
 template <class Write>
@@ -137,7 +137,7 @@ RecordReader reader_of(const Bytes& bytes, std::size_t piece = SIZE_MAX) {
         *at += size;
         return size;
       },
-      "run.mcap", kMaxPayload);
+      "run.mcap", kMaxRecord);
 }
 
 TEST(RecordStream, RecordsOfAnySizeReadBackHoweverTheyArrive) {

@@ -47,12 +47,6 @@ def test_the_example_campaign_runs_and_its_files_agree(tmp_path):
     assert min(index["hits"]) > 50
 
 
-def test_the_documentation_shows_the_example():
-    shown = (ROOT / "docs" / "campaigns.md").read_text().split("```yaml\n")[1].split("```")[0]
-    example = (ROOT / "examples" / "campaign.yaml").read_text()
-    assert shown == "".join(line for line in example.splitlines(True) if not line.startswith("#"))
-
-
 def test_help_works_without_python(tmp_path):
     done = glidar_program(tmp_path, "campaign", "--help", path="/nonexistent")
     assert done.returncode == 0 and "merge DIR" in done.stdout

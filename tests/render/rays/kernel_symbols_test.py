@@ -29,7 +29,7 @@ class KernelSymbols(unittest.TestCase):
     def test_are_all_in_the_namespace_of_the_instruction_set(self):
         for path in OBJECTS:
             layer, isa = re.search(r"glidar_(\w+)_kernel_(\w+)\.dir", path).groups()
-            space = "rays" if layer == "render" else layer
+            space = {"render": "rays", "sensor": "stereo"}[layer]
             names = defined_in(path)
             self.assertTrue(any("Kernel" in name for name in names), path)
             others = [name for name in names if f"glidar::{space}::{isa}::" not in name and not name.startswith(".")]

@@ -1,30 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/commands/depth.hpp>
 #include <apps/glidar/options/option_group.hpp>
-#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/console.hpp>
-#include <apps/glidar/run/image_files.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/depth_camera/structured_light.hpp>
 #include <glidar/io/config/depth_camera_files.hpp>
-#include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/formats/raw_image_file.hpp>
 #include <glidar/io/pictures/png_image.hpp>
-#include <glidar/math/constants.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <array>
 #include <bit>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -33,7 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class FringeQuantity { depth, coordinate, phase, modulation, status };
+constexpr std::array<std::string_view, 5> kFringeNames = {"depth", "status", "coordinate", "phase",
+                                                          "modulation"};
+constexpr ImageContents kFringeContents = {kFringeNames, 2};
 
 constexpr std::array<Colour, kFringeStatusCount> kFringeColours = {{{235, 235, 235},
                                                                     {240, 200, 40},
@@ -41,49 +35,6 @@ constexpr std::array<Colour, kFringeStatusCount> kFringeColours = {{{235, 235, 2
                                                                     {225, 110, 40},
                                                                     {50, 110, 200},
                                                                     {150, 90, 200}}};
-
-std::optional<FringeQuantity> quantity_named(const std::string& stem) {
-  if (stem.ends_with("depth")) return FringeQuantity::depth;
-  if (stem.ends_with("coordinate")) return FringeQuantity::coordinate;
-  if (stem.ends_with("phase")) return FringeQuantity::phase;
-  if (stem.ends_with("modulation")) return FringeQuantity::modulation;
-  if (stem.ends_with("status")) return FringeQuantity::status;
-  return {};
-}
-
-FringeQuantity fringe_quantity(const std::string& path) {
-  const fs::path file(path);
-  const std::optional<FringeQuantity> quantity = quantity_named(file.stem().string());
-  const bool has_png = quantity == FringeQuantity::depth || quantity == FringeQuantity::status;
-  if (quantity && (file.extension() == ".npy" || (file.extension() == ".png" && has_png))) {
-    return *quantity;
-  }
-  throw Error(
-      {"--output, " + path, "its name does not state what to write",
-       "names ending in depth, coordinate, phase, modulation or status, and .npy; depth and "
-       "status also .png",
-       "use a name such as depth.png or part_phase.npy"});
-}
-
-const std::vector<float>& values_of(FringeQuantity quantity, const MeasuredFringes& measured) {
-  if (quantity == FringeQuantity::depth) return measured.depth_m;
-  if (quantity == FringeQuantity::coordinate) return measured.decoded.coordinate_px;
-  if (quantity == FringeQuantity::phase) return measured.decoded.phase_rad;
-  return measured.decoded.modulation;
-}
-
-void write_fringe_file(const std::string& path, const MeasuredFringes& measured,
-                       double depth_unit_m, AtomicFile& file) {
-  const FringeQuantity quantity = fringe_quantity(path);
-  const ImageSize size = {measured.decoded.width, measured.decoded.height};
-  if (quantity == FringeQuantity::status) {
-    return write_status_image(path, measured.decoded.status, kFringeColours, size, file);
-  }
-  const std::span<const float> values(values_of(quantity, measured));
-  if (is_npy(path)) return write_image_npy(values, "<f4", size, file);
-  write_multiples_png(values, depth_unit_m,
-                      "depth in units of " + number_text(depth_unit_m) + " m, 0: none", size, file);
-}
 
 void require_size(const std::string& path, const GreyImage& image,
                   const PinholeIntrinsics& camera) {
@@ -95,12 +46,6 @@ void require_size(const std::string& path, const GreyImage& image,
 
 std::string bits_text(const GreyImage& image) {
   return fmt::format("{} bits", std::bit_width(image.max_level));
-}
-
-/// Throws Error unless every name states its content: depth, coordinate, phase, modulation or
-/// status, and .npy, or .png of depth and status.
-void check_fringe_outputs(std::span<const std::string> paths) {
-  for (const std::string& path : paths) fringe_quantity(path);
 }
 
 /// The images of the patterns by the camera of `setup`: PNG images in their order, or one NumPy
@@ -125,16 +70,6 @@ std::vector<GreyImage> load_camera_images(std::span<const std::string> paths,
   return images;
 }
 
-/// Writes all outputs. Throws Error.
-void add_fringe_files(std::span<const std::string> paths, const MeasuredFringes& measured,
-                      double depth_unit_m, StagedFiles& files) {
-  for (const std::string& path : paths) {
-    AtomicFile& file = files.add(path);
-    write_fringe_file(path, measured, depth_unit_m, file);
-    file.finish();
-  }
-}
-
 /// Writes pattern_00.png ... to a folder, which is created. Returns their names. Throws Error.
 std::vector<std::string> add_patterns(const std::string& folder, const FringePatterns& patterns,
                                       StagedFiles& files) {
@@ -153,15 +88,12 @@ std::vector<std::string> add_patterns(const std::string& folder, const FringePat
   return names;
 }
 
-/// The command line of `glidar structured-light`.
+/// The command line of `glidar depth structured-light`.
 struct StructuredLightFlags {
   std::string setup;
   std::vector<std::string> images;
-  std::vector<std::string> outputs;
+  ImageOutputs outputs = {.depth_unit_mm = 0.1};
   std::string pattern_folder;  ///< empty: no patterns are written
-  double depth_unit_mm = 0.1;
-  unsigned threads = 0;
-  bool quiet = false;
 };
 
 /// Declares all arguments.
@@ -173,29 +105,22 @@ void add_structured_light_options(CLI::App& command, StructuredLightFlags& flags
       .add_option("IMAGE", flags.images,
                   "Images of the camera, one for each pattern (.png), or one array of them (.npy)")
       ->type_name("");
+  add_output_options(command, kFringeContents, flags.outputs);
   const OptionGroup output(command, "Output");
-  output.add_repeatable("-o,--output", "FILE",
-                        "Name that states the content, such as depth.npy; see below",
-                        [&flags](const std::string& path) { flags.outputs.push_back(path); });
-  output.add("--depth-unit-mm", "MM", "Unit of depth images [0.1]", flags.depth_unit_mm,
-             number(kAboveZero, kFinite, "a finite number above 0"));
   output.add("--patterns", "FOLDER", "Write the images to be projected: pattern_00.png ...",
              flags.pattern_folder);
-  const OptionGroup run(command, "Run");
-  run.add("-j,--threads", "N", "Number of threads; 0: one per processor [0]", flags.threads,
-          whole<unsigned>(0, 4096));
-  run.add_flag("-q,--quiet", "No summary, only warnings", flags.quiet);
+  add_run_options(command, flags.outputs);
 }
 
 constexpr const char* kStructuredLightExamples =
     R"(Phase-shifted fringes with a Gray code: writes the images to be projected, and turns the camera's
 images of them into depth.
 Examples:
-  glidar structured-light examples/scanner.yaml --patterns patterns/
+  glidar depth structured-light examples/scanner.yaml --patterns patterns/
 With your own files, the images in the order of the patterns:
-  glidar structured-light setup.yaml image_*.png -o depth.npy -o status.png -o phase.npy
+  glidar depth structured-light setup.yaml image_*.png -o depth.npy -o status.png -o phase.npy
 With the images of a simulated scanner, as one NumPy array:
-  glidar structured-light examples/scanner.yaml view.patterns.npy -o depth.npy
+  glidar depth structured-light examples/scanner.yaml view.patterns.npy -o depth.npy
 
 setup.yaml is a sensor file with a depth_camera of type structured_light, which glidar render
 simulates, or has the keys of pinhole optics in sensor files:
@@ -210,12 +135,8 @@ status.npy a number and status.png a colour for each cause of a hole.
 Exit codes: 0 done, 2 the images or options are not valid.)";
 
 void check_structured_light_flags(const StructuredLightFlags& flags) {
-  check_fringe_outputs(flags.outputs);
-  if (flags.outputs.empty() && flags.pattern_folder.empty()) {
-    throw Error({"--output", "there is neither -o nor --patterns, so nothing would be written", "",
-                 "add -o depth.npy or --patterns FOLDER, for example"});
-  }
-  if (flags.images.empty() == flags.outputs.empty()) return;
+  check_outputs(flags.outputs, kFringeContents, "--patterns", !flags.pattern_folder.empty());
+  if (flags.images.empty() == flags.outputs.paths.empty()) return;
   if (flags.images.empty()) {
     throw Error({"IMAGE", "there are no images to be decoded", "one for each pattern",
                  "add the images in the order of the patterns"});
@@ -223,27 +144,32 @@ void check_structured_light_flags(const StructuredLightFlags& flags) {
   throw Error({"--output", "there are images but no output", "", "add -o depth.npy, for example"});
 }
 
-MeasuredFringes measure_images(const StructuredLightFlags& flags, const StructuredLight& setup) {
-  ThreadPool pool(flags.threads);
-  return measure_fringes(load_camera_images(flags.images, setup), setup, &pool);
-}
-
-void print_summary(const StructuredLightFlags& flags, const std::vector<std::string>& patterns,
-                   const DecodedFringes& decoded) {
-  if (!patterns.empty()) {
-    print("wrote {} to {} ({} files)\n", patterns.front(), patterns.back(), patterns.size());
+void write_fringe_image(const std::string& path, std::string_view content,
+                        const ImageOutputs& outputs, const MeasuredFringes& measured,
+                        AtomicFile& file) {
+  const DecodedFringes& decoded = measured.decoded;
+  const ImageSize size = {decoded.width, decoded.height};
+  if (content == "status") {
+    return write_status_image(path, numbers_of(decoded.status), kFringeColours, size, file);
   }
-  if (flags.outputs.empty()) return;
-  print("{}x{} pixels: {}\nwrote {}\n", decoded.width, decoded.height,
-        status_shares(decoded.status, kFringeStatusCount),
-        fmt::format("{}", fmt::join(flags.outputs, " ")));
+  if (content == "depth") {
+    return write_length_image(path, measured.depth_m, outputs, "depth", size, file);
+  }
+  write_number_image(path,
+                     content == "coordinate" ? decoded.coordinate_px
+                     : content == "phase"    ? decoded.phase_rad
+                                             : decoded.modulation,
+                     1.0, "", size, file);
 }
 
 int run_structured_light(const StructuredLightFlags& flags) {
   check_structured_light_flags(flags);
   const StructuredLight setup = load_structured_light(flags.setup);
   MeasuredFringes measured;
-  if (!flags.outputs.empty()) measured = measure_images(flags, setup);
+  if (!flags.outputs.paths.empty()) {
+    ThreadPool pool(flags.outputs.threads);
+    measured = measure_fringes(load_camera_images(flags.images, setup), setup, &pool);
+  }
   std::vector<std::string> read = flags.images;
   read.push_back(flags.setup);
   StagedFiles files;
@@ -252,17 +178,28 @@ int run_structured_light(const StructuredLightFlags& flags) {
   if (!flags.pattern_folder.empty()) {
     patterns = add_patterns(flags.pattern_folder, setup.patterns, files);
   }
-  add_fringe_files(flags.outputs, measured, flags.depth_unit_mm * kMillimetre_m, files);
+  add_images(
+      flags.outputs, kFringeContents,
+      [&](const std::string& path, std::string_view content, AtomicFile& file) {
+        write_fringe_image(path, content, flags.outputs, measured, file);
+      },
+      files);
   files.commit();
-  if (!flags.quiet) print_summary(flags, patterns, measured.decoded);
+  if (!patterns.empty() && !flags.outputs.quiet) {
+    print("wrote {} to {} ({} files)\n", patterns.front(), patterns.back(), patterns.size());
+  }
+  if (flags.outputs.paths.empty()) return kDone;
+  const DecodedFringes& decoded = measured.decoded;
+  print_shares(numbers_of(decoded.status), status_names<FringeStatus>(kFringeStatusCount),
+               {decoded.width, decoded.height}, flags.outputs);
   return kDone;
 }
 
 }  // namespace
 
-Command add_structured_light(CLI::App& program) {
+Command add_structured_light(CLI::App& depth) {
   CLI::App& command =
-      *program.add_subcommand("structured-light", "Fringe patterns, and depth from images of them");
+      *depth.add_subcommand("structured-light", "Fringe patterns, and depth from images of them");
   const auto flags = std::make_shared<StructuredLightFlags>();
   command.footer(kStructuredLightExamples);
   add_structured_light_options(command, *flags);
