@@ -22,8 +22,8 @@ class FieldVisitor;
 /// A stereo camera with a projector: depths come from infrared images by stereo matching. The
 /// sensor's optics are the left camera; the right one has the same, displaced along +x.
 struct ActiveStereo {
-  static constexpr TypeInfo kType = {"active_stereo",
-                                     "infrared images of a dot pattern, matched by glidar depth stereo"};
+  static constexpr TypeInfo kType = {
+      "active_stereo", "infrared images of a dot pattern, matched by glidar depth stereo"};
 
   /// What the left image is matched with.
   enum class Reference : std::uint8_t {

@@ -88,7 +88,8 @@ std::vector<float> triangulate(const DecodedFringes& decoded, const StructuredLi
 /// pattern. The sensor's optics are the camera.
 struct StructuredLightCamera {
   static constexpr TypeInfo kType = {
-      "structured_light", "images of fringes and a Gray code, decoded by glidar depth structured-light"};
+      "structured_light",
+      "images of fringes and a Gray code, decoded by glidar depth structured-light"};
 
   Pinhole projector;  ///< its width and height are those of the patterns
   Pose projector_from_camera = Pose::Identity();

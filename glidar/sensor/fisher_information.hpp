@@ -13,11 +13,6 @@
 
 namespace glidar {
 
-/// A displacement in words, in its own coordinate frame: a translation, or a rotation about an axis
-/// through a point, with a pitch if it is a screw motion. Lengths much smaller than `length_m` are
-/// omitted.
-std::string describe_displacement(const Vector6& displacement, double length_m);
-
 /// A small displacement: rotation (rad) about x, y, z, then translation (m) along x, y, z.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;

@@ -174,7 +174,8 @@ void PoseReceiver::process_connection_events() {
     if (event != link::PeerEvent::left) continue;
     loss_unreported_ = true;
     is_connected_ = false;
-    // It may have answered, sent all its poses and ended since the last call, and the reply is lost.
+    // It may have answered, sent all its poses and ended since the last call, and the reply is
+    // lost.
     if (awaits_reply_ && link::wait_for({&poses_}, -1, {})) is_ready_ = true;
     open_handshake();
     lost_ = std::chrono::steady_clock::now();

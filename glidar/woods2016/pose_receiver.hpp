@@ -27,8 +27,8 @@ class PoseReceiver {
   PoseReceiver(link::Context& context, const PoseReceiverOptions& options, link::ErrorLog& errors);
 
   /// True if the simulator has answered the handshake, which is sent after the subscription, so
-  /// that no pose is missed, and again after a reconnection; also if it has left and its poses wait.
-  /// To be called repeatedly.
+  /// that no pose is missed, and again after a reconnection; also if it has left and its poses
+  /// wait. To be called repeatedly.
   bool is_ready();
   /// The next pose; empty if there is none now. Invalid messages are logged and skipped.
   std::optional<Placement> receive();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/depth_camera/stereo.hpp>
 #include <depth_camera/test_pairs.hpp>
+#include <glidar/depth_camera/stereo.hpp>
 #include <support/error_text.hpp>
 
 #include <gmock/gmock.h>

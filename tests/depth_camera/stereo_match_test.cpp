@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/stereo.hpp>
 
-#include <glidar/core/instruction_set.hpp>
 #include <depth_camera/brute_force.hpp>
 #include <depth_camera/test_pairs.hpp>
+#include <glidar/core/instruction_set.hpp>
 
 #include <gtest/gtest.h>
 

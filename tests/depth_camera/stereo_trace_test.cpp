@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/depth_camera/stereo.hpp>
 
-#include <glidar/depth_camera/stereo_matcher.hpp>
 #include <depth_camera/brute_force.hpp>
 #include <depth_camera/test_pairs.hpp>
+#include <glidar/depth_camera/stereo_matcher.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -69,7 +69,7 @@ TestPair shifted_noise(std::uint32_t width, std::uint32_t height, std::uint32_t 
 }
 
 TestPair dot_pair(std::uint32_t width, std::uint32_t height,
-                    const std::function<double(double row)>& disparity_px) {
+                  const std::function<double(double row)>& disparity_px) {
   TestPair pair = {flat_image(width, height, 0), flat_image(width, height, 0)};
   std::vector<double> left(std::size_t{width} * height, 20.0);
   std::vector<double> right = left;
@@ -88,7 +88,7 @@ TestPair dot_pair(std::uint32_t width, std::uint32_t height,
 }
 
 TestPair step_pair(std::uint32_t width, std::uint32_t height, std::uint32_t far_px,
-                     std::uint32_t near_px, std::uint32_t begin, std::uint32_t end) {
+                   std::uint32_t near_px, std::uint32_t begin, std::uint32_t end) {
   TestPair pair = {noise_image(width, height, 3), noise_image(width, height, 4)};
   for (std::size_t y = 0; y < height; ++y) {
     std::uint16_t* const right = pair.right.level.data() + y * width;

@@ -26,10 +26,10 @@ TestPair shifted_noise(std::uint32_t width, std::uint32_t height, std::uint32_t 
 /// Smooth random dots (Gaussians of 0.9 px), drawn at exact positions: those of the left image are
 /// `disparity_px(row)` px further right.
 TestPair dot_pair(std::uint32_t width, std::uint32_t height,
-                    const std::function<double(double row)>& disparity_px);
+                  const std::function<double(double row)>& disparity_px);
 
 /// Dots on two planes: the columns from `begin` to `end` of the left image have the near disparity.
 TestPair step_pair(std::uint32_t width, std::uint32_t height, std::uint32_t far_px,
-                     std::uint32_t near_px, std::uint32_t begin, std::uint32_t end);
+                   std::uint32_t near_px, std::uint32_t begin, std::uint32_t end);
 
 }  // namespace glidar::testing

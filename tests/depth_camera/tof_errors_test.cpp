@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <depth_camera/tof_pictures.hpp>
 #include <glidar/depth_camera/time_of_flight.hpp>
 #include <support/error_text.hpp>
-#include <depth_camera/tof_pictures.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

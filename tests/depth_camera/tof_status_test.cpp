@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/depth_camera/time_of_flight.hpp>
 #include <depth_camera/tof_pictures.hpp>
+#include <glidar/depth_camera/time_of_flight.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
