@@ -157,7 +157,8 @@ TEST(FlatFootprints, HaveTheReflectanceThatSubRaysSample) {
   float highest = 0.0F;
   for (std::size_t i = 0; i < closed.range_m.size(); ++i) {
     ASSERT_EQ(closed.status[i], Status::hit);
-    ASSERT_NEAR(closed.range_m[i], sampled.range_m[i], 2e-5) << i;
+    // The contrast times the second order of the beam's width.
+    ASSERT_NEAR(closed.range_m[i], sampled.range_m[i], 1e-4) << i;
     ASSERT_NEAR(closed.intensity[i], sampled.intensity[i], 1e-4 * sampled.intensity[i]) << i;
     const float at_1_m = closed.intensity[i] *
                          static_cast<float>(std::pow(closed.range_m[i], 2.3)) /
@@ -176,7 +177,7 @@ TEST(FlatFootprints, AreTheSameInMovingScenes) {
   for (int i = 0; i < 64; ++i) scan.azimuths_rad.push_back(0.01 * (i - 32));
   stage.sensor.optics = scan;
   stage.add_wall(30.0);
-  stage.add_wall(12.0, -2.0, 2.0);
+  stage.add_panel({-2.0, -1.0, 12.0}, {4.0, 0.0, 0.0}, {0.0, 4.0, 0.0});
   add_texture(stage);
   const Pair pair(stage);
   Motion motion = static_motion(stage.scene, Pose::Identity());
@@ -185,6 +186,14 @@ TEST(FlatFootprints, AreTheSameInMovingScenes) {
       Eigen::AngleAxisd(-0.5 * std::numbers::pi, Eigen::Vector3d::UnitY()).toRotationMatrix();
   motion.world_from_sensor = ConstantTwist{.pose = towards_walls, .linear_m_s = {4.0, 0.3, 0.0}};
   motion.world_from_instance[1] = ConstantTwist{.linear_m_s = {1.0, 0.0, -5.0}};
+  for (const std::size_t entry : {8U, 40U}) {  // on the wall at rest, and on the other
+    const auto renderer = make_renderer(pair.closed.scene, {.threads = 2});
+    Simulator simulator(pair.closed.scene, stage.sensor, *renderer);
+    Frame frame;
+    const PointTrace trace = explain(simulator, motion, entry, frame);
+    EXPECT_EQ(frame.ground_truth.instance[entry], entry == 8U ? 0U : 1U);
+    EXPECT_TRUE(trace.waveform->is_in_closed_form) << entry;
+  }
   const Frame closed = pair.closed.shoot(motion);
   const Frame sampled = pair.sampled.shoot(motion);
   EXPECT_EQ(closed.status, sampled.status);
@@ -244,7 +253,7 @@ TEST(FlatFootprints, AreSampledWhereTheyHaveNoClosedForm) {
 
 TEST(FlatFootprints, HaveNormalsAtCornersThatAreThoseOfThePlane) {
   Stage stage;
-  stage.add_wall(20.0);
+  stage.add_turned(20.0, 0.7, -30.0, 30.0);
   Mesh& mesh = stage.scene.meshes[0];
   const Triangle& t = mesh.triangles[0];
   const auto at = [&](std::size_t k) { return mesh.positions_m[t[k]]; };
@@ -264,11 +273,11 @@ class FlatFootprintsBy : public ::testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(FlatFootprintsBy, EveryRendererHaveTheSameBytes) {
+TEST_P(FlatFootprintsBy, HaveTheSameBytesForAnyThreads) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(60, 40, 0.6);
   stage.add_turned(9.0, 0.8, -3.0, 2.0);
-  stage.add_wall(14.0);
+  stage.add_wall(10.6);
   add_texture(stage);
   stage.scene.materials[1].diffuse_texture.texture = TextureUse::kNone;
   stage.renderer.threads = 1;
@@ -288,7 +297,8 @@ TEST_P(FlatFootprintsBy, EveryRendererHaveTheSameBytes) {
             10);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FlatFootprintsBy, ::testing::ValuesIn(renderer_kinds()),
+// The raster has no footprints.
+INSTANTIATE_TEST_SUITE_P(All, FlatFootprintsBy, ::testing::Values("rays", "auto", "gpu"),
                          [](const auto& param) { return param.param; });
 
 }  // namespace

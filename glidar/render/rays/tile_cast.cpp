@@ -231,13 +231,9 @@ void cast_footprints(const Job& job, const CastRequest& request, BeamRange range
   BeamQueue diffuse(job, {.diffuse = true});
   for (std::size_t first = range.begin; first < range.end; first += size) {
     const OtherHits needed = request.needed_of_others(first);
-    if (needed == OtherHits::ids) continue;
     for (std::size_t beam = first + 1; beam < first + size; ++beam) {
-      if (needed == OtherHits::diffuse) {
-        diffuse.add(beam);
-      } else {
-        add_or_miss(job, beam, all_columns);
-      }
+      if (needed == OtherHits::diffuse) diffuse.add(beam);
+      if (needed == OtherHits::all_columns) add_or_miss(job, beam, all_columns);
     }
   }
   all_columns.finish();
