@@ -118,8 +118,11 @@ void write_hit(TraceWriter& out) {
   out.line("hit", "object '{}' (id {}, class {}), triangle {}, material '{}'", instance.name,
            instance.id, out.scene.class_names.at(instance.class_id), hits.primitive[i],
            material.name);
-  if (out.trace.waveform && out.trace.waveform->sub_rays > 1)
+  if (out.trace.waveform && out.trace.waveform->is_in_closed_form) {
+    out.line("", "of the central ray of the footprint");
+  } else if (out.trace.waveform && out.trace.waveform->sub_rays > 1) {
     out.line("", "of the sub-ray with the strongest contribution");
+  }
   out.line("", "range {:.9g} m, depth {:.9g} m, incidence {:.4f} deg", hits.range_m[i],
            hits.depth_m[i],
            kDegreesPerRadian * portable_acos(std::min(1.0F, hits.cos_incidence[i])));
@@ -250,7 +253,11 @@ std::string origin_text(const TraceWriter& out, const WaveformTrace::LightPath& 
 
 void write_paths(TraceWriter& out, const WaveformTrace& pulse) {
   constexpr std::size_t kMax = 40;
-  out.line("paths", "{}, of {} sub-rays and weather", pulse.light_paths.size(), pulse.sub_rays);
+  if (pulse.is_in_closed_form) {
+    out.line("paths", "1: the footprint is on one flat triangle, integrated in closed form");
+  } else {
+    out.line("paths", "{}, of {} sub-rays and weather", pulse.light_paths.size(), pulse.sub_rays);
+  }
   for (std::size_t k = 0; k < std::min(kMax, pulse.light_paths.size()); ++k) {
     const WaveformTrace::LightPath& light_path = pulse.light_paths[k];
     const std::string ray =

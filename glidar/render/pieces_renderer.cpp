@@ -54,6 +54,7 @@ class PiecesScene {
     pieces.world_from_instance = arrays.poses;
     pieces.instance_enabled = arrays.instance_enabled;
     pieces.targets = arrays.targets;
+    pieces.needed_of_others = {};  // hits have the ids of pieces while they are cast
     return pieces;
   }
 

@@ -37,6 +37,9 @@ struct FootprintLayout {
   double radius_m = 0.0;
 };
 
+/// Which columns are needed of the hits of a footprint besides its first one; ids always are.
+enum class OtherHits : std::uint8_t { all_columns, diffuse, ids };
+
 /// One cast: beams from a pose into the scene.
 struct CastRequest {
   const Beams& beams;
@@ -53,6 +56,10 @@ struct CastRequest {
   /// Set if all beams are sub-rays of footprints: a renderer may then search those of each at once.
   /// The hits do not depend on it.
   FootprintLayout footprints = {};
+  /// Called for a footprint, by its first beam, when the ids of all its hits and all columns of the
+  /// first are known, by the thread that found them. A renderer may leave what is not needed
+  /// unspecified. Empty: all columns of all hits are needed.
+  FunctionRef<OtherHits(std::size_t)> needed_of_others = {};
   /// Called in runs, once for every beam, when its hits are known, by the thread that found them,
   /// so that they are still in its cache. Empty: not called.
   FunctionRef<void(BeamRange)> on_tile_done = {};

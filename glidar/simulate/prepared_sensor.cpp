@@ -46,6 +46,9 @@ PulseModel pulse_model(const Sensor& sensor, bool has_mirrors) {
   model.weather = weather_of(sensor);
   model.lidar_equation = model.weather ? model.weather->light : *sensor.lidar_equation;
   model.has_mirrors = has_mirrors;
+  model.has_closed_form = sensor.footprint && !has_mirrors && !model.weather && !sensor.doppler &&
+                          model.lidar_equation.overlap.empty() &&
+                          model.lidar_equation.extinction_per_m == 0.0;
   return model;
 }
 

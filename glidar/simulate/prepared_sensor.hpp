@@ -79,6 +79,9 @@ struct PulseModel {
   std::optional<PreparedWeather> weather;  ///< empty: clear air
   LidarEquation lidar_equation;            ///< with the weather's extinction
   bool has_mirrors = false;                ///< whether the sensor may see mirrors
+  /// Whether footprints on flat triangles are integrated, see FlatFootprints: their sub-rays differ
+  /// only by a power of the range and the angle of incidence.
+  bool has_closed_form = false;
 };
 
 /// A depth camera that is simulated from its raw images.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/pulse_cast.hpp>
 
+#include <glidar/simulate/flat_footprints.hpp>
 #include <glidar/simulate/mirrors.hpp>
 
 #include <algorithm>
@@ -11,8 +12,6 @@ namespace {
 
 // For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
 constexpr std::size_t kSubRaysPerBlock = std::size_t{1} << 14U;
-
-constexpr HitColumnMask kSignalFields = {.shading = true, .diffuse = true};
 
 /// Casts the sub-rays that hit a mirror once more.
 void cast_mirrored(const Simulation& s) {
@@ -62,6 +61,17 @@ void cast_block(const Simulation& s, BeamRange block) {
   };
   CastRequest request = cast_request(s, memory.beams, hit_columns);
   request.footprints = layout_of(model.sub_rays);
+  const FlatFootprints flat_footprints(s);
+  memory.flat.assign(block.end - block.begin, {});
+  const auto needed = [&](std::size_t first) {
+    FlatFootprint& flat = memory.flat[first / model.sub_rays.size()];
+    flat = flat_footprints.find(first);
+    if (!flat.is_in_closed_form()) return OtherHits::all_columns;
+    return flat.kind == FlatFootprint::Kind::plain ? OtherHits::ids : OtherHits::diffuse;
+  };
+  if (model.has_closed_form && !s.hit_columns.radial_velocity) {  // found for every sub-ray
+    request.needed_of_others = FunctionRef<OtherHits(std::size_t)>(needed);
+  }
   request.progress = subrange(s.progress, fraction(block.begin), fraction(block.end));
   cast(s, request, memory.hits);
   memory.mirrored_from.clear();

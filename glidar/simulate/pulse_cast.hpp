@@ -11,6 +11,9 @@ namespace glidar {
 /// Pulses that one task measures; tiles of pulses begin at multiples of it.
 inline constexpr std::size_t kPulsesPerTask = kSampleBatch;
 
+/// The columns that a sub-ray's signal depends on.
+inline constexpr HitColumnMask kSignalFields = {.shading = true, .diffuse = true};
+
 /// Casts pulses as they are: every one spreads into sub-rays, which mirrors reflect once. Calls
 /// on_tile_done for every pulse once, on the renderer's threads, while Simulation::workspace holds
 /// the hits of its sub-rays. `pulses` begins at a multiple of kPulsesPerTask.

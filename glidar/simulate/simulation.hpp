@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/depth_camera/stereo.hpp>
+#include <glidar/sensor/lidar/plane_echo.hpp>
 #include <glidar/simulate/direction_grid.hpp>
 #include <glidar/simulate/moving_cast.hpp>
 #include <glidar/simulate/prepared_sensor.hpp>
@@ -17,12 +18,29 @@
 
 namespace glidar {
 
+/// How the footprint of a pulse is measured, see FlatFootprints.
+struct FlatFootprint {
+  enum class Kind : std::uint8_t {
+    unknown,
+    sampled,   ///< by sub-rays
+    plain,     ///< in closed form
+    coloured,  ///< in closed form, with reflectances at the sub-rays
+  };
+  Kind kind = Kind::unknown;
+  PlaneAcrossBeam plane = {};  ///< of closed forms
+
+  [[nodiscard]] bool is_in_closed_form() const {
+    return kind == Kind::plain || kind == Kind::coloured;
+  }
+};
+
 /// Beams that are cast beside those of the sensor: sub-rays of pulses, beams from a projector.
 struct SubRayWorkspace {
   std::size_t first_pulse = 0;  ///< whose sub-rays come first
   Beams beams;
   Hits hits;                                 ///< of `beams`
   std::vector<std::uint8_t> hidden;          ///< per beam of the sensor, see find_hidden()
+  std::vector<FlatFootprint> flat;           ///< per pulse, as far as it is known
   std::vector<double> signals;               ///< per sub-ray: its signal alone
   std::vector<double> velocities_m_s;        ///< per sub-ray: radial velocity; empty: not wanted
   Beams mirrored;                            ///< beams reflected by mirrors

@@ -22,6 +22,7 @@ struct WaveformTrace {
   };
   std::size_t pulse = 0;  ///< which pulse to trace
   std::size_t sub_rays = 0;
+  bool is_in_closed_form = false;  ///< all sub-rays are one path, see FlatFootprints
   std::vector<LightPath>
       light_paths;                  ///< PulseEcho::strongest counts in them; wide apart: by range
   std::vector<PulseEcho> echoes;    ///< peaks of the waveform, in order of range

@@ -8,6 +8,7 @@
 #include <glidar/sensor/lidar/beam_surfaces.hpp>
 #include <glidar/sensor/lidar/weather_echoes.hpp>
 #include <glidar/simulate/echo_velocity.hpp>
+#include <glidar/simulate/flat_footprints.hpp>
 #include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/pulse_cast.hpp>
 
@@ -156,6 +157,9 @@ void sample_receiver(const LidarEquation& light, const Frame& frame, std::size_t
 /// Memory of a thread, for one pulse after the other.
 struct PulseMemory {
   WaveformBuffer waveform;
+  std::vector<std::size_t> received;  ///< sub-rays whose signals are needed
+  Hits received_hits;                 ///< their hits
+  std::vector<double> signals;        ///< theirs
   ReceiverSamples samples;
   std::vector<WeatherEcho> weather;
   BeamSurfaces surfaces;
@@ -165,12 +169,14 @@ bool traces(const Simulation& s, std::size_t pulse) {
   return s.trace != nullptr && s.trace->pulse == pulse;
 }
 
-void trace_echoes(const Simulation& s, std::size_t pulse, const WaveformBuffer& waveform) {
+void trace_echoes(const Simulation& s, std::size_t pulse, bool is_in_closed_form,
+                  const WaveformBuffer& waveform) {
   WaveformTrace& trace = *s.trace;
   const std::vector<SubRay>& rays = s.prepared.pulse_model->sub_rays;
   const std::size_t first = first_sub_ray(s, pulse);
   RadialVelocities velocities(s.motion);
   trace.sub_rays = rays.size();
+  trace.is_in_closed_form = is_in_closed_form;
   trace.light_paths.clear();
   for (std::size_t k = 0; k < waveform.paths; ++k) {
     WaveformTrace::LightPath light_path{.path = waveform.path[k]};
@@ -184,7 +190,7 @@ void trace_echoes(const Simulation& s, std::size_t pulse, const WaveformBuffer& 
         light_path.reflected =
             memory.mirrored_hits.instance[mirrored_beam(memory, light_path.path.source)];
       light_path.path.source -= static_cast<std::uint32_t>(first);
-      light_path.share = rays[light_path.path.source].share;
+      light_path.share = is_in_closed_form ? 1.0 : rays[light_path.path.source].share;
     }
     trace.light_paths.push_back(light_path);
   }
@@ -192,19 +198,26 @@ void trace_echoes(const Simulation& s, std::size_t pulse, const WaveformBuffer& 
                       waveform.echo.begin() + static_cast<std::ptrdiff_t>(waveform.echoes));
 }
 
-/// Finds the echoes that the receiver detects. Returns the status of a pulse without any.
-Status find_returns(const Simulation& s, std::size_t pulse, const EchoContribution& surface,
-                    PulseMemory& memory) {
+/// Finds the echoes of all contributions to a pulse. Returns the strongest surface's.
+EchoContribution find_echoes(const Simulation& s, std::size_t pulse, const RngKey& key,
+                             PulseMemory& memory) {
+  WaveformBuffer& waveform = memory.waveform;
+  const Sensor& sensor = s.prepared.sensor;
+  collect_paths(s, pulse, memory.surfaces, waveform);
+  const EchoContribution surface = strongest_surface(waveform);
+  const double width_m =
+      sensor.footprint && waveform.paths > 0 ? diameter_m(*sensor.footprint, surface.range_m) : 0.0;
+  add_weather(s.prepared.pulse_model->weather, key, surface.range_m, memory.weather, waveform);
+  detect_peaks(pulse_sigma_m(sensor.receiver), width_m, waveform);
+  return surface;
+}
+
+/// Keeps the echoes that the receiver detects. Returns the status of a pulse without any.
+Status receive_echoes(const Simulation& s, std::size_t pulse, const RngKey& key,
+                      const EchoContribution& surface, PulseMemory& memory) {
   WaveformBuffer& waveform = memory.waveform;
   const Sensor& sensor = s.prepared.sensor;
   const PulseModel& model = *s.prepared.pulse_model;
-  const double width_m =
-      sensor.footprint && waveform.paths > 0 ? diameter_m(*sensor.footprint, surface.range_m) : 0.0;
-  RngKey key = memory.samples.key;
-  key.beam = static_cast<std::uint32_t>(pulse);
-  add_weather(model.weather, key, surface.range_m, memory.weather, waveform);
-  detect_peaks(pulse_sigma_m(sensor.receiver), width_m, waveform);
-  if (traces(s, pulse)) trace_echoes(s, pulse, waveform);
   double strongest_signal = 0.0;
   for (std::size_t k = 0; k < waveform.echoes; ++k) {
     const bool is_surface = waveform.path[waveform.echo[k].strongest].source != kInvalidId;
@@ -217,12 +230,31 @@ Status find_returns(const Simulation& s, std::size_t pulse, const EchoContributi
   return missing_return_status(s, surface, strongest_signal / threshold, pulse);
 }
 
-void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) {
+FlatFootprint& flat_footprint(const Simulation& s, std::size_t pulse) {
+  return s.workspace.sub_rays.flat[pulse - s.workspace.sub_rays.first_pulse];
+}
+
+/// The echo of a pulse in closed form. Returns its contribution.
+EchoContribution integrate_echo(const Simulation& s, std::size_t pulse,
+                                const FlatFootprints& flat_footprints, WaveformBuffer& waveform) {
+  const std::size_t first = first_sub_ray(s, pulse);
+  waveform.echo[0] = flat_footprints.measure(flat_footprint(s, pulse), first,
+                                             s.workspace.sub_rays.signals[first], waveform);
+  waveform.echoes = 1;
+  return waveform.path[0];
+}
+
+void measure_pulse(const Simulation& s, std::size_t pulse, const FlatFootprints& flat_footprints,
+                   PulseMemory& memory) {
   WaveformBuffer& waveform = memory.waveform;
   const Receiver& receiver = s.prepared.sensor.receiver;
-  collect_paths(s, pulse, memory.surfaces, waveform);
-  const EchoContribution surface = strongest_surface(waveform);
-  const Status missing = find_returns(s, pulse, surface, memory);
+  RngKey key = memory.samples.key;
+  key.beam = static_cast<std::uint32_t>(pulse);
+  const bool is_flat = flat_footprint(s, pulse).is_in_closed_form();
+  const EchoContribution surface = is_flat ? integrate_echo(s, pulse, flat_footprints, waveform)
+                                           : find_echoes(s, pulse, key, memory);
+  if (traces(s, pulse)) trace_echoes(s, pulse, is_flat, waveform);
+  const Status missing = receive_echoes(s, pulse, key, surface, memory);
   std::array<int, kMaxReturns> chosen;
   select_returns(receiver, {waveform.echo.data(), waveform.echoes}, chosen);
   if (traces(s, pulse)) {
@@ -247,27 +279,53 @@ void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) 
   }
 }
 
-/// The signal of each sub-ray of a run of pulses alone, and its radial velocity if it is wanted.
-void find_signals(const Simulation& s, BeamRange range) {
+/// The signal of each sub-ray of a run of pulses alone, of pulses in closed form that of the
+/// central one, and their radial velocities if they are wanted.
+void find_signals(const Simulation& s, BeamRange range, const FlatFootprints& flat_footprints,
+                  PulseMemory& of_run) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
   const BeamRange sub_rays{first_sub_ray(s, range.begin), first_sub_ray(s, range.end)};
   if (s.hit_columns.radial_velocity) {
     find_radial_velocities(s.motion, memory.beams, s.frame.stamp_ns, memory.hits, sub_rays,
                            memory.velocities_m_s);
   }
+  of_run.received.clear();
+  for (std::size_t pulse = range.begin; pulse < range.end; ++pulse) {
+    const std::size_t first = first_sub_ray(s, pulse);
+    FlatFootprint& flat = flat_footprint(s, pulse);
+    if (flat.kind == FlatFootprint::Kind::unknown) flat = flat_footprints.find(first);
+    const std::size_t end = flat.is_in_closed_form() ? first + 1 : first_sub_ray(s, pulse + 1);
+    for (std::size_t ray = first; ray < end; ++ray) of_run.received.push_back(ray);
+  }
+  const std::size_t count = of_run.received.size();
+  Hits& hits = of_run.received_hits;
+  resize(hits, count, kSignalFields);
+  of_run.signals.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t ray = of_run.received[k];
+    hits.range_m[k] = memory.hits.range_m[ray];
+    hits.instance[k] = memory.hits.instance[ray];
+    hits.primitive[k] = memory.hits.primitive[ray];
+    hits.cos_shading[k] = memory.hits.cos_shading[ray];
+    hits.diffuse[k] = memory.hits.diffuse[ray];
+  }
   received_signals(s.prepared.pulse_model->lidar_equation, s.scene, s.prepared.sensor.wavelength_m,
-                   memory.hits, sub_rays, std::span(memory.signals).subspan(sub_rays.begin));
+                   hits, {0, count}, of_run.signals);
+  for (std::size_t k = 0; k < count; ++k) memory.signals[of_run.received[k]] = of_run.signals[k];
 }
 
 }  // namespace
 
 void measure_waveforms(const Simulation& s, BeamRange tile) {
   PulseMemory memory;
+  const FlatFootprints flat_footprints(s);
   for (std::size_t first = tile.begin; first < tile.end; first += kPulsesPerTask) {
     const BeamRange run{first, std::min(first + kPulsesPerTask, tile.end)};
-    find_signals(s, run);
+    find_signals(s, run, flat_footprints, memory);
     sample_receiver(s.prepared.pulse_model->lidar_equation, s.frame, first, memory.samples);
-    for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) measure_pulse(s, pulse, memory);
+    for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) {
+      measure_pulse(s, pulse, flat_footprints, memory);
+    }
   }
 }
 

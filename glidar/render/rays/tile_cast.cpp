@@ -164,6 +164,82 @@ void cast_tiles(const Job& job, const Tiling& tiling, std::size_t begin, std::si
   }
 }
 
+/// Beams whose hits have ids, and wait until a batch is full. Three batches are in progress at a
+/// time, as in cast_tiles().
+class BeamQueue {
+ public:
+  BeamQueue(const Job& job, const HitColumnMask& hit_columns)
+      : job_(job), hit_columns_(hit_columns) {}
+
+  void add(std::size_t beam) {
+    HitBatch& batch = batches_[started_ % batches_.size()];
+    batch.beams.has_origins = !job_.beams.origins_m.empty();
+    set(batch, used_, beam);
+    if (++used_ == kLanes) advance();
+  }
+
+  void finish() {
+    for (std::size_t i = 0; i < batches_.size(); ++i) advance();
+  }
+
+ private:
+  void set(HitBatch& batch, unsigned lane, std::size_t beam) const {
+    batch.block.beam[lane] = beam;
+    batch.block.instance[lane] = job_.hits.instance[beam];
+    batch.block.primitive[lane] = job_.hits.primitive[beam];
+    batch.beams.direction.set(lane, job_.beams.directions[beam]);
+    if (batch.beams.has_origins) batch.beams.origin_m.set(lane, job_.beams.origins_m[beam]);
+  }
+
+  /// Prepares the batch that is filled, and writes the oldest.
+  void advance() {
+    HitBatch& filled = batches_[started_ % batches_.size()];
+    filled.block.mask = (1U << used_) - 1U;
+    for (unsigned lane = used_; used_ > 0 && lane < kLanes; ++lane) {
+      set(filled, lane, filled.block.beam[0]);
+    }
+    prepare_hits(job_, false, filled.block);
+    const HitBatch& before = batches_[(started_ + batches_.size() - 1) % batches_.size()];
+    job_.resolver.prefetch_corners(before.block, hit_columns_);
+    HitBatch& oldest = batches_[++started_ % batches_.size()];
+    job_.resolver.write_batch(job_.beams, hit_columns_, oldest, job_.hits);
+    oldest.block.mask = 0;
+    used_ = 0;
+  }
+
+  const Job& job_;
+  HitColumnMask hit_columns_;
+  std::array<HitBatch, 3> batches_;
+  std::size_t started_ = 0;  ///< the last of them is being filled
+  unsigned used_ = 0;        ///< lanes of it
+};
+
+/// Adds a beam that hits something, or writes a miss.
+void add_or_miss(const Job& job, std::size_t beam, BeamQueue& queue) {
+  if (job.hits.instance[beam] != kInvalidId) return queue.add(beam);
+  write_misses(job.hit_columns, beam, 1, job.hits);
+}
+
+/// Writes what is needed of the hits of footprints, whose ids are known.
+void cast_footprints(const Job& job, const CastRequest& request, BeamRange range) {
+  const std::size_t size = request.footprints.beams;
+  BeamQueue all_columns(job, job.hit_columns);
+  for (std::size_t first = range.begin; first < range.end; first += size) {
+    add_or_miss(job, first, all_columns);
+  }
+  all_columns.finish();
+  BeamQueue diffuse(job, {.diffuse = true});
+  for (std::size_t first = range.begin; first < range.end; first += size) {
+    const OtherHits needed = request.needed_of_others(first);
+    for (std::size_t beam = first + 1; beam < first + size; ++beam) {
+      if (needed == OtherHits::diffuse) diffuse.add(beam);
+      if (needed == OtherHits::all_columns) add_or_miss(job, beam, all_columns);
+    }
+  }
+  all_columns.finish();
+  diffuse.finish();
+}
+
 // About 50 microseconds of work, and its hits fit into a core's private cache.
 constexpr std::size_t kTilesPerTask = 64;
 
@@ -203,6 +279,13 @@ void TileCast::cast(const CastRequest& request, const HitFinder& finder, Hits& h
   ProgressCounter count(request.progress, tiling.size());
   // kLanes times the beams that are found at once fill as many tiles.
   const std::size_t group = finder.beams_at_once;
+  const bool by_footprint =
+      finder.find && request.needed_of_others && group == request.footprints.beams;
+  const auto write_hits = [&](std::size_t begin, std::size_t end) {
+    if (!by_footprint) return cast_tiles(job, tiling, begin, end);
+    tiling.for_beam_rows(begin, end,
+                         [&](BeamRange beams) { cast_footprints(job, request, beams); });
+  };
   const std::size_t grain = std::max<std::size_t>(1, kTilesPerTask / group);
   base_.thread_pool.parallel_for(
       (tiling.size() + group - 1) / group, grain, [&](std::size_t begin, std::size_t end) {
@@ -211,7 +294,7 @@ void TileCast::cast(const CastRequest& request, const HitFinder& finder, Hits& h
         while (begin < end) {
           const std::size_t run_end = tiling.end_of_run(begin, end, grain * group);
           if (finder.find) tiling.for_beam_rows(begin, run_end, finder.find);
-          if (!finder.finds_all) cast_tiles(job, tiling, begin, run_end);
+          if (!finder.finds_all) write_hits(begin, run_end);
           if (request.on_tile_done) tiling.for_beam_rows(begin, run_end, request.on_tile_done);
           count.add(run_end - begin);
           begin = run_end;

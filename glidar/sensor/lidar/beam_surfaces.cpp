@@ -24,16 +24,6 @@ double in_front_m(const SubRayHit& a, const Eigen::Vector3d& from_a_to_b) {
   return a.normal.dot(from_a_to_b) / std::max(a.cos_incidence, kGrazing);
 }
 
-/// True if all rays hit the same triangle.
-bool is_one_triangle(const Hits& hits, std::size_t first, std::size_t count) {
-  unsigned others = 0;
-  for (std::size_t i = first; i < first + count; ++i) {
-    others |= static_cast<unsigned>(hits.instance[i] != hits.instance[first]) |
-              static_cast<unsigned>(hits.primitive[i] != hits.primitive[first]);
-  }
-  return others == 0;
-}
-
 using Labels = std::vector<std::uint16_t>;
 
 /// Union of the sets of two members; the representative of a set is its first member.
@@ -53,6 +43,15 @@ void flatten(Labels& sets) {
 }
 
 }  // namespace
+
+bool is_one_triangle(const Hits& hits, std::size_t first, std::size_t count) {
+  unsigned others = 0;
+  for (std::size_t i = first; i < first + count; ++i) {
+    others |= static_cast<unsigned>(hits.instance[i] != hits.instance[first]) |
+              static_cast<unsigned>(hits.primitive[i] != hits.primitive[first]);
+  }
+  return others == 0;
+}
 
 bool has_gap(const SubRayHit& a, const SubRayHit& b) {
   const Eigen::Vector3d from_a_to_b = b.position_m - a.position_m;

@@ -31,6 +31,9 @@ struct SubRayHit {
 /// single-precision coordinates of adjacent meshes.
 bool has_gap(const SubRayHit& a, const SubRayHit& b);
 
+/// True if the rays [first, first + count) all hit the same triangle, or all miss.
+bool is_one_triangle(const Hits& hits, std::size_t first, std::size_t count);
+
 /// Finds which sub-rays of a beam hit the same surface. Points without a gap whose normals differ
 /// by at most 45 degrees are on one smooth face. Faces join at an edge if there is no gap between
 /// any two of their points. Faces that join, directly or through others, are one surface.
