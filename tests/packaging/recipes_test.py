@@ -142,7 +142,7 @@ class Options(unittest.TestCase):
     def test_the_build_has_every_option_that_a_recipe_sets(self):
         files = ["packaging/conda-forge/recipe.yaml", "packaging/vcpkg/glidar/portfile.cmake", "packaging/debian/rules"]
         for file in files:
-            given = re.findall(r"-D(GLIDAR_\w+)=", read(file))
+            given = re.findall(r"(?:-D|define\.)(GLIDAR_\w+)=", read(file))
             self.assertTrue(given, file)
             self.assertLessEqual(set(given), options(), file)
 
