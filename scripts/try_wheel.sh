@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs a wheel on a bare system in a folder, which has Python and no compiler, and uses it as an ordinary user would.
+# Installs a wheel on a bare system in a folder, which has Python, X11 and no compiler, and uses it as an ordinary user would.
 # Needs root and debootstrap (see bare_debian.sh).
 # usage: try_wheel.sh WHEELS [SUITE [FOLDER]]
 #   WHEELS  folder with wheels; pip takes the one that fits the Python of SUITE
@@ -19,10 +19,12 @@ log=$root/build/log/try-wheel.log
 "$bare" make "$suite" "$folder"
 mkdir -p "$folder/tmp/wheels" "$(dirname "$log")"
 cp "$wheels"/glidar-*.whl "$root/tests/python/try_wheel.py" "$folder/tmp/wheels/"
-"$bare" certificates "$folder"
+"$bare" certificates "$folder" >"$log" 2>&1
 # shellcheck disable=SC2016 # expanded by the inner shell
 "$bare" run "$folder" bash -euc '
-  apt-get install -q -y --no-install-recommends python3-venv
+  set -a
+  . /etc/environment
+  apt-get install -q -y --no-install-recommends python3-venv libx11-6
   useradd --create-home tester
   runuser -u tester -- env -C /home/tester HOME=/home/tester bash -euc "
     python3 -m venv env
