@@ -34,6 +34,13 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/glidarConfig.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion.cmake DESTINATION ${package_folder}
         COMPONENT development)
+if(NOT BUILD_SHARED_LIBS)
+  install(CODE "
+    include([[${PROJECT_SOURCE_DIR}/cmake/fingerprint.cmake]])
+    set(file \"\${CMAKE_INSTALL_PREFIX}/${package_folder}/glidarSameSources.cmake\")
+    glidar_write_same_sources(\"\$ENV{DESTDIR}\${file}\" [[${PROJECT_SOURCE_DIR}]])
+    list(APPEND CMAKE_INSTALL_MANIFEST_FILES \"\${file}\")" COMPONENT development)
+endif()
 
 # The links and the commands of the installed README work in its folder: what they name is beside it,
 # the data as links.

@@ -4,10 +4,11 @@
 # A bare Debian or Ubuntu in a folder, to try what a newcomer's machine would do. Needs root and debootstrap.
 # usage: bare_debian.sh make SUITE FOLDER        a fresh system with apt and nothing else; replaces FOLDER
 #        bare_debian.sh run FOLDER COMMAND...    as root in it, with an empty environment and processes of its own
+#        bare_debian.sh certificates FOLDER      installs those in /usr/local/share/ca-certificates in it
 #        bare_debian.sh test SUITE FOLDER        makes it, clones the last commit there, runs ./dev demo and ./dev test
+#        bare_debian.sh readme SUITE FOLDER      the same, but installs and tries GLIDAR as README.md shows
 # The suite, its downloaded packages and its compiler cache are kept in $GLIDAR_BARE_DEBIAN (default: build/bare),
-# so that a second run is quick. GLIDAR_MIRROR chooses the mirror of make. test passes on GLIDAR_DATA, read-only, and
-# the certificates in /usr/local/share/ca-certificates.
+# so that a second run is quick. GLIDAR_MIRROR chooses the mirror of make. test passes on GLIDAR_DATA, read-only.
 set -euo pipefail
 root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 kept=${GLIDAR_BARE_DEBIAN:-$root/build/bare}
@@ -66,28 +67,52 @@ run_in_tree() {
     bash "$folder" "$kept/packages-$suite" "$kept/ccache-$suite" "$data" "$@"
 }
 
-# What a newcomer does: installs git, clones, builds, tests.
-test_tree() {
-  local suite=$1 folder=$2
-  data=${GLIDAR_DATA:-}
-  make_tree "$suite" "$folder"
-  git clone --quiet --no-hardlinks "$root" "$folder/root/glidar"
-  mkdir -p "$folder/usr/local/share/ca-certificates"
-  find /usr/local/share/ca-certificates -name '*.crt' -exec cp -t "$folder/usr/local/share/ca-certificates" {} +
-  run_in_tree "$folder" bash -euc '
+# What pip needs where a proxy shows certificates of its own.
+install_certificates() {
+  mkdir -p "$1/usr/local/share/ca-certificates"
+  find /usr/local/share/ca-certificates -name '*.crt' -exec cp -t "$1/usr/local/share/ca-certificates" {} +
+  run_in_tree "$1" bash -euc '
     apt-get update -q
-    apt-get install -q -y --no-install-recommends ca-certificates git
+    apt-get install -q -y --no-install-recommends ca-certificates
     update-ca-certificates
-    export {SSL_CERT_FILE,PIP_CERT,REQUESTS_CA_BUNDLE}=/etc/ssl/certs/ca-certificates.crt
-    cd /root/glidar
-    ./dev demo
-    ./dev test'
+    printf "%s=/etc/ssl/certs/ca-certificates.crt\n" SSL_CERT_FILE PIP_CERT REQUESTS_CA_BUNDLE >>/etc/environment'
+}
+
+# clone_tree SUITE FOLDER: a bare system with git and a clone of the last commit.
+clone_tree() {
+  make_tree "$1" "$2"
+  install_certificates "$2"
+  run_in_tree "$2" apt-get install -q -y --no-install-recommends git
+  git clone --quiet --no-hardlinks "$root" "$2/root/glidar"
+}
+
+# Runs shell commands in the clone.
+run_in_clone() { run_in_tree "$1" bash -euxo pipefail -c "cd /root/glidar; set -a; . /etc/environment; $2"; }
+
+test_tree() {
+  data=${GLIDAR_DATA:-}
+  clone_tree "$1" "$2"
+  run_in_clone "$2" "./dev demo; ./dev test"
+}
+
+# All blocks of README.md in a language.
+readme_blocks() { awk -v fence="\`\`\`$1" '/^```/ { shown = $0 == fence; next } shown' "$root/README.md"; }
+
+try_readme() {
+  clone_tree "$1" "$2"
+  readme_blocks python >"$2/tmp/readme.py"
+  run_in_clone "$2" "$(readme_blocks sh)
+cd /tmp
+glidar-python readme.py
+test -s asteroid.pcd"
 }
 
 ((EUID == 0)) || fail "must be run as root, because it mounts and changes root (sudo $0 $*)"
 case ${1:-} in
   make) (($# == 3)) || fail "usage: bare_debian.sh make SUITE FOLDER"; make_tree "$2" "$3" ;;
   run) (($# >= 3)) || fail "usage: bare_debian.sh run FOLDER COMMAND..."; run_in_tree "${@:2}" ;;
+  certificates) (($# == 2)) || fail "usage: bare_debian.sh certificates FOLDER"; install_certificates "$2" ;;
+  readme) (($# == 3)) || fail "usage: bare_debian.sh readme SUITE FOLDER"; try_readme "$2" "$3" ;;
   test) (($# == 3)) || fail "usage: bare_debian.sh test SUITE FOLDER"; test_tree "$2" "$3" ;;
-  *) fail "usage: bare_debian.sh make|test SUITE FOLDER, or bare_debian.sh run FOLDER COMMAND..." ;;
+  *) fail "usage: bare_debian.sh make|readme|test SUITE FOLDER, or bare_debian.sh run FOLDER COMMAND..." ;;
 esac

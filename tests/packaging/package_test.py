@@ -137,13 +137,20 @@ class Packages(unittest.TestCase):
         self.assertGreater(len(wanted), 10)
         self.assertLessEqual(wanted, self.development.files)
         self.assertTrue(any(re.fullmatch(r"usr/lib/.*libglidar_core\.a", file) for file in self.development.files))
-        self.assertTrue(any(file.endswith("cmake/glidar/glidarConfig.cmake") for file in self.development.files))
+        for name in ("glidarConfig", "glidarSameSources"):
+            self.assertTrue(any(file.endswith(f"cmake/glidar/{name}.cmake") for file in self.development.files), name)
 
     def test_no_file_is_in_both_or_only_for_the_build(self):
         self.assertEqual(self.program.files & self.development.files, set())
         for file in self.program.files | self.development.files:
             self.assertTrue(file.startswith("usr/"), file)
             self.assertNotRegex(file, r"__pycache__|\.pyc$|CMakeLists\.txt$|_tests?$")
+
+    def test_the_debian_source_puts_every_file_into_the_same_package(self):
+        for package, name in ((self.program, "glidar"), (self.development, "libglidar-dev")):
+            folders = (ROOT / f"packaging/debian/{name}.install").read_text(encoding="utf-8").split()
+            for file in package.files:
+                self.assertTrue(file.startswith(tuple(f"{folder}/" for folder in folders)), f"{name}: {file}")
 
     def test_files_belong_to_root_and_only_root_writes_them(self):
         for line in self.program.listing + self.development.listing:

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""An installed package alone: what it brings along is found, nothing of a source tree is used. Run by
-scripts/make_wheel.sh with the Python of an environment that holds the wheel."""
+"""An installed package alone: what it brings along is found, nothing of a source tree is used, and no compiler.
+Run by scripts/make_wheel.sh with the Python of an environment that holds the wheel."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -36,6 +37,7 @@ assert run("--version").splitlines()[0].endswith(glidar.__version__)
 assert "VLP-16" in run("sensors")
 assert "--executor" in run("campaign", "run", "--help")  # by glidar-campaign, next to the program
 run("render", str(package / "share/glidar/models/satellite/satellite.obj"), "-o", "cloud.pcd")
-maps = subprocess.run(["ldd", package / "bin/glidar"], capture_output=True, text=True, check=True).stdout
-assert "not found" not in maps, maps
+loaded = subprocess.run([package / "bin/glidar"], env={"LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True, check=True).stdout
+assert "libc.so" in loaded and "not found" not in loaded, loaded
+assert shutil.which("cc") is None and shutil.which("c++") is None, "a compiler is in PATH"
 print(f"glidar {glidar.__version__} works in {sys.prefix}: {frame}")

@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 TIME_LIMIT_S = 300
-REAL = "bash awk sort paste mkdir grep tail dirname nproc env cat xargs realpath cmp".split()
+REAL = "bash awk sort paste mkdir grep tail dirname nproc env cat xargs realpath cmp chmod ln".split()
 
 # dpkg-query knows what the file `states` lists, one package and its status per line; one package may have several,
 # of several architectures.
@@ -34,6 +34,9 @@ exit 1
 """
 RECORD = """#!/bin/bash
 printf '%s\\n' "${0##*/} $*" >>"$CALLS"
+"""
+RECORD_PYTHON = """#!/bin/bash
+printf '%s\\n' "$0 $* [$glidar_ROOT]" >>"$CALLS"
 """
 RUN_AND_RECORD = RECORD + '"$@"\n'
 NOTHING = "#!/bin/bash\n"
@@ -62,6 +65,7 @@ class Dev(unittest.TestCase):
         shutil.copy(ROOT / "dev", self.folder / "dev")
         self.states = STATES
         self.packages = PACKAGES
+        self.settings = {}  # further variables of the environment
         for name in REAL:
             (self.folder / "bin" / name).symlink_to(shutil.which(name))
         for name in ("git", "clang-format"):  # what `./dev format` runs once its packages are there
@@ -84,6 +88,7 @@ class Dev(unittest.TestCase):
             "HOME": str(self.folder / "home"),
             "CALLS": str(self.folder / "calls"),
             "STATES": str(self.folder / "states"),
+            **self.settings,
         }
 
     def dev(self, *arguments, path=""):
@@ -191,6 +196,13 @@ class Dev(unittest.TestCase):
             self.assertEqual([line for line in (packets, odometry) if line in output], reported)
             self.assertTrue(calls[-1].startswith("ctest --preset dev"), calls)
 
+    def make_environment(self, folder, text=RECORD_PYTHON):
+        """A virtual environment whose Python only records."""
+        python = folder / "bin/python"
+        python.parent.mkdir(parents=True)
+        python.write_text(text, encoding="utf-8")
+        python.chmod(0o755)
+
     def install(self, *arguments, path=""):
         """./dev install with CMake and ninja that only record."""
         self.packages = "present build\n"
@@ -198,9 +210,15 @@ class Dev(unittest.TestCase):
             self.program(name, RECORD)
         return self.dev("install", *arguments, path=path)
 
+    def install_with_python(self, prefix, *arguments, **settings):
+        """The same where the prefix already has an environment, and the folder that CMake makes."""
+        self.make_environment(prefix / "lib/glidar/python")
+        (prefix / "bin").mkdir()
+        return self.install(*arguments, **settings)
+
     def test_install_goes_to_the_home_folder_and_names_the_line_for_path(self):
         prefix = self.folder / "home/.local"
-        status, output, errors, calls = self.install()
+        status, output, errors, calls = self.install("--no-python")
         self.assertEqual((status, errors), (0, ""))
         self.assertIn(f"cmake --preset release -DCMAKE_INSTALL_PREFIX={prefix}", calls)
         self.assertEqual(calls[-1], "cmake --install build/release")
@@ -210,12 +228,12 @@ class Dev(unittest.TestCase):
 """, output)
 
     def test_a_terminal_shows_the_steps_of_a_build_until_it_ends(self):
-        self.install()  # once, so that the packages are known
+        self.install("--no-python")  # once, so that the packages are known
         self.program("ninja", "#!/bin/bash\nexec {pause}<> <(:)\necho '[3/4] Building'\n"
                               "until [[ -e seen ]]; do read -r -t 0.1 -u $pause; done\nexit 0\n")
         terminal, end = pty.openpty()
         with os.fdopen(terminal, "rb", buffering=0) as screen:
-            with subprocess.Popen([self.folder / "bin/bash", "dev", "install"], cwd=self.folder, env=self.environment(),
+            with subprocess.Popen([self.folder / "bin/bash", "dev", "install", "--no-python"], cwd=self.folder, env=self.environment(),
                                   stdin=subprocess.DEVNULL, stdout=end, stderr=end) as process:
                 os.close(end)
                 shown = b""
@@ -234,16 +252,52 @@ class Dev(unittest.TestCase):
         self.program("ninja", "#!/bin/bash\necho '[3/4] Building'\nexit 1\n")
         self.packages = "present build\n"
         self.program("cmake", RECORD)
-        status, output, errors, _ = self.dev("install")
+        status, output, errors, _ = self.dev("install", "--no-python")
         self.assertEqual((status, output), (1, ""))
         self.assertEqual(errors, f"dev: build-release failed; all its output is in {self.folder}/build/log/build-release.log\n")
 
     def test_install_takes_a_folder_and_is_silent_where_path_has_it(self):
         prefix = self.folder / "my programs"
-        status, output, _, calls = self.install("my programs", path=prefix / "bin")
+        status, output, _, calls = self.install_with_python(prefix, "my programs", path=prefix / "bin")
         self.assertEqual(status, 0)
         self.assertIn(f"cmake --preset release -DCMAKE_INSTALL_PREFIX={prefix}", calls)
         self.assertNotIn("PATH", output)
+
+    def test_install_puts_the_python_package_into_an_environment_of_its_own(self):
+        """pip finds the installed library, and glidar-python runs the environment's Python."""
+        prefix = self.folder / "my programs"
+        status, _, errors, calls = self.install_with_python(prefix, "my programs")
+        self.assertEqual((status, errors), (0, ""))
+        venv = prefix / "lib/glidar/python"
+        self.assertEqual(calls[-1], f"{venv}/bin/python -m pip install --disable-pip-version-check . [{prefix}]")
+        self.assertEqual((prefix / "bin/glidar-campaign").readlink(), venv / "bin/glidar-campaign")
+        calls = self.folder / "calls"
+        calls.write_text("", encoding="utf-8")
+        subprocess.run([prefix / "bin/glidar-python", "a b.py"], env=self.environment(), timeout=TIME_LIMIT_S, check=True)
+        self.assertEqual(calls.read_text(encoding="utf-8"), f"{venv}/bin/python a b.py []\n")
+
+    def test_install_puts_the_python_package_into_the_active_environment(self):
+        prefix, active = self.folder / "home/.local", self.folder / "active"
+        self.make_environment(active)
+        self.settings = {"VIRTUAL_ENV": str(active)}
+        status, output, errors, calls = self.install()
+        self.assertEqual((status, errors), (0, ""))
+        self.assertEqual(calls[-1], f"{active}/bin/python -m pip install --disable-pip-version-check . [{prefix}]")
+        self.assertNotIn("glidar-python", output.replace("glidar-{python", ""))
+
+    def test_install_names_what_an_active_environment_lacks(self):
+        active = self.folder / "active"
+        self.make_environment(active, "#!/bin/bash\necho No module named pip >&2\nexit 1\n")
+        self.settings = {"VIRTUAL_ENV": str(active)}
+        status, _, errors, _ = self.install()
+        self.assertEqual(status, 1)
+        self.assertIn("No module named pip", errors)
+        self.assertIn(f"run {active}/bin/python -m ensurepip, or omit the Python package: ./dev install --no-python", errors)
+
+    def test_install_names_an_option_that_it_does_not_know(self):
+        status, _, errors, calls = self.install("--no-pyton")
+        self.assertEqual((status, calls), (1, []))
+        self.assertEqual(errors, "dev: install takes --no-python and a folder, not --no-pyton\n")
 
     def test_install_refuses_what_cannot_become_a_folder(self):
         (self.folder / "file").write_text("", encoding="utf-8")
