@@ -181,7 +181,8 @@ int LockstepRun::run() {
 void LockstepRun::serve(const StopRequest& stop) {
   if (std::optional<lockstep::Received> received = server_.receive()) start(std::move(*received));
   if (jobs_.empty()) {
-    return link::wait_for({&server_.socket()}, stop.descriptor(), server_.poll_timeout());
+    link::wait_for({&server_.socket()}, stop.descriptor(), server_.poll_timeout());
+    return;
   }
   Job job = std::move(jobs_.front());
   jobs_.pop_front();
