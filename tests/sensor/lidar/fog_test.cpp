@@ -165,16 +165,11 @@ TEST(FogReturn, IsZeroWithoutBackscatter) {
   EXPECT_EQ(echo_before(fog_return(unit_light(0.06), 0.0, kFwhm_s), kEndless).signal, 0.0);
 }
 
-}  // namespace
-
-namespace {
-
 using ::testing::HasSubstr;
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();
-constexpr double kFwhm_s = 5e-9;
+constexpr double kShortFwhm_s = 5e-9;
 constexpr double kBackscatter = 1.2e-3;  // of fog of 50 m visibility
-constexpr double kCell_m = 0.5 * 299792458.0 * kFwhm_s;
+constexpr double kCell_m = 0.5 * 299792458.0 * kShortFwhm_s;
 constexpr LidarEquation kLight{.reference_range_m = 100.0, .weather_extinction_per_m = 0.078};
 
 /// Of Erlang's distribution with mean 1.
@@ -192,7 +187,7 @@ class FogVariation : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(FogVariation, CellsHaveGammaDistributedFactorsOfMeanOne) {
   const unsigned looks = GetParam();
-  const VaryingFog fog = varying_fog(kLight, kBackscatter, kFwhm_s, looks);
+  const VaryingFog fog = varying_fog(kLight, kBackscatter, kShortFwhm_s, looks);
   EXPECT_DOUBLE_EQ(fog.cell_m, kCell_m);
   std::vector<FogCell> cells;
   std::vector<double> shares;
@@ -223,9 +218,9 @@ TEST_P(FogVariation, EchoOfAThinLayerIsGammaDistributedAroundThatOfUniformFog) {
   const unsigned looks = GetParam();
   LidarEquation light = kLight;
   light.overlap = {{1.0, 0.0}, {1.0001, 1.0}, {1.0002, 1.0}};
-  const VaryingFog fog = varying_fog(light, kBackscatter, kFwhm_s, looks);
+  const VaryingFog fog = varying_fog(light, kBackscatter, kShortFwhm_s, looks);
   const double even =
-      fog_signal(fog_profile(light, kBackscatter, kFwhm_s), 1.0001 + kCell_m, 1.0002);
+      fog_signal(fog_profile(light, kBackscatter, kShortFwhm_s), 1.0001 + kCell_m, 1.0002);
   std::vector<double> shares;
   double sum = 0.0;
   constexpr std::uint32_t kBeams = 10000;
@@ -263,7 +258,7 @@ double signal_of_cells(const std::vector<FogCell>& cells, double range_m, double
 }
 
 TEST(VaryingFog, EchoIsTheLargestValueOfTheSumOverItsCells) {
-  const VaryingFog fog = varying_fog(kLight, kBackscatter, kFwhm_s, 1);
+  const VaryingFog fog = varying_fog(kLight, kBackscatter, kShortFwhm_s, 1);
   std::vector<FogCell> cells;
   for (std::uint32_t beam = 0; beam < 12; ++beam) {
     const double end_m = beam % 3 == 0 ? 1.6 : 9.0;
@@ -283,8 +278,9 @@ TEST(VaryingFog, EchoIsTheLargestValueOfTheSumOverItsCells) {
 // The program of Hahner et al. (LiDAR_fog_sim, noise variant v4) shifts fog's echoes by 10 m times
 // a beta distributed number of 2 and 20, which makes them look like recorded ones: 0.60 m rms.
 TEST(VaryingFog, EchoRangesSpreadLikeRecordedOnes) {
-  const VaryingFog fog = varying_fog(kLight, kBackscatter, kFwhm_s, 1);
-  const double even_m = echo_before(fog_return(kLight, kBackscatter, kFwhm_s), kEndless).range_m;
+  const VaryingFog fog = varying_fog(kLight, kBackscatter, kShortFwhm_s, 1);
+  const double even_m =
+      echo_before(fog_return(kLight, kBackscatter, kShortFwhm_s), kEndless).range_m;
   double sum = 0.0;
   double squares = 0.0;
   constexpr std::uint32_t kBeams = 4000;
@@ -299,7 +295,7 @@ TEST(VaryingFog, EchoRangesSpreadLikeRecordedOnes) {
 }
 
 TEST(VaryingFog, DoesNotDependOnTheTargetBehindIt) {
-  const VaryingFog fog = varying_fog(kLight, kBackscatter, kFwhm_s, 2);
+  const VaryingFog fog = varying_fog(kLight, kBackscatter, kShortFwhm_s, 2);
   std::vector<FogCell> near;
   std::vector<FogCell> far;
   for (std::uint32_t beam = 0; beam < 200; ++beam) {
@@ -318,7 +314,7 @@ TEST(VaryingFog, DoesNotDependOnTheTargetBehindIt) {
 }
 
 TEST(VaryingFog, IsZeroWithoutBackscatter) {
-  EXPECT_EQ(echo_before(varying_fog(kLight, 0.0, kFwhm_s, 1), kEndless, {}).signal, 0.0);
+  EXPECT_EQ(echo_before(varying_fog(kLight, 0.0, kShortFwhm_s, 1), kEndless, {}).signal, 0.0);
 }
 
 TEST(VaryingFog, OfSoManyCellsThatRandomNumbersWouldRepeatIsRefused) {
