@@ -193,7 +193,7 @@ def aimed_scene(rng, count):
 
 
 def model_scene(rng, path, count):
-    """A model from five viewpoints' mean distance, the rays towards it."""
+    """A model seen from 1.6 times its size."""
     model = glidar.Scene(str(path))
     mesh = model.objects[0].mesh
     middle, size = mesh.vertices.mean(axis=0), np.ptp(mesh.vertices, axis=0).max()
@@ -340,7 +340,7 @@ def warp_kernel(wp):
 PROGRAMS = (Glidar, MuJoCo, Open3D, Trimesh, Warp)
 
 
-# --- What has no other program -----------------------------------------------------------------------------------------
+# --- What other casters do not have -----------------------------------------------------------------------------------------
 
 def moving_target():
     """Greatest distance from the surface of a box at 20 m/s, of the points of a VLP-16 that turns at 10 Hz: with each
@@ -373,6 +373,8 @@ def same_bytes(flags):
                               env={**os.environ, "GLIDAR_ISA": isa}, capture_output=True, text=True, check=False)
         if done.returncode == 0:
             found[isa] = done.stdout.strip()
+        elif "GLIDAR_ISA" not in done.stderr:  # else the processor lacks it
+            raise RuntimeError(done.stderr)
     return list(found), len({word for line in found.values() for word in line.split()}) == 1
 
 
@@ -465,6 +467,8 @@ def main():
     parser.add_argument("--digest", action="store_true", help="print a hash of GLIDAR's ranges only")
     parser.add_argument("--write", action="store_true", help="renew docs/peers.md and its picture")
     flags = parser.parse_args()
+    if flags.write and (flags.only or not flags.models):
+        parser.error("--write needs all programs, and models")
     if flags.digest:
         print(*digests(scenes_of(np.random.default_rng(1), flags.rays, flags.models)))
         return 0

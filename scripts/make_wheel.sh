@@ -118,7 +118,8 @@ for entry in "${pythons[@]}"; do
     build_environment "$python" "$folder/env-$version"
     if [[ -z $made ]]; then make_source_distribution "$folder/env-$version/bin/python"; fi
     make_wheel "$version"
-    made=$(echo "$folder"/made/glidar-*-cp"${version/./}"-*.whl)
+    tag=3$((${version#3.} < 12 ? ${version#3.} : 12))  # one for 3.12 and later
+    made=$(echo "$folder"/made/glidar-*-cp"$tag"-*.whl)
   fi
   try_wheel "$python" "$folder/try-$version" "$made"
 done

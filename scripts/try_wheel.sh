@@ -19,7 +19,8 @@ log=$root/build/log/try-wheel.log
 "$bare" make "$suite" "$folder"
 mkdir -p "$folder/tmp/wheels" "$(dirname "$log")"
 cp "$wheels"/glidar-*.whl "$root/tests/python/try_wheel.py" "$folder/tmp/wheels/"
-"$bare" certificates "$folder" >"$log" 2>&1
+fail() { tail -n 40 "$log" >&2 && exit 1; }
+"$bare" certificates "$folder" >"$log" 2>&1 || fail
 # shellcheck disable=SC2016 # expanded by the inner shell
 "$bare" run "$folder" bash -euc '
   set -a
@@ -31,6 +32,5 @@ cp "$wheels"/glidar-*.whl "$root/tests/python/try_wheel.py" "$folder/tmp/wheels/
     version=\$(env/bin/pip --version | grep -o \"[0-9.]*)\$\" | tr -d .\\))
     wheel=\$(find /tmp/wheels -name \"glidar-*-cp\$version-*\")
     env/bin/pip install -q \${wheel:-/tmp/wheels/glidar-*-abi3-*.whl}
-    env/bin/python -I /tmp/wheels/try_wheel.py"' >"$log" 2>&1 ||
-  { tail -n 40 "$log" >&2 && exit 1; }
+    env/bin/python -I /tmp/wheels/try_wheel.py"' >>"$log" 2>&1 || fail
 tail -n 1 "$log"

@@ -66,8 +66,9 @@ std::string explain_extra(const CLI::App& program, std::string word) {
   }
   if (&command == &program) names.insert(names.end(), {"--help", "--version"});
   const std::string nearest = closest_match(word, names);
+  const std::string kind = &command == &program ? "subcommand" : "tool";
   if (!nearest.empty()) {
-    return fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
+    return fmt::format("'{}' is no {}; did you mean {}?", word, kind, nearest);
   }
   if (&command != &program) {
     return fmt::format("'{}' is no tool; allowed: {}", word, fmt::join(names, ", "));
@@ -120,7 +121,7 @@ std::string explain_missing(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_required() && option->count() == 0) return option->get_name() + " is required";
   }
-  return "a subcommand is required";
+  return command.get_parent() == nullptr ? "a subcommand is required" : "a tool is required";
 }
 
 /// The most helpful word that CLI11 did not parse: within a subcommand an option, else the word in

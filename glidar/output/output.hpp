@@ -62,7 +62,7 @@ class Output {
   /// Call after the last frame: completes files, which appear under their names. Without it nothing
   /// of a recording remains.
   virtual void finish() = 0;
-  /// The files that finish() makes.
+  /// The files that it has made: those of the last frame, or after finish() those of the recording.
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const { return {}; }
   /// What it wrote, in lines for the user; empty: nothing.
   [[nodiscard]] virtual std::string written_text() const;

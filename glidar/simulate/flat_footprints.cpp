@@ -12,10 +12,10 @@
 namespace glidar {
 namespace {
 
-/// Sine of the angle that normals at corners may deviate from that of their triangle. Across a
-/// footprint they change a signal by less than this times its relative width, in first order; the
-/// first order has the mean 0.
-constexpr float kMaxBend = 1e-3F;
+/// Sine of the angle that normals at corners may deviate from that of their triangle: roundings of
+/// files. At 89 degrees the cosine changes by at most 6e-4 of itself, which shifts the mean range by
+/// less than 1e-4 m for the widest footprint that is integrated.
+constexpr float kMaxBend = 1e-5F;
 
 /// True if the shading normal is the same on the whole triangle: that of its plane.
 bool has_flat_shading(const Mesh& mesh, const Triangle& triangle) {

@@ -43,7 +43,7 @@ struct LitPoint {
 
 /// Radiance of a point of a surface towards the origin. With the irradiance E of a surface that
 /// faces the source, at the incidence t, E cos t f / pi: f is the reflectance of a diffuse surface;
-/// other surfaces have their monostatic backscatter (core/brdf.hpp) divided by its cosine, both at
+/// other surfaces have their monostatic backscatter (core/material.hpp) divided by its cosine, both at
 /// the normal's angle from the bisector of the directions to source and camera, so that source and
 /// camera in one place see the backscatter itself. E of the projector is its intensity /
 /// distance^2. Ambient light comes evenly from all sides. Radiance is proportional to the

@@ -252,6 +252,8 @@ class Frame(DepthImages, Immutable):
         set_columns(options, columns, layout)
         set_cloud(options, frame, drop_invalid, deskew, crs, sidecar)
         target = path_of(path, "path")
+        if "://" in target:
+            raise Error("path", "the address of a network", "a file or folder", "send frames with open_output()")
         if not _core.is_frame_file(target):
             output = _core.Output(target, options)
             self.write_to(output)

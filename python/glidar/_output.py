@@ -42,7 +42,7 @@ class Output:
             frame: after the last one in time. The first one determines the scene.
 
         Raises:
-            Error: a frame of another sensor, an option that does not fit the sensor, a column that was not kept, an
+            Error: a frame of another sensor, or of a scene with other objects, an output that has ended, an option that does not fit the sensor, a column that was not kept, an
                 input file of the scene or sensor as the output, or a full disk.
         """
         if not isinstance(frame, Frame):
@@ -50,7 +50,8 @@ class Output:
         frame.write_to(self._core)
 
     def close(self) -> list[str]:
-        """Completes the files, which appear under their names, and returns them as text, a line for each output.
+        """Completes the files, which appear under their names, and returns them as text, a line for each output. The
+        output has then ended; closing it again does nothing.
 
         Raises:
             Error: there is no frame, or the system refuses.
@@ -145,12 +146,13 @@ def open_output(
         raise Error("imus", "given without a trajectory", "a motion that is known at all times", "give the trajectory")
     for imu in (imus or {}).values():
         core.add_imu(imu.name, imu.imu._core, _one_pose(imu.rig_from_imu))
+    start = int(times_ns([start_ns], "start_ns")[0])
+    gravity = floats(gravity_m_s2, "gravity_m_s2", (3,))
+    number = whole(seed, "seed", MAX_UINT64)
     if trajectory is not None:
         if not isinstance(trajectory, Trajectory):
             raise Error("trajectory", f"a {type(trajectory).__name__}", "a Trajectory")
-        start = int(times_ns([start_ns], "start_ns")[0])
-        gravity = floats(gravity_m_s2, "gravity_m_s2", (3,))
-        core.set_motion(trajectory._core, start, whole(seed, "seed", MAX_UINT64), gravity)
+        core.set_motion(trajectory._core, start, number, gravity)
     return Output(core)
 
 

@@ -22,8 +22,8 @@
 namespace glidar::python {
 namespace {
 
-/// An output of frames. The first frame determines the scene and, unless a rig is given, the
-/// sensor.
+/// An output of frames, for one call at a time. The first frame determines the scene and, unless a
+/// rig is given, the sensor.
 class OutputHandle {
  public:
   OutputHandle(std::string path, OutputOptions options)
@@ -47,31 +47,49 @@ class OutputHandle {
     gravity_m_s2_ = gravity_m_s2;
   }
 
-  /// Throws Error when the frame is of another sensor. It needs the renderer if it lacks_boxes().
+  /// Throws Error when it has ended, or the frame is of another sensor or scene. The frame needs
+  /// its renderer if needs_boxes().
   void write(Measured& measured, const nb::object& log) {
     unlocked([&](Watch& /*watch*/) {
+      const std::lock_guard turn(turn_);
       check_columns(measured.sensor->sensor(), options_.columns);
-      if (!output_) open(measured);
-      const std::size_t sensor = sensor_of(measured);
-      if (output_->hit_columns(sensor).boxes && lacks_boxes(measured)) ensure_boxes(measured);
-      output_->write({.frame = measured.frame,
-                      .beams = *measured.beams,
-                      .sensor = sensor,
-                      .index = counts_[sensor]++});
+      if (has_ended_) {
+        throw Error({path_, "the output has ended", "frames before it is closed or discarded",
+                     "open another output"});
+      }
+      if (!opened_) opened_ = open(measured);
+      const std::size_t sensor = sensor_of(measured, *opened_);
+      check_scene(measured);
+      if (opened_->output->hit_columns(sensor).boxes && lacks_boxes(measured))
+        ensure_boxes(measured);
+      opened_->output->write({.frame = measured.frame,
+                              .beams = *measured.beams,
+                              .sensor = sensor,
+                              .index = opened_->counts[sensor]++});
     });
     pass_messages(log);
   }
-  /// Returns what was written, in lines.
+  /// Returns what was written, in lines; nothing when it has ended before.
   std::string finish(const nb::object& log) {
-    if (!output_) throw Error({path_, "there is no frame", "one frame or more"});
-    unlocked([&](Watch& /*watch*/) { output_->finish(); });
-    const std::string text = output_->written_text();
-    output_.reset();
+    const std::string text = unlocked([&](Watch& /*watch*/) -> std::string {
+      const std::lock_guard turn(turn_);
+      if (has_ended_) return {};
+      if (!opened_) throw Error({path_, "there is no frame", "one frame or more"});
+      opened_->output->finish();
+      std::string written = opened_->output->written_text();
+      end();
+      return written;
+    });
     pass_messages(log);
     return text;
   }
   /// Ends it; nothing of a recording remains.
-  void discard() { output_.reset(); }
+  void discard() {
+    unlocked([&](Watch& /*watch*/) {
+      const std::lock_guard turn(turn_);
+      end();
+    });
+  }
 
  private:
   /// The output reports from any thread and after the call that opens it.
@@ -88,29 +106,49 @@ class OutputHandle {
     for (const auto& [severity, message] : messages) log(severity, text_of(message));
   }
 
-  void open(const Measured& measured) {
+  /// What the first frame determines. The output refers to the rest, so it is the last member.
+  struct Opened {
+    std::vector<MountedSensor> sensors;
+    std::vector<std::uint32_t> numbers;  ///< of these sensors on their rig
+    std::vector<std::uint64_t> counts;   ///< frames of each sensor
+    std::shared_ptr<PreparedScene> prepared;
+    std::shared_ptr<const PreparedScene> unrendered;
+    std::vector<std::shared_ptr<const Beams>> beams;
+    std::unique_ptr<Output> output;
+  };
+
+  void end() {
+    opened_.reset();
+    has_ended_ = true;
+  }
+
+  [[nodiscard]] std::unique_ptr<Opened> open(const Measured& measured) {
     (void)measured.scene();  // restores it when the frame was unpickled
-    prepared_ = measured.prepared;
-    unrendered_ = measured.unrendered;
+    auto opened = std::make_unique<Opened>();
+    opened->sensors = sensors_;
+    opened->numbers = numbers_;
+    opened->prepared = measured.prepared;
+    opened->unrendered = measured.unrendered;
     if (sensors_.empty()) {
-      sensors_.push_back({{}, measured.sensor, Pose::Identity()});
-      numbers_.push_back(measured.frame.sensor_id);
+      opened->sensors.push_back({{}, measured.sensor, Pose::Identity()});
+      opened->numbers.push_back(measured.frame.sensor_id);
     }
-    counts_.assign(sensors_.size(), 0);
+    opened->counts.assign(opened->sensors.size(), 0);
     OutputRig rig{.scene = *measured.scene().scene, .sensors = {}};
     rig.inputs = measured.scene().files;
-    for (std::size_t i = 0; i < sensors_.size(); ++i) {
-      const MountedSensor& mounted = sensors_[i];
-      beams_.push_back(mounted.sensor->beams(0));
+    for (std::size_t i = 0; i < opened->sensors.size(); ++i) {
+      const MountedSensor& mounted = opened->sensors[i];
+      opened->beams.push_back(mounted.sensor->beams(0));
       rig.sensors.push_back({.name = mounted.name,
                              .label = mounted.name,
-                             .id = numbers_[i],
+                             .id = opened->numbers[i],
                              .sensor = mounted.sensor->sensor(),
-                             .beams = *beams_.back(),
+                             .beams = *opened->beams.back(),
                              .rig_from_sensor = mounted.rig_from_sensor});
       const std::vector<std::string>& files = mounted.sensor->sensor().files;
       rig.inputs.insert(rig.inputs.end(), files.begin(), files.end());
     }
+    (void)sensor_of(measured, *opened);
     if (world_from_rig_) rig.motion = {*world_from_rig_, measured.motion->world_from_instance};
     rig.imus = imus_;
     rig.gravity_m_s2 = gravity_m_s2_;
@@ -121,21 +159,40 @@ class OutputHandle {
     const Report report{
         [this](Severity severity, std::string_view message) { add_message(severity, message); },
         {}};
-    output_ = open_output(path_, rig, options_, report);
+    opened->output = open_output(path_, rig, options_, report);
+    return opened;
   }
 
   /// The index of the frame's sensor in the rig. Throws Error when it is another sensor.
-  [[nodiscard]] std::size_t sensor_of(const Measured& measured) const {
-    const auto found_number = std::ranges::find(numbers_, measured.frame.sensor_id);
-    const auto index = sensors_.size() == 1
+  [[nodiscard]] std::size_t sensor_of(const Measured& measured, const Opened& opened) const {
+    const auto found_number = std::ranges::find(opened.numbers, measured.frame.sensor_id);
+    const auto index = opened.sensors.size() == 1
                            ? std::size_t{0}
-                           : static_cast<std::size_t>(found_number - numbers_.begin());
+                           : static_cast<std::size_t>(found_number - opened.numbers.begin());
     const Sensor& found = measured.sensor->sensor();
-    if (index < sensors_.size() && sensors_[index].sensor->sensor().name == found.name &&
-        beams_[index]->rows == measured.beams->rows)
+    if (index < opened.sensors.size() &&
+        opened.sensors[index].sensor->sensor().name == found.name &&
+        opened.beams[index]->rows == measured.beams->rows)
       return index;
     throw Error({path_, "a frame of another sensor", "frames of one sensor, or of a rig's sensors",
                  "open an output for each sensor"});
+  }
+
+  /// Throws Error when the objects of the frame's scene are not those of the first frame, which the
+  /// output names by their indices.
+  void check_scene(const Measured& measured) const {
+    const Scene& first =
+        *(opened_->prepared ? opened_->prepared->scene : opened_->unrendered->scene);
+    const Scene& scene = *measured.scene().scene;
+    const auto is_same = [](const Instance& one, const Instance& other) {
+      return one.id == other.id && one.class_id == other.class_id && one.name == other.name;
+    };
+    if (&first == &scene || (first.class_names == scene.class_names &&
+                             std::ranges::equal(first.instances, scene.instances, is_same)))
+      return;
+    throw Error({path_, "a frame of a scene with other objects than the first frame's",
+                 "frames of scenes with the same objects, ids and classes",
+                 "open an output for each scene"});
   }
 
   std::string path_;
@@ -147,14 +204,11 @@ class OutputHandle {
   std::int64_t start_ns_ = 0;
   std::uint64_t seed_ = 1;
   Eigen::Vector3d gravity_m_s2_ = standard_gravity_m_s2();
-  std::vector<std::uint64_t> counts_;  ///< frames of each sensor
-  // what the output refers to
-  std::shared_ptr<PreparedScene> prepared_;
-  std::shared_ptr<const PreparedScene> unrendered_;
-  std::vector<std::shared_ptr<const Beams>> beams_;
+  std::mutex turn_;                                            ///< of a call
   std::mutex mutex_;                                           ///< of the messages
   std::vector<std::pair<std::string, std::string>> messages_;  ///< severity and text
-  std::unique_ptr<Output> output_;                             ///< ends first: its threads report
+  bool has_ended_ = false;
+  std::unique_ptr<Opened> opened_;  ///< ends first: threads of the output report
 };
 
 std::vector<std::pair<std::string, std::string>> known_formats() {

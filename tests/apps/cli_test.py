@@ -86,9 +86,9 @@ class Words(CliTest):
 
     def test_tools_without_their_subcommand_are_named(self):
         self.assertIn("'tof' is a tool of 'depth': glidar depth tof", self.refused("tof", "builtin:disc"))
-        self.assertIn("'sterio' is no subcommand; did you mean stereo?", self.refused("depth", "sterio"))
+        self.assertIn("'sterio' is no tool; did you mean stereo?", self.refused("depth", "sterio"))
         self.assertIn("'x' is no tool; allowed: filter, align, stereo, structured-light, tof", self.refused("depth", "x"))
-        self.assertIn("a subcommand is required; see glidar depth --help", self.refused("depth"))
+        self.assertIn("a tool is required; see glidar depth --help", self.refused("depth"))
         self.assertIn("unknown option --cencus; did you mean --census?", self.refused("depth", "stereo", "builtin:dots", "--cencus", "9x9"))
 
     def test_help_of_a_section_lists_its_options_only(self):

@@ -35,7 +35,8 @@ TEST(OutputFormats, ErrorsListAllSuffixesAndTheNearest) {
 TEST(OpenOutput, RefusesWhatDoesNotFitAndLeavesNoFile) {
   const testing::TestFolder folder;
   const Scene scene;
-  const Sensor camera;
+  Sensor camera;
+  camera.optics = Pinhole{{.width = 8, .height = 6, .fx = 10.0, .fy = 10.0, .cx = 4.0, .cy = 3.0}};
   const Beams beams = make_beams(camera);
   OutputRig rig{.scene = scene, .sensors = {}};
   rig.sensors.push_back({.sensor = camera, .beams = beams});

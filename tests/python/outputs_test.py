@@ -179,3 +179,45 @@ def test_an_input_is_not_replaced(tmp_path):
     with pytest.raises(glidar.Error, match="input"):
         write(link, [frame])
     assert (tmp_path / "scene.yaml").read_text().startswith("models")
+
+
+@pytest.mark.parametrize("name", ["run.npz", "run.mcap", "run.osi"])
+def test_a_frame_of_a_scene_with_other_objects_is_refused(name, tmp_path):
+    one = glidar.Scene("builtin:box")
+    two = glidar.Scene("builtin:box")
+    two.add_instance(two.objects[0], position=(0, 3, 0))
+    first, second = (glidar.simulate(scene, "VLP-16", glidar.pose([5, 0, 0])) for scene in (one, two))
+    with glidar.open_output(tmp_path / name) as output:
+        output.write(first)
+        with pytest.raises(glidar.Error, match="other objects than the first"):
+            output.write(second)
+        output.write(first)
+
+
+def test_an_output_that_has_ended_takes_no_frames_and_keeps_its_file(frames, tmp_path):
+    output = glidar.open_output(tmp_path / "run.mcap")
+    output.write(frames[0])
+    assert output.close()
+    written = (tmp_path / "run.mcap").read_bytes()
+    with pytest.raises(glidar.Error, match="the output has ended"):
+        output.write(frames[0])
+    assert output.close() == []
+    output.discard()
+    assert (tmp_path / "run.mcap").read_bytes() == written
+    discarded = glidar.open_output(tmp_path / "other.mcap")
+    discarded.discard()
+    with pytest.raises(glidar.Error, match="the output has ended"):
+        discarded.write(frames[0])
+
+
+def test_an_output_that_could_not_be_opened_takes_other_frames(frames, tmp_path):
+    with glidar.open_output(tmp_path / "run.osi", "VLP-16") as output:
+        with pytest.raises(glidar.Error, match="a frame of another sensor"):
+            output.write(frames[1])
+        assert not list(tmp_path.iterdir())
+        output.write(frames[0])
+
+
+def test_save_sends_nothing(frames):
+    with pytest.raises(glidar.Error, match="the address of a network"):
+        frames[0].save("udp://127.0.0.1:5555")

@@ -6,6 +6,7 @@
 #include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/io/config/depth_camera_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
@@ -249,9 +250,10 @@ std::string summary_text(const DepthImageSummary& summary, const std::string& af
   std::string text = fmt::format("{:.1f} % of pixels with depth, {:.1f} % after {}\nwrote {}",
                                  percent(summary.pixels_with_depth, summary.pixels),
                                  percent(summary.written_pixels_with_depth, summary.written_pixels),
-                                 after, summary.files.front());
+                                 after, printable_line(summary.files.front()));
   if (summary.files.size() > 1) {
-    text += fmt::format(" to {} ({} files)", summary.files.back(), summary.files.size());
+    text += fmt::format(" to {} ({} files)", printable_line(summary.files.back()),
+                        summary.files.size());
   }
   return text + "\n";
 }

@@ -35,7 +35,7 @@ struct ColumnSize {
   std::int64_t bytes;  ///< of a point
 };
 
-/// As documented for make_point_cloud(); reply_size_test.cpp compares all of them with clouds.
+/// As documented for make_point_cloud(); lockstep_run_test.cpp compares all of them with clouds.
 constexpr std::array kSizes = {
     ColumnSize{"xyz", 24},
     ColumnSize{"true_xyz", 24},

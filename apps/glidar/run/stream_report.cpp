@@ -63,16 +63,19 @@ double StreamStats::recent_rate_hz() const {
   return static_cast<double>(window_count_) / window_s;  // at the start, and when frames stop
 }
 
+namespace {
+
+constexpr double kMilli = 1e3;
+
+}  // namespace
+
 std::string status_text(const StreamStats& stats) {
-  constexpr double kMilli = 1e3;
   return fmt::format("{:.1f} Hz, latency {:.1f} ms (99 %: {:.1f} ms), {} frames",
                      stats.recent_rate_hz(), kMilli * stats.latency.quantile_s(0.5),
                      kMilli * stats.latency.quantile_s(0.99), stats.latency.count());
 }
 
 namespace {
-
-constexpr double kMilli = 1e3;
 
 nlohmann::ordered_json json_of(const woods2016::CloudPublisher::Counts& counts) {
   return {{"sent", counts.sent},     {"missed", counts.missed}, {"repeated", counts.repeated},

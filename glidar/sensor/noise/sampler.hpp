@@ -53,7 +53,7 @@ inline void record_uniform(const Sampler& sampler, const char* use, const Batch<
   });
 }
 
-// The functions of math/gaussian.hpp, which record the number of the traced beam.
+// The functions of math/distributions.hpp, which record the number of the traced beam.
 
 inline void sample_shared_normals(const Sampler& sampler, const char* use, Batch<double>& normals) {
   sample_shared_normals(sampler.key, normals);

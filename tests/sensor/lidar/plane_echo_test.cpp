@@ -132,9 +132,9 @@ TEST(PlaneEcho, IsMoreAccurateThanSevenSubRaysAtEveryAngle) {
     }
     EXPECT_GT(count, 10U) << angle_deg;
     // Measured: 1/19 to 1/120.
-    EXPECT_LT(closed.range_m, 0.5 * seven.range_m) << angle_deg;
-    EXPECT_LT(closed.signal, 0.5 * seven.signal) << angle_deg;
-    EXPECT_LT(closed.sigma_m, 0.5 * seven.sigma_m) << angle_deg;
+    EXPECT_LT(closed.range_m, 0.1 * seven.range_m) << angle_deg;
+    EXPECT_LT(closed.signal, 0.1 * seven.signal) << angle_deg;
+    EXPECT_LT(closed.sigma_m, 0.1 * seven.sigma_m) << angle_deg;
     EXPECT_LT(closed.range_m, 1e-6) << angle_deg;
     EXPECT_LT(closed.signal, 2e-5) << angle_deg;
     EXPECT_LT(closed.sigma_m, 2e-6) << angle_deg;
