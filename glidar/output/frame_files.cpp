@@ -326,7 +326,20 @@ FrameFiles::FrameFiles(FrameFileRequest request, bool is_numbered, const OutputR
       is_numbered_(is_numbered),
       rig_(rig),
       report_(std::move(report)),
-      of_sensor_(request_by_sensor(request_, rig_, report_)) {}
+      of_sensor_(request_by_sensor(request_, rig_, report_)) {
+  for (std::size_t i = 0; i < rig_.sensors.size(); ++i) {
+    if (!has_files(i)) continue;
+    for (const std::filesystem::path& file : check_frame_files(request_of(i, 0)))
+      refuse_overwrite_of_inputs(rig_.inputs, file);
+  }
+}
+
+FrameFileRequest FrameFiles::request_of(std::size_t sensor, std::uint64_t index) const {
+  const std::string& label = rig_.sensors[sensor].label;
+  const FrameFileRequest request =
+      label.empty() ? of_sensor_[sensor] : labelled(of_sensor_[sensor], label);
+  return is_numbered_ ? numbered(request, static_cast<std::uint32_t>(index)) : request;
+}
 
 HitColumnMask FrameFiles::hit_columns(std::size_t sensor) const {
   const FrameFileRequest& request = of_sensor_[sensor];
@@ -351,8 +364,8 @@ HitColumnMask FrameFiles::hit_columns(std::size_t sensor) const {
 void FrameFiles::write(const RigFrame& written) {
   const OutputSensor& sensor = rig_.sensors[written.sensor];
   files_.clear();
-  FrameFileRequest request = of_sensor_[written.sensor];
-  if (!has_outputs(request)) return;
+  if (!has_files(written.sensor)) return;
+  const FrameFileRequest request = request_of(written.sensor, written.index);
   SidecarContext context{.scene = rig_.scene,
                          .sensor = sensor.sensor,
                          .beams = written.beams,
@@ -360,11 +373,9 @@ void FrameFiles::write(const RigFrame& written) {
                          .command = rig_.command,
                          .inputs = rig_.inputs};
   if (!sensor.label.empty()) {
-    request = labelled(request, sensor.label);
     std::vector<std::string>& arguments = context.command.arguments;
     if (!arguments.empty()) arguments.insert(arguments.end(), {"--sensor-name", sensor.label});
   }
-  if (is_numbered_) request = numbered(request, static_cast<std::uint32_t>(written.index));
   const std::vector<PlannedFile> files = plan_files(request, context, report_);
   for (const PlannedFile& file : files) {
     for (const std::filesystem::path& made : file.sink->files())

@@ -52,7 +52,7 @@ class FrameFiles final : public Output {
   /// The files of a sensor with a label have it in their names: NAME_lidar.pcd. On a rig, outputs
   /// that do not fit a sensor, such as the depth image of a 360 degree LiDAR, are left out with a
   /// note. `is_numbered`: see numbered(). The report gets warnings, and progress if it has that.
-  /// Throws Error if an output fits none of the sensors.
+  /// Throws Error if an output fits none of the sensors, or a file of the first frames is refused.
   FrameFiles(FrameFileRequest request, bool is_numbered, const OutputRig& rig, Report report);
 
   /// Whether a sensor has files.
@@ -66,6 +66,9 @@ class FrameFiles final : public Output {
   [[nodiscard]] std::string written_text() const override;
 
  private:
+  /// The files of a frame, with their names.
+  [[nodiscard]] FrameFileRequest request_of(std::size_t sensor, std::uint64_t index) const;
+
   FrameFileRequest request_;
   bool is_numbered_;
   OutputRig rig_;

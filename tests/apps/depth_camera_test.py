@@ -103,7 +103,7 @@ class DepthCameras(PngTest):
 class StereoOutputs(DepthCameras):
     def test_the_written_images_matched_by_glidar_stereo_give_the_reported_depths(self):
         self.render("stereo.yaml", "a.ir_left.png", "a.ir_right.png", "a.depth.png", "a.csv", options=COLUMNS)
-        self.succeed("stereo", "a.ir_left.png", "a.ir_right.png", *MATCHER, "-o", "disparity.npy", "--quiet")
+        self.succeed("depth", "stereo", "a.ir_left.png", "a.ir_right.png", *MATCHER, "-o", "disparity.npy", "--quiet")
         shape, disparity = floats_of(self.bytes_of("disparity.npy"))
         self.assertEqual(shape, (96, 160))
         depth_mm = [level for row in self.grey_rows("a.depth.png") for level in row]

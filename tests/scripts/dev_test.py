@@ -283,7 +283,8 @@ class Dev(unittest.TestCase):
         status, output, errors, calls = self.install()
         self.assertEqual((status, errors), (0, ""))
         self.assertEqual(calls[-1], f"{active}/bin/python -m pip install --disable-pip-version-check . [{prefix}]")
-        self.assertNotIn("glidar-python", output.replace("glidar-{python", ""))
+        self.assertNotIn("glidar-python", output)
+        self.assertIn(f"{active}/bin/python -m pip uninstall glidar", output)
 
     def test_install_names_what_an_active_environment_lacks(self):
         active = self.folder / "active"
