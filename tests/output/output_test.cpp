@@ -36,11 +36,13 @@ TEST(OpenOutput, RefusesWhatDoesNotFitAndLeavesNoFile) {
   const testing::TestFolder folder;
   const Scene scene;
   Sensor camera;
-  camera.optics = Pinhole{{.width = 8, .height = 6, .fx = 10.0, .fy = 10.0, .cx = 4.0, .cy = 3.0}};
+  Pinhole optics;
+  optics.intrinsics = {.width = 8, .height = 6, .fx = 10.0, .fy = 10.0, .cx = 4.0, .cy = 3.0};
+  camera.optics = optics;
   const Beams beams = make_beams(camera);
   OutputRig rig{.scene = scene, .sensors = {}};
   rig.sensors.push_back({.sensor = camera, .beams = beams});
-  EXPECT_THAT(error_of(folder / "run.pcap", rig), HasSubstr("Velodyne"));
+  EXPECT_THAT(error_of(folder / "run.pcap", rig), HasSubstr("Pandar64"));
   EXPECT_THAT(error_of(folder / "run.imu.csv", rig), HasSubstr("there is no IMU"));
   rig.imus = {{.name = "imu", .imu = {}}};
   EXPECT_THAT(error_of(folder / "run.imu.csv", rig), HasSubstr("a motion that is known"));

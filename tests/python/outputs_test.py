@@ -185,7 +185,7 @@ def test_an_input_is_not_replaced(tmp_path):
 def test_a_frame_of_a_scene_with_other_objects_is_refused(name, tmp_path):
     one = glidar.Scene("builtin:box")
     two = glidar.Scene("builtin:box")
-    two.add_instance(two.objects[0], position=(0, 3, 0))
+    two.add_instance(two.objects[0], pose=glidar.pose([0, 3, 0]))
     first, second = (glidar.simulate(scene, "VLP-16", glidar.pose([5, 0, 0])) for scene in (one, two))
     with glidar.open_output(tmp_path / name) as output:
         output.write(first)

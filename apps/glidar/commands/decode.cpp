@@ -151,7 +151,7 @@ void decode_packets(const DecodeFlags& flags, std::unique_ptr<PacketSource> pack
   sender.sensor.doppler.reset();  // packets have no velocities
   check_columns(sender.sensor, flags.output.columns);
   const Scene nothing;
-  FrameFileRequest request = flags.output;
+  FrameFileRequest request = static_cast<const FrameFileRequest&>(flags.output);
   if (request.frame.empty()) request.frame = "sensor";
   request.input = flags.input;
   DecodedFrame decoded;

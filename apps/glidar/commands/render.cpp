@@ -189,7 +189,8 @@ void run(const RenderFlags& flags, const PreparedScene& prepared, const CommandR
   OutputRig rig = output_rig(flags, prepared, PoseOrigin::motion);
   rig.command = command;
   rig.end_ns = end_ns(prepared);
-  Job job{flags, prepared, FrameFiles(flags.output, is_sequence(flags), rig, console.report()),
+  const FrameFileRequest& files = flags.output;
+  Job job{flags, prepared, FrameFiles(files, is_sequence(flags), rig, console.report()),
           open_recordings(flags.output, rig), open_imu_outputs(flags.output, rig, console)};
   try {
     measure_all(job, console);

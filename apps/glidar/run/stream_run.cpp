@@ -314,11 +314,11 @@ void StreamRun::open_scene() {
   rig.inputs = reserved_files(flags_, prepared_.files);
   // otherwise the command does not contain the poses
   if (!has_pose_source(flags_) && flags_.replay.empty()) rig.command = flags_.command;
-  open_outputs(std::move(rig));
+  open_outputs(rig);
 }
 
-void StreamRun::open_outputs(OutputRig rig) {
-  const OutputFlags& files = flags_.render.output;
+void StreamRun::open_outputs(const OutputRig& rig) {
+  const FrameFileRequest& files = flags_.render.output;
   if (live_view_) {
     live_view_->begin(flags_.render, prepared_, rig);
     outputs_.push_back(std::move(live_view_));

@@ -37,7 +37,7 @@ class StreamRun {
 
  private:
   void open_scene();
-  void open_outputs(OutputRig rig);
+  void open_outputs(const OutputRig& rig);
   [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
