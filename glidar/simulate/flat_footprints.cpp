@@ -13,8 +13,8 @@ namespace glidar {
 namespace {
 
 /// Sine of the angle that normals at corners may deviate from that of their triangle: roundings of
-/// files. At 89 degrees the cosine changes by at most 6e-4 of itself, which shifts the mean range by
-/// less than 1e-4 m for the widest footprint that is integrated.
+/// files. At 89 degrees the cosine changes by at most 6e-4 of itself, which shifts the mean range
+/// by less than 1e-4 m for the widest footprint that is integrated.
 constexpr float kMaxBend = 1e-5F;
 
 /// True if the shading normal is the same on the whole triangle: that of its plane.

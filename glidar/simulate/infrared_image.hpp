@@ -43,9 +43,9 @@ struct LitPoint {
 
 /// Radiance of a point of a surface towards the origin. With the irradiance E of a surface that
 /// faces the source, at the incidence t, E cos t f / pi: f is the reflectance of a diffuse surface;
-/// other surfaces have their monostatic backscatter (core/material.hpp) divided by its cosine, both at
-/// the normal's angle from the bisector of the directions to source and camera, so that source and
-/// camera in one place see the backscatter itself. E of the projector is its intensity /
+/// other surfaces have their monostatic backscatter (core/material.hpp) divided by its cosine, both
+/// at the normal's angle from the bisector of the directions to source and camera, so that source
+/// and camera in one place see the backscatter itself. E of the projector is its intensity /
 /// distance^2. Ambient light comes evenly from all sides. Radiance is proportional to the
 /// surface's opacity: light that passes through it does not return.
 InfraredRadiance infrared_radiance(const InfraredLights& lights, const LitPoint& point);

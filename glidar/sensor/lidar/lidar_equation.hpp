@@ -44,8 +44,8 @@ void validate(const LidarEquation& light);
 /// Keys of `lidar_equation` in sensor files.
 void describe(LidarEquation& light, FieldVisitor& visitor);
 
-/// Backscatter of a surface relative to a white diffuse surface at normal incidence; core/material.hpp
-/// states the formulas. `cosine` is that of the incidence angle, 0..1.
+/// Backscatter of a surface relative to a white diffuse surface at normal incidence;
+/// core/material.hpp states the formulas. `cosine` is that of the incidence angle, 0..1.
 double backscatter(const Brdf& surface, double reflectance, double cosine);
 
 /// A material's reflectance at a wavelength: its spectrum, linear between the entries and constant
