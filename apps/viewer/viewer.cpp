@@ -276,7 +276,7 @@ void Viewer::set_seed(std::uint64_t seed) {
 
 void Viewer::save() {
   if (!snapshot()) return;
-  FrameFileRequest outputs = request_.flags->output;
+  FrameFileRequest outputs = static_cast<const FrameFileRequest&>(request_.flags->output);
   if (outputs.paths.empty() && outputs.legacy_name.empty()) outputs.legacy_name = "buffer";
   measurements_.save(request_, saved_ == 0 ? outputs : numbered(outputs, saved_));
   ++saved_;

@@ -127,6 +127,16 @@ void check_names(const std::vector<PlannedFile>& files, const FrameFileRequest& 
   }
 }
 
+/// The options of a file whose writing is part of the progress.
+FileSinkOptions with_progress(FileSinkOptions options, const std::string& path,
+                              const Report& report) {
+  if (!report.progress) return options;
+  options.progress = [progress = report.progress, task = "writing " + path](double fraction) {
+    progress(task, fraction);
+  };
+  return options;
+}
+
 /// All files of a frame. Writing uses the context and sends warnings to `report`.
 std::vector<PlannedFile> plan_files(const FrameFileRequest& request, const SidecarContext& context,
                                     const Report& report) {
@@ -134,12 +144,7 @@ std::vector<PlannedFile> plan_files(const FrameFileRequest& request, const Sidec
   check_picture(request.sink.picture);
   std::vector<PlannedFile> files;
   for (const std::string& path : in_order(request.paths)) {
-    FileSinkOptions options = request.sink;
-    if (report.progress) {
-      options.progress = [progress = report.progress, task = "writing " + path](double fraction) {
-        progress(task, fraction);
-      };
-    }
+    const FileSinkOptions options = with_progress(request.sink, path, report);
     with_option_name(request.option,
                      [&] { files.push_back(plan_file(path, request, options, context, report)); });
   }
