@@ -137,6 +137,18 @@ FileSinkOptions with_progress(FileSinkOptions options, const std::string& path,
   return options;
 }
 
+/// Adds the files of the original program.
+void plan_legacy_files(const std::string& name, const SidecarContext& context, const Report& report,
+                       std::vector<PlannedFile>& files) {
+  const FileSinkOptions options{.drop_invalid = true, .sidecar = false};
+  for (const std::filesystem::path& path : legacy_paths(name)) {
+    files.push_back({.path = path,
+                     .columns = legacy_columns(path),
+                     .frame_name = "legacy",
+                     .sink = make_file_sink(path, options, context, report)});
+  }
+}
+
 /// All files of a frame. Writing uses the context and sends warnings to `report`.
 std::vector<PlannedFile> plan_files(const FrameFileRequest& request, const SidecarContext& context,
                                     const Report& report) {
@@ -149,15 +161,8 @@ std::vector<PlannedFile> plan_files(const FrameFileRequest& request, const Sidec
                      [&] { files.push_back(plan_file(path, request, options, context, report)); });
   }
   if (!request.legacy_name.empty()) {
-    const FileSinkOptions options{.drop_invalid = true, .sidecar = false};
-    with_option_name("--legacy-output", [&] {
-      for (const std::filesystem::path& path : legacy_paths(request.legacy_name)) {
-        files.push_back({.path = path,
-                         .columns = legacy_columns(path),
-                         .frame_name = "legacy",
-                         .sink = make_file_sink(path, options, context, report)});
-      }
-    });
+    with_option_name("--legacy-output",
+                     [&] { plan_legacy_files(request.legacy_name, context, report, files); });
   }
   check_names(files, request);
   return files;
