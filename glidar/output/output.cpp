@@ -200,7 +200,6 @@ std::vector<OutputFormat> make_formats() {
                   {".imu.npz", OutputKind::imu_samples, "samples of IMUs, NumPy archive"},
                   {".mcap", OutputKind::bag, "ROS bag of all frames and sensors"},
                   {".rosbag2", OutputKind::bag, "the same as a folder with SQLite, for ros2 bag"},
-                  {".bag", OutputKind::bag, "the same for ROS 1"},
                   {".pcap", OutputKind::capture, "UDP packets as the sensor sends them"},
                   {".osi", OutputKind::osi_trace, "OSI trace of all frames and sensors"}});
   return formats;

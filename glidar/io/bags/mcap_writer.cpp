@@ -40,7 +40,7 @@ void append_schema(Bytes& to, std::uint16_t number, const ros::MessageType& type
   append(to, number);
   append_sized(to, type.name);
   append_sized(to, "ros2msg");
-  append_sized(to, ros::definition_text(type, ros::Wire::cdr));
+  append_sized(to, ros::definition_text(type));
   end_record(to, begin);
 }
 

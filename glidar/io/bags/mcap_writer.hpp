@@ -20,7 +20,6 @@ class McapWriter : public BagWriter {
  public:
   McapWriter(const std::filesystem::path& path, const BagOptions& options);
 
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
   std::size_t add_topic(const ros::Topic& topic) override;
   void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override;
   void finish() override;

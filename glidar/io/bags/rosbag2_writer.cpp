@@ -127,7 +127,6 @@ class SqliteBagWriter : public BagWriter {
  public:
   explicit SqliteBagWriter(const fs::path& path);
 
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
   std::size_t add_topic(const ros::Topic& topic) override;
   void write(std::size_t topic, std::int64_t time_ns, std::span<const std::byte> message) override;
   void finish() override;
@@ -181,7 +180,7 @@ std::size_t SqliteBagWriter::add_topic(const ros::Topic& topic) {
                      "encoded_message_definition,type_description_hash) "
                      "VALUES(?,'ros2msg',?,?)");
     define.bind(1, topic.type->name);
-    define.bind(2, ros::definition_text(*topic.type, ros::Wire::cdr));
+    define.bind(2, ros::definition_text(*topic.type));
     define.bind(3, topic.type->type_hash);
     define.step();
   }
@@ -262,8 +261,6 @@ class Rosbag2Writer : public BagWriter {
         file_name_(path.stem().string() + (options.mcap_storage ? "_0.mcap" : "_0.db3")) {
     with_name([&] { open_storage(options); });
   }
-
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
 
   std::size_t add_topic(const ros::Topic& topic) override {
     topics_.add(topic);

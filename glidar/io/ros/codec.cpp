@@ -37,9 +37,8 @@ std::size_t padding(Wire wire, std::size_t position, std::size_t size) {
 /// zero before.
 class MemberWriter {
  public:
-  MemberWriter(Wire wire, std::vector<std::byte>& to) : wire_(wire), to_(to) {
-    if (wire == Wire::cdr)
-      std::copy(kCdrLittleEndian.begin(), kCdrLittleEndian.end(), grow(kCdrLittleEndian.size(), 1));
+  explicit MemberWriter(std::vector<std::byte>& to) : to_(to) {
+    std::copy(kCdrLittleEndian.begin(), kCdrLittleEndian.end(), grow(kCdrLittleEndian.size(), 1));
   }
 
   /// Removes what is left of the earlier message.
@@ -58,9 +57,9 @@ class MemberWriter {
   }
 
   void write(const std::string& text) {
-    const std::size_t end = wire_ == Wire::cdr ? 1 : 0;  // a zero byte
-    write_size(text.size() + end);
-    std::memcpy(grow(text.size() + end, 1), text.c_str(), text.size() + end);
+    const std::size_t size = text.size() + 1;  // with a zero byte
+    write_size(size);
+    std::memcpy(grow(size, 1), text.c_str(), size);
   }
 
   void write(const FileText& text) { write(text.bytes()); }
@@ -83,14 +82,10 @@ class MemberWriter {
   }
 
   template <class Member>
-  void write(const Ros1Only<Member>& member) {
-    if (wire_ == Wire::ros1) write(member.value);
-  }
+  void write(const Ros1Only<Member>& /*member*/) {}
 
   template <class Member>
-  void write(const Ros2Only<Member>& member) {
-    if (wire_ == Wire::cdr) write(member.value);
-  }
+  void write(const Ros2Only<Member>& member) { write(member.value); }
 
   template <class Member>
   requires std::is_class_v<Member>
@@ -117,14 +112,13 @@ class MemberWriter {
 
   /// Space for `size` bytes behind the padding to `alignment`, which is zero.
   std::byte* grow(std::size_t size, std::size_t alignment) {
-    const std::size_t at = size_ + (size_ == 0 ? 0 : padding(wire_, size_, alignment));
+    const std::size_t at = size_ + (size_ == 0 ? 0 : padding(Wire::cdr, size_, alignment));
     if (at + size > to_.size()) to_.resize(at + size);
     std::fill(to_.data() + size_, to_.data() + at, std::byte{0});
     size_ = at + size;
     return to_.data() + at;
   }
 
-  Wire wire_;
   std::vector<std::byte>& to_;
   std::size_t size_ = 0;  ///< of what was written
 };
@@ -272,18 +266,18 @@ std::size_t payload_size(const Message& message) {
 }  // namespace
 
 template <class Message>
-void serialize_to(const Message& message, Wire wire, std::vector<std::byte>& to) {
+void serialize_to(const Message& message, std::vector<std::byte>& to) {
   constexpr std::size_t kOthers = 1024;
   to.reserve(payload_size(message) + kOthers);
-  MemberWriter writer(wire, to);
+  MemberWriter writer(to);
   visit_members(message, writer);
   writer.finish();
 }
 
 template <class Message>
-std::vector<std::byte> serialize(const Message& message, Wire wire) {
+std::vector<std::byte> serialize(const Message& message) {
   std::vector<std::byte> bytes;
-  serialize_to(message, wire, bytes);
+  serialize_to(message, bytes);
   return bytes;
 }
 
@@ -296,9 +290,9 @@ Message deserialize(std::span<const std::byte> bytes, Wire wire) {
   return message;
 }
 
-#define GLIDAR_ROS_CODEC(Message)                                            \
-  template void serialize_to(const Message&, Wire, std::vector<std::byte>&); \
-  template std::vector<std::byte> serialize(const Message&, Wire);           \
+#define GLIDAR_ROS_CODEC(Message)                                      \
+  template void serialize_to(const Message&, std::vector<std::byte>&); \
+  template std::vector<std::byte> serialize(const Message&);           \
   template Message deserialize<Message>(std::span<const std::byte>, Wire);
 
 GLIDAR_ROS_CODEC(Header)

@@ -31,11 +31,11 @@ class HeldMessages {
   void hold(Held message);
   /// Serializes a message.
   template <class Message>
-  void hold(std::size_t topic, std::int64_t time_ns, const Message& message, Wire wire) {
+  void hold(std::size_t topic, std::int64_t time_ns, const Message& message) {
     std::size_t size = 0;
     if constexpr (requires { message.data.size(); }) size = message.data.size();
     std::vector<std::byte> bytes = written_.take(size);
-    serialize_to(message, wire, bytes);
+    serialize_to(message, bytes);
     hold({.time_ns = time_ns, .topic = topic, .bytes = std::move(bytes)});
   }
   /// Removes the first message if its time is at most `until_ns`.

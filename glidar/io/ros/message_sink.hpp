@@ -28,7 +28,7 @@ Topic make_topic(std::string name) {
   return {std::move(name), &type, type.qos};
 }
 
-/// A destination of messages: a bag or a network.
+/// A destination of messages, which are Wire::cdr: a bag or a network.
 class MessageSink {
  public:
   MessageSink() = default;
@@ -36,8 +36,6 @@ class MessageSink {
   MessageSink& operator=(const MessageSink&) = delete;
   virtual ~MessageSink() = default;
 
-  /// How messages must be serialized.
-  [[nodiscard]] virtual Wire wire() const = 0;
   /// The number of a new topic. Throws Error when its name is in use or no topic name.
   virtual std::size_t add_topic(const Topic& topic) = 0;
   /// Whether anyone receives the topic now; if not, its messages need not be made.
@@ -59,7 +57,7 @@ class MessageSink {
 template <class Message>
 void write_message(MessageSink& sink, std::size_t topic, std::int64_t time_ns,
                    const Message& message) {
-  sink.write(topic, time_ns, serialize(message, sink.wire()));
+  sink.write(topic, time_ns, serialize(message));
 }
 
 }  // namespace glidar::ros

@@ -25,7 +25,6 @@ inline constexpr Qos kStaticTransformQos = {.transient_local = true, .depth = 1}
 struct MessageType {
   std::string_view name;       ///< in ROS 2: sensor_msgs/msg/PointCloud2
   std::string_view ros1_name;  ///< sensor_msgs/PointCloud2
-  std::string_view md5;        ///< of the definition in ROS 1
   /// REP-2016: RIHS01_ and 64 hexadecimal digits; the same in all distributions of ROS 2.
   std::string_view type_hash;
   Qos qos;  ///< default of a publisher
@@ -78,9 +77,9 @@ const MessageType& message_type<MarkerArray>();
 /// livox_ros_driver too, which has the same definition.
 const MessageType* find_message_type(std::string_view name);
 
-/// The definition with those of all types in it, without comments: in ROS 2 as MCAP's schema
-/// encoding `ros2msg` and rosbag2 store it, in ROS 1 as bags store it.
-std::string definition_text(const MessageType& type, Wire wire);
+/// The definition with those of all types in it, without comments, as MCAP's schema encoding
+/// `ros2msg` and rosbag2 store it.
+std::string definition_text(const MessageType& type);
 
 /// The name of the type in DDS: sensor_msgs::msg::dds_::PointCloud2_.
 std::string dds_type_name(const MessageType& type);

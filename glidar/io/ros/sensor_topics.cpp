@@ -301,7 +301,7 @@ void PacketTopics::hold_packets(HeldMessages& held) {
     PacketMsg message;
     message.buf.resize(packet.payload.size());
     std::memcpy(message.buf.data(), packet.payload.data(), packet.payload.size());
-    held.hold(topic, packet.stamp_ns, message, sink_.wire());
+    held.hold(topic, packet.stamp_ns, message);
   }
   made_.clear();
 }
@@ -323,7 +323,7 @@ void PacketTopics::hold_scan(HeldMessages& held) {
   made_.clear();
   if (scan.packets.empty() || !sink_.is_wanted(packets_topic_)) return;
   scan.header.stamp = time_from_ns(last_ns);
-  held.hold(packets_topic_, last_ns, scan, sink_.wire());
+  held.hold(packets_topic_, last_ns, scan);
 }
 
 bool is_camera(const Sensor& sensor) {

@@ -28,7 +28,6 @@ class MessageSink final : public ros::MessageSink {
   /// The participant must outlive it. Throws Error when the namespace is not valid.
   MessageSink(const Participant& participant, MessageSinkOptions options);
 
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
   std::size_t add_topic(const ros::Topic& topic) override;
   /// Whether a node reads the topic. The last message of a transient local topic is always wanted.
   [[nodiscard]] bool is_wanted(std::size_t topic) const override;

@@ -22,7 +22,6 @@ class RosChannels final : public ros::MessageSink {
   RosChannels(FoxgloveServer& server, bool keeps_newest)
       : server_(server), keeps_newest_(keeps_newest) {}
 
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
   std::size_t add_topic(const ros::Topic& topic) override;
   [[nodiscard]] bool is_wanted(std::size_t topic) const override;
   /// A message of the type Clock also sets the time that clients show.

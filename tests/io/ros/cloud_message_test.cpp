@@ -58,7 +58,7 @@ std::vector<T> values(const PointCloud& cloud, const char* name) {
 }
 
 PointCloud sent(const PointCloud2& message) {
-  return to_point_cloud(deserialize<PointCloud2>(serialize(message, Wire::cdr), Wire::cdr));
+  return to_point_cloud(deserialize<PointCloud2>(serialize(message)));
 }
 
 TEST(CloudMessage, IsDenseAndInFiringOrderWithTheStampOfTheFirstFiring) {

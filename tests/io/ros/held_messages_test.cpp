@@ -31,11 +31,11 @@ TEST(HeldMessages, ReuseTheMemoryOfWrittenOnes) {
   HeldMessages messages;
   Image image;
   image.data = Payload(std::vector<std::byte>(100'000));
-  messages.hold(0, 1, image, Wire::cdr);
+  messages.hold(0, 1, image);
   std::vector<std::byte> written = std::move(messages.release(1)->bytes);
   const std::byte* memory = written.data();
   messages.give_back(std::move(written));
-  messages.hold(0, 2, image, Wire::cdr);
+  messages.hold(0, 2, image);
   EXPECT_EQ(messages.release(2)->bytes.data(), memory);
 }
 

@@ -72,7 +72,7 @@ Channels add_channels(foxglove::FoxgloveServer& server) {
   const auto add = [&](const char* topic, const ros::MessageType& type, std::size_t depth = 1) {
     return server.add_channel({.topic = topic,
                                .schema_name = std::string(type.name),
-                               .schema = ros::definition_text(type, ros::Wire::cdr),
+                               .schema = ros::definition_text(type),
                                .depth = depth});
   };
   const ros::MessageType& transforms = ros::message_type<ros::TFMessage>();
@@ -106,7 +106,7 @@ link::Payload boxes_at(std::uint64_t stamp_ns) {
   other.text = "a car";
   other.mesh_file.filename = "car.obj";
   const std::vector<std::byte> bytes =
-      ros::serialize(ros::MarkerArray{{cube, other}}, ros::Wire::cdr);
+      ros::serialize(ros::MarkerArray{{cube, other}});
   link::Payload payload = link::PayloadPool().take(bytes.size());
   std::memcpy(payload.memory.get(), bytes.data(), bytes.size());
   return payload;
