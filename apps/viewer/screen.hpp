@@ -2,11 +2,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/viewer/cloud_drawing.hpp>
+#include <glidar/io/pictures/picture.hpp>
+
 #include <apps/viewer/panels.hpp>
-#include <apps/viewer/window.hpp>
+#include <apps/viewer/view_drawing.hpp>
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace glidar::app {
+
+/// Callbacks for keys and for files dropped on the window.
+struct WindowEvents {
+  std::function<void(unsigned)> on_letter;  ///< a Unicode character typed outside text fields
+  std::function<void()> on_escape;
+  std::function<void(const std::vector<std::string>&)> on_drop;
+  std::function<void()> on_redraw;  ///< the window must be drawn again
+};
+
+/// Mouse input that the last frame takes into account.
+struct MouseInput {
+  int x = -1;  ///< pixels from the window's upper left corner; -1: the pointer was never inside
+  int y = -1;
+  unsigned buttons = 0;           ///< pressed buttons: 1 left, 2 right, 4 middle
+  std::uint64_t wheel_steps = 0;  ///< since the window was opened
+};
+
+struct WindowSize {
+  int width = 1280;  ///< pixels
+  int height = 720;
+};
+
+/// RAII: the window library; one at a time, in the main thread.
+class WindowSystem {
+ public:
+  /// Connects to the X11 display of DISPLAY, else to the Wayland display of WAYLAND_DISPLAY. Throws
+  /// Error if there is neither.
+  WindowSystem();
+  ~WindowSystem();
+  WindowSystem(const WindowSystem&) = delete;
+  WindowSystem& operator=(const WindowSystem&) = delete;
+
+  /// Ends a wait() in the main thread; from any thread.
+  static void wake();
+  /// Handles pending events without waiting.
+  static void poll();
+  /// Waits for an event, at most so many seconds; empty: without limit.
+  static void wait(std::optional<double> seconds);
+  /// Whether wait() also ends without input: a Wayland compositor answers every picture.
+  static bool wakes_without_input();
+};
+
+/// A window with a context of OpenGL 3.3, current in the main thread while it lives, and panels by
+/// Dear ImGui in it.
+class Window {
+ public:
+  /// Throws Error if there is no context.
+  Window(const std::string& title, const WindowSize& size, WindowEvents events);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  [[nodiscard]] bool is_closing() const;
+  /// Whether the window is minimised or has no size.
+  [[nodiscard]] bool is_hidden() const;
+  /// Whether the graphics device lost the context and all its objects.
+  [[nodiscard]] bool is_lost() const;
+  /// The size in which mouse and panels count; with Wayland, the drawn image may have more pixels.
+  [[nodiscard]] WindowSize size() const;
+  [[nodiscard]] const MouseInput& mouse() const { return mouse_; }
+  /// Whether input waits for the next frame: a key and a motion of the mouse take one each.
+  [[nodiscard]] static bool has_pending_input();
+
+  /// Panels are added between these two; end() draws them.
+  void begin();
+  void end();
+  /// The drawn image, before show().
+  [[nodiscard]] Picture picture() const;
+  /// Displays the drawn image.
+  void show();
+
+ private:
+  [[nodiscard]] WindowSize drawn_size() const;
+
+  struct WindowDeleter {
+    void operator()(GLFWwindow* window) const;
+  };
+  WindowEvents events_;
+  MouseInput mouse_;
+  std::unique_ptr<GLFWwindow, WindowDeleter> window_;
+};
+
+}  // namespace glidar::app
 
 namespace glidar::app {
 

@@ -9,9 +9,9 @@
 #include <glidar/io/formats/imu_samples_file.hpp>
 #include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/osi/osi_trace.hpp>
-#include <glidar/io/packets/ouster_packet.hpp>
-#include <glidar/io/packets/packet_writer.hpp>
-#include <glidar/io/ros/driver.hpp>
+#include <glidar/io/packets/ouster.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
+#include <glidar/io/ros/published_rig.hpp>
 #include <glidar/output/frame_files.hpp>
 #include <glidar/output/network.hpp>
 #include <glidar/output/rig_messages.hpp>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/math/thread_pool.hpp>
 
 #include <gtest/gtest.h>

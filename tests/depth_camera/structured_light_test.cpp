@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/sensor/optics/projection.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 #include <support/error_text.hpp>
 
 #include <gmock/gmock.h>

@@ -3,7 +3,7 @@
 #include <glidar/link/connection_guard.hpp>
 
 #include <glidar/io/files/unique_fd.hpp>
-#include <glidar/link/router.hpp>
+#include <glidar/link/socket.hpp>
 
 #include "loopback.hpp"
 #include "message_bytes.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/limits.hpp>
+#include <glidar/link/connection_guard.hpp>
 
 #include "support/error_text.hpp"
 

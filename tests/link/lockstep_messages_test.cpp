@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
-#include <glidar/link/lockstep/messages.hpp>
+#include <glidar/link/lockstep.hpp>
 #include <glidar/math/constants.hpp>
 #include <support/error_text.hpp>
 

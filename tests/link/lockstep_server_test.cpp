@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/lockstep/server.hpp>
+#include <glidar/link/lockstep.hpp>
 #include "loopback.hpp"
 #include "raw_peer.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/router.hpp>
+#include <glidar/link/socket.hpp>
 
 #include "loopback.hpp"
 #include "message_bytes.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/motion/elliptic.hpp>
+#include <glidar/motion/torque_free_rotation.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Clusters of a mesh, their bounds in the image, and the tiles of an image.
+#include <glidar/render/raster/cluster_drawing.hpp>
 #include <glidar/render/raster/packed_mesh.hpp>
-#include <glidar/render/raster/tile_grid.hpp>
-#include <glidar/render/raster/visible_clusters.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <algorithm>

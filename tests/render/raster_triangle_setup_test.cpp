@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/raster/triangle_setup.hpp>
+#include <glidar/render/raster/cluster_drawing.hpp>
 
 #include <gtest/gtest.h>
 

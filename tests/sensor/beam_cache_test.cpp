@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/sensor/beam_cache.hpp>
+#include <glidar/sensor/sensor.hpp>
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/math/constants.hpp>
 #include <glidar/math/thread_pool.hpp>
-#include <glidar/sensor/limits.hpp>
+#include <glidar/sensor/sensor.hpp>
 
 #include <gtest/gtest.h>
 

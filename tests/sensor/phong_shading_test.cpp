@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/sensor/phong_shading.hpp>
+#include <glidar/sensor/sensor.hpp>
 
 #include <gtest/gtest.h>
 

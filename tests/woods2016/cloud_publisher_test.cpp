@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/woods2016/cloud_publisher.hpp>
-
-#include <glidar/woods2016/message_codec.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include "link/loopback.hpp"
 #include "link/message_bytes.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/woods2016/handshake_match.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/math/constants.hpp>
-#include <glidar/woods2016/message_codec.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include "link/message_bytes.hpp"
 #include "support/error_text.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/woods2016/pose_receiver.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include "link/loopback.hpp"
 #include "link/message_bytes.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/file_text.hpp>
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 
 #include <cstddef>
 #include <cstdint>

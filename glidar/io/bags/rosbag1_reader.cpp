@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/bags/rosbag1_reader.hpp>
+#include <glidar/io/bags/bag_formats.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/bags/bag_file.hpp>
-#include <glidar/io/bags/byte_reader.hpp>
-#include <glidar/io/bags/chunk_codec.hpp>
-#include <glidar/io/bags/chunk_merger.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
 
 #include <fmt/format.h>
 
@@ -131,7 +128,8 @@ class Rosbag1Reader : public BagReader {
 
  private:
   std::uint32_t size_at(std::uint64_t at) {
-    return ByteReader(file_.peek(at, sizeof(std::uint32_t)), file_.place(at)).number<std::uint32_t>();
+    return ByteReader(file_.peek(at, sizeof(std::uint32_t)), file_.place(at))
+        .number<std::uint32_t>();
   }
 
   /// Returns the place of the next record.

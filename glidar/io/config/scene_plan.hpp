@@ -97,4 +97,11 @@ ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions&
 /// The same for the contents of such a file; `files` lacks the file itself.
 ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults);
 
+/// The sensors of a scene file and where they are: `sensor`, `sensor_pose` and `sensor_motion`, or
+/// `sensors`, `rig_pose` and `rig_motion`.
+void visit_rig(FieldVisitor& visitor, ScenePlan& plan);
+
+/// The key `name` of something on a rig. Returns its place in the file, for later errors.
+std::string visit_rig_name(FieldVisitor& visitor, std::string& name);
+
 }  // namespace glidar

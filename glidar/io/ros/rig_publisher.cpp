@@ -11,7 +11,6 @@
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/pictures/picture.hpp>
 #include <glidar/io/ros/image_message.hpp>
-#include <glidar/io/ros/laser_scan.hpp>
 #include <glidar/io/ros/messages.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 #include <glidar/motion/kinematics.hpp>

@@ -2,23 +2,82 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/memory_pool.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
-#include <glidar/io/ros/driver.hpp>
-#include <glidar/io/ros/held_messages.hpp>
-#include <glidar/io/ros/image_transport.hpp>
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/io/ros/messages.hpp>
 #include <glidar/io/ros/published_rig.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glidar::ros {
+
+/// When the next frames of a rig can begin. Its frames arrive in the order of their start.
+class FrameArrivals {
+ public:
+  /// `is_periodic`: every frame begins where the last one of its sensor ends. Otherwise each pose
+  /// gives one frame of every sensor, at times that are not known before.
+  FrameArrivals(std::size_t sensors, bool is_periodic)
+      : sensors_(sensors), is_periodic_(is_periodic) {}
+
+  /// A frame that began at `start_ns`. Its sensor measures for `duration_ns`. False if it is
+  /// earlier than the last frame, as after a step back in a recording.
+  bool add(std::size_t sensor, std::int64_t start_ns, std::int64_t duration_ns);
+
+  /// No frame that arrives later begins before this time.
+  [[nodiscard]] std::int64_t complete_ns() const;
+  /// The first end of the frames that are expected next; empty before the first frame.
+  [[nodiscard]] std::optional<std::int64_t> next_end_ns() const;
+
+ private:
+  struct SensorFrames {
+    std::optional<std::int64_t> start_ns = {};  ///< of its last frame
+    std::int64_t next_start_ns = 0;
+    std::int64_t next_end_ns = 0;
+  };
+
+  std::vector<SensorFrames> sensors_;
+  bool is_periodic_;
+  std::optional<std::int64_t> last_start_ns_;
+};
+
+/// Serialized messages that wait for earlier ones, by time; those of one time stay in their order.
+class HeldMessages {
+ public:
+  struct Held {
+    std::int64_t time_ns = 0;
+    std::optional<std::size_t> topic;  ///< empty: only a time
+    std::vector<std::byte> bytes;
+  };
+
+  /// The memory of a message that was written, for later ones.
+  void give_back(std::vector<std::byte> memory) { written_.give_back(std::move(memory)); }
+
+  void hold(Held message);
+  /// Serializes a message.
+  template <class Message>
+  void hold(std::size_t topic, std::int64_t time_ns, const Message& message) {
+    std::size_t size = 0;
+    if constexpr (requires { message.data.size(); }) size = message.data.size();
+    std::vector<std::byte> bytes = written_.take(size);
+    serialize_to(message, bytes);
+    hold({.time_ns = time_ns, .topic = topic, .bytes = std::move(bytes)});
+  }
+  /// Removes the first message if its time is at most `until_ns`.
+  std::optional<Held> release(std::int64_t until_ns);
+
+ private:
+  std::deque<Held> held_;
+  MemoryPool written_;
+};
 
 /// Publishes the packets of a sensor as the driver of its manufacturer does: those of Ouster one by
 /// one, and those of Velodyne as a VelodyneScan for each frame.

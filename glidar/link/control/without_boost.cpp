@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Instead of tcp_service.cpp and http_conversation.cpp in builds without Boost.
 #include <glidar/core/error.hpp>
-#include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/tcp_service.hpp>
 
 namespace glidar::control {

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/link/dds/participant.hpp>
-#include <glidar/link/dds/publications.hpp>
 #include <glidar/link/dds/topics.hpp>
 #include <glidar/link/dds/wake_up.hpp>
 #include <glidar/link/payload.hpp>

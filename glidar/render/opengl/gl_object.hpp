@@ -4,6 +4,8 @@
 
 #include <epoxy/gl.h>
 
+#include <initializer_list>
+#include <string_view>
 #include <utility>
 
 namespace glidar::opengl {
@@ -96,5 +98,23 @@ void check_not_lost();
 
 /// Throws Error when OpenGL reports an error since the last call. `doing` names the operation.
 void check_gl(const char* doing);
+
+/// Text of a file of a folder shaders/, embedded in the library; throws std::out_of_range for
+/// unknown names.
+std::string_view shader_text(std::string_view file);
+
+/// Texts of each stage, which are concatenated, and macros for their compilation.
+struct ProgramSource {
+  std::initializer_list<std::string_view> vertex;
+  std::initializer_list<std::string_view> fragment;
+  std::initializer_list<std::string_view> macros;
+};
+
+/// Compiles and links for GLSL 3.30. Throws Error with the driver's log on failure.
+Program make_program(const ProgramSource& source);
+
+/// The same for a compute shader and GLSL 4.30.
+Program make_compute_program(std::initializer_list<std::string_view> texts,
+                             std::initializer_list<std::string_view> macros);
 
 }  // namespace glidar::opengl

@@ -3,8 +3,7 @@
 #include <glidar/io/bags/bag.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag_clouds.hpp>
-#include <glidar/io/bags/bag_poses.hpp>
+#include <glidar/io/bags/bag_contents.hpp>
 #include <glidar/io/bags/bag_records.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/osi/protobuf_message.hpp>
+#include <glidar/io/osi/osi_trace.hpp>
 
 #include <gtest/gtest.h>
 

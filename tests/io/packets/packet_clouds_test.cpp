@@ -7,7 +7,6 @@
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
-#include <glidar/io/ros/cloud_from_message.hpp>
 #include <glidar/io/ros/cloud_message.hpp>
 #include <glidar/io/ros/codec.hpp>
 

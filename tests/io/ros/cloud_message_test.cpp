@@ -4,9 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/ros/cloud_from_message.hpp>
 #include <glidar/io/ros/codec.hpp>
-#include <glidar/io/ros/firing_order.hpp>
 
 #include <io/cloud_fixture.hpp>
 #include <support/error_text.hpp>

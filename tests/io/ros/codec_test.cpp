@@ -3,7 +3,6 @@
 #include <glidar/io/ros/codec.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/ros/message_types.hpp>
 
 #include <io/ros/sample_messages.hpp>
 #include <support/error_text.hpp>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/ros/held_messages.hpp>
+#include <glidar/io/ros/sensor_topics.hpp>
 
 #include <gmock/gmock.h>
 

@@ -3,8 +3,7 @@
 #include <glidar/io/ros/image_message.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/pictures/png_image.hpp>
-#include <glidar/io/ros/laser_scan.hpp>
+#include <glidar/io/pictures/picture.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 #include <glidar/math/constants.hpp>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/foxglove/http_routes.hpp>
+#include <glidar/link/foxglove/protocol.hpp>
 
 #include "support/error_text.hpp"
 

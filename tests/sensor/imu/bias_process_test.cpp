@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/sensor/imu/bias_process.hpp>
+#include <glidar/sensor/imu.hpp>
 
 #include <gtest/gtest.h>
 

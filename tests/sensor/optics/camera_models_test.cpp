@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Camera models against numbers of OpenCV and formulas that are written as in their papers.
 #include <glidar/math/constants.hpp>
-#include <glidar/sensor/optics/projection.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <gtest/gtest.h>
 

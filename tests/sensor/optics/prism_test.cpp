@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/math/constants.hpp>
-#include <glidar/sensor/optics/prism.hpp>
+#include <glidar/sensor/optics/rotating_optics.hpp>
 
 namespace glidar {
 namespace {

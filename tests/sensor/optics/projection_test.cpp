@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/sensor/optics/projection.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/sensor/optics/wedge_mirror.hpp>
+#include <glidar/sensor/optics/rotating_optics.hpp>
 
 #include "sensor/windows.hpp"
 

@@ -5,7 +5,7 @@
 #include "../network/participants.hpp"
 #include "program.hpp"
 
-#include <glidar/link/dds/publications.hpp>
+#include <glidar/link/dds/participant.hpp>
 
 #include <fmt/format.h>
 #include <poll.h>

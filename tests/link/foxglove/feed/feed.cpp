@@ -4,7 +4,7 @@
 //   glidar_foxglove_feed [SENSOR [PORT [FRAMES]]]
 // Prints the address, and one line per command of the page. Ends at the end of its input.
 #include <glidar/core/error.hpp>
-#include <glidar/io/ros/message_types.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/link/foxglove/server.hpp>
 
 #include "ros_bytes.hpp"
@@ -105,8 +105,7 @@ link::Payload boxes_at(std::uint64_t stamp_ns) {
   other.uv_coordinates = {{0.5F, 0.5F}};
   other.text = "a car";
   other.mesh_file.filename = "car.obj";
-  const std::vector<std::byte> bytes =
-      ros::serialize(ros::MarkerArray{{cube, other}});
+  const std::vector<std::byte> bytes = ros::serialize(ros::MarkerArray{{cube, other}});
   link::Payload payload = link::PayloadPool().take(bytes.size());
   std::memcpy(payload.memory.get(), bytes.data(), bytes.size());
   return payload;
