@@ -6,7 +6,7 @@
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/simd.hpp>
-#include <glidar/sensor/noise/depth_noise.hpp>
+#include <glidar/sensor/noise/lateral_noise.hpp>
 #include <glidar/sensor/noise/noise_batch.hpp>
 
 namespace glidar {
