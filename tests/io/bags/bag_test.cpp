@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::filesystem::path kRosbag1Corpus =
-    std::filesystem::path(kSourceFolder) / "tests/fuzz/corpus/rosbag1";
+    std::filesystem::path(kCorpusFolder) / "rosbag1";
 constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 /// One kind of bag.
