@@ -4,7 +4,8 @@
 
 // GLIDAR's C++ library, by subject. Single headers of this list may be included instead.
 
-// Scenes: arrays of meshes, materials and instances; model and scene files; materials with measured reflectances
+// Scenes: arrays of meshes, materials and instances; model and scene files; materials with measured
+// reflectances
 #include <glidar/core/scene.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/surface_presets.hpp>
@@ -23,7 +24,8 @@
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/motion/motion.hpp>
 
-// Simulation: frames, IMU samples, the trace of one measurement; contexts of a program's own for `gpu`
+// Simulation: frames, IMU samples, the trace of one measurement; contexts of a program's own for
+// `gpu`
 #include <glidar/explain/trace_text.hpp>
 #include <glidar/render/gpu/gpu_renderer.hpp>
 #include <glidar/render/woods2016_camera.hpp>
@@ -36,7 +38,8 @@
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/output/output.hpp>
 
-// Images of a depth camera of the user's own: filters, alignment, stereo, time of flight, structured light
+// Images of a depth camera of the user's own: filters, alignment, stereo, time of flight,
+// structured light
 #include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/depth_camera/stereo.hpp>
 #include <glidar/depth_camera/structured_light.hpp>

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
-#include <glidar/depth_camera/stereo_costs.hpp>
+#include <glidar/depth_camera/stereo_matcher.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 
 #include <array>

@@ -6,7 +6,6 @@
 #include <glidar/core/instruction_set.hpp>
 #include <glidar/core/report.hpp>
 #include <glidar/depth_camera/stereo.hpp>
-#include <glidar/depth_camera/stereo_costs.hpp>
 #include <glidar/depth_camera/stereo_kernel.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>

@@ -8,7 +8,6 @@
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/pinhole_only.hpp>
-#include <glidar/render/raster/raster_renderer.hpp>
 #include <glidar/render/rays/rays_renderer.hpp>
 #include <glidar/render/triangle_ids.hpp>
 

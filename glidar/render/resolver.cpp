@@ -6,7 +6,6 @@
 #include <glidar/math/double_double.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/render/block_kernel.hpp>
-#include <glidar/render/coincident_triangles.hpp>
 #include <glidar/render/common/triangle_blocks.hpp>
 #include <glidar/render/corners.hpp>
 #include <glidar/render/rays/kernels.hpp>

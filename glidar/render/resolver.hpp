@@ -4,6 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
+#include <glidar/core/mesh.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/math/thread_pool.hpp>
 #include <glidar/render/hit_block.hpp>
@@ -218,5 +219,14 @@ class Resolver {
   SurfaceColours colours_;
   std::vector<InstanceView> views_;  ///< per instance
 };
+
+/// For meshes with coincident triangles (same corners in any order): the first of each group, per
+/// triangle, so that every renderer reports the same one. Empty when there are none.
+std::vector<std::uint32_t> find_first_coincident(const Mesh& mesh);
+
+/// The triangles of a mesh without copies, which have the same corners and winding as an earlier
+/// one. Rising indices; empty when there are no copies. `firsts`: find_first_coincident(mesh).
+std::vector<std::uint32_t> distinct_triangles(const Mesh& mesh,
+                                              const std::vector<std::uint32_t>& firsts);
 
 }  // namespace glidar

@@ -130,8 +130,9 @@ nb::object depth(const nb::ndarray<const float, nb::shape<-1, -1>, nb::c_contig>
                     shape);
 }
 
-nb::dict explain(const StereoLevels& left, const StereoLevels& right, std::uint32_t max_level,
-                 const StereoOptions& options, std::uint32_t column, std::uint32_t row) {
+nb::dict explain_stereo_pixel(const StereoLevels& left, const StereoLevels& right,
+                              std::uint32_t max_level, const StereoOptions& options,
+                              std::uint32_t column, std::uint32_t row) {
   StereoTrace trace = unlocked([&](Watch& watch) {
     ThreadPool pool;
     return explain_stereo(grey_image(left, max_level), grey_image(right, max_level), options,
@@ -156,7 +157,7 @@ nb::dict explain(const StereoLevels& left, const StereoLevels& right, std::uint3
   return result;
 }
 
-nb::tuple sample() {
+nb::tuple stereo_sample() {
   const auto levels = [](const GreyImage& image) {
     std::vector<std::uint8_t> bytes;
     for (const std::uint16_t level : image.level) bytes.push_back(static_cast<std::uint8_t>(level));
@@ -206,11 +207,11 @@ void bind_stereo(nb::module_& module) {
              nb::arg("baseline_m"), nb::arg("column_offset_px"), nb::arg("depth_unit_m"),
              nb::sig("def stereo_depth(disparity_px: object, focal_length_px: float, baseline_m: "
                      "float, column_offset_px: float, depth_unit_m: float) -> typing.Any"));
-  module.def("explain_stereo", explain, nb::arg("left"), nb::arg("right"), nb::arg("max_level"),
-             nb::arg("options"), nb::arg("column"), nb::arg("row"),
+  module.def("explain_stereo", explain_stereo_pixel, nb::arg("left"), nb::arg("right"),
+             nb::arg("max_level"), nb::arg("options"), nb::arg("column"), nb::arg("row"),
              nb::sig("def explain_stereo(left: object, right: object, max_level: int, options: "
                      "StereoOptions, column: int, row: int) -> dict[str, typing.Any]"));
-  module.def("sample_stereo_pair", sample,
+  module.def("sample_stereo_pair", stereo_sample,
              nb::sig("def sample_stereo_pair() -> tuple[typing.Any, typing.Any]"));
 }
 
@@ -241,8 +242,8 @@ nb::object patterns(const StructuredLight& setup) {
   return array_from(std::move(levels), shape);
 }
 
-nb::dict decode(const StructuredLight& setup, const LevelStack& levels, std::uint32_t max_level,
-                unsigned threads) {
+nb::dict decode_fringe_images(const StructuredLight& setup, const LevelStack& levels,
+                              std::uint32_t max_level, unsigned threads) {
   const std::vector<GreyImage> images = grey_images(levels, max_level);
   MeasuredFringes measured;
   {
@@ -264,8 +265,8 @@ nb::dict decode(const StructuredLight& setup, const LevelStack& levels, std::uin
   return result;
 }
 
-nb::dict explain(const StructuredLight& setup, const LevelStack& levels, std::uint32_t max_level,
-                 std::uint32_t column, std::uint32_t row) {
+nb::dict explain_fringe_pixel(const StructuredLight& setup, const LevelStack& levels,
+                              std::uint32_t max_level, std::uint32_t column, std::uint32_t row) {
   FringeTrace trace = explain_fringes(grey_images(levels, max_level), setup, {column, row});
   nb::list tests;
   for (const FringeTest& test : trace.tests) {
@@ -299,11 +300,12 @@ void bind_structured_light(nb::module_& module) {
           },
           nb::arg("source"), nb::arg("is_file"))
       .def("patterns", patterns, nb::sig("def patterns(self) -> typing.Any"))
-      .def("explain", explain, nb::arg("levels"), nb::arg("max_level"), nb::arg("column"),
-           nb::arg("row"),
+      .def("explain", explain_fringe_pixel, nb::arg("levels"), nb::arg("max_level"),
+           nb::arg("column"), nb::arg("row"),
            nb::sig("def explain(self, levels: object, max_level: int, column: int, row: int) -> "
                    "dict[str, typing.Any]"))
-      .def("decode", decode, nb::arg("levels"), nb::arg("max_level"), nb::arg("threads"),
+      .def("decode", decode_fringe_images, nb::arg("levels"), nb::arg("max_level"),
+           nb::arg("threads"),
            nb::sig("def decode(self, levels: object, max_level: int, threads: int) -> "
                    "dict[str, typing.Any]"));
 }
@@ -335,8 +337,9 @@ TofCalibration calibration_of(const Floats& depth_per_range, const Floats& phase
 }
 
 /// Ranges, statuses, amplitudes, phases and misfits.
-nb::tuple decode(const TofLevels& levels, const TofOptions& options, const Floats& depth_per_range,
-                 const Floats& phase_offset_rad, const Bytes& is_illuminated, unsigned threads) {
+nb::tuple decode_tof_images(const TofLevels& levels, const TofOptions& options,
+                            const Floats& depth_per_range, const Floats& phase_offset_rad,
+                            const Bytes& is_illuminated, unsigned threads) {
   const TofCalibration calibration =
       calibration_of(depth_per_range, phase_offset_rad, is_illuminated);
   TofMeasurement result = unlocked([&](Watch& /*watch*/) {
@@ -375,8 +378,8 @@ nb::dict trace_dict(const TofTrace& trace) {
   return result;
 }
 
-nb::dict explain(const TofLevels& levels, const TofOptions& options, const nb::tuple& calibration,
-                 std::uint32_t column, std::uint32_t row) {
+nb::dict explain_tof_pixel(const TofLevels& levels, const TofOptions& options,
+                           const nb::tuple& calibration, std::uint32_t column, std::uint32_t row) {
   const auto depth_per_range = nb::cast<Floats>(calibration[0]);
   const auto phase_offset_rad = nb::cast<Floats>(calibration[1]);
   const auto is_illuminated = nb::cast<Bytes>(calibration[2]);
@@ -387,7 +390,7 @@ nb::dict explain(const TofLevels& levels, const TofOptions& options, const nb::t
   }));
 }
 
-nb::tuple sample() {
+nb::tuple tof_sample() {
   TofSample result = sample_tof_images();
   const TofImages& images = result.images;
   const std::array<std::size_t, 2> image = {images.height, images.width};
@@ -457,20 +460,20 @@ void bind_tof(nb::module_& module) {
   bind_tests(module);
   bind_tof_options(module);
   module.def("kinect_v2_options", kinect_v2_options);
-  module.def("decode_tof", decode, nb::arg("levels"), nb::arg("options"),
+  module.def("decode_tof", decode_tof_images, nb::arg("levels"), nb::arg("options"),
              nb::arg("depth_per_range").none(), nb::arg("phase_offset_rad").none(),
              nb::arg("is_illuminated").none(), nb::arg("threads"),
              nb::sig("def decode_tof(levels: object, options: TofOptions, depth_per_range: object, "
                      "phase_offset_rad: object, is_illuminated: object, threads: int) -> "
                      "tuple[typing.Any, typing.Any, typing.Any, typing.Any, typing.Any]"));
-  module.def("explain_tof", explain, nb::arg("levels"), nb::arg("options"), nb::arg("calibration"),
-             nb::arg("column"), nb::arg("row"),
+  module.def("explain_tof", explain_tof_pixel, nb::arg("levels"), nb::arg("options"),
+             nb::arg("calibration"), nb::arg("column"), nb::arg("row"),
              nb::sig("def explain_tof(levels: object, options: TofOptions, calibration: "
                      "tuple[object, object, object], column: int, row: int) -> dict[str, "
                      "typing.Any]"));
   module.def("frame_tof_images", frame_tof_images, nb::arg("frame"),
              nb::sig("def frame_tof_images(frame: Frame) -> numpy.ndarray | None"));
-  module.def("sample_tof_images", sample,
+  module.def("sample_tof_images", tof_sample,
              nb::sig("def sample_tof_images() -> tuple[typing.Any, typing.Any, typing.Any]"));
 }
 

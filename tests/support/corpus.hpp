@@ -24,8 +24,8 @@ struct DecodedCorpus {
 inline DecodedCorpus decode_corpus(const char* protocol,
                                    bool (*decode)(std::span<const std::byte>)) {
   DecodedCorpus result;
-  for (const auto& entry : std::filesystem::directory_iterator(
-           std::filesystem::path(kCorpusFolder) / protocol)) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(kCorpusFolder) / protocol)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});
     ++result.files;

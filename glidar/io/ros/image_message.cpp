@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/ros/image_message.hpp>
+#include <glidar/io/ros/sensor_topics.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/camera_info.hpp>

@@ -10,9 +10,9 @@
 #include <glidar/io/formats/box_json.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/pictures/picture.hpp>
-#include <glidar/io/ros/image_message.hpp>
 #include <glidar/io/ros/messages.hpp>
 #include <glidar/io/ros/pose_message.hpp>
+#include <glidar/io/ros/sensor_topics.hpp>
 #include <glidar/motion/kinematics.hpp>
 
 #include <algorithm>

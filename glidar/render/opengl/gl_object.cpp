@@ -8,6 +8,47 @@
 
 namespace glidar::opengl {
 
+GLuint make_gl_object(GlKind kind) {
+  GLuint name = 0;
+  switch (kind) {
+    case GlKind::buffer:
+      glGenBuffers(1, &name);
+      break;
+    case GlKind::vertex_array:
+      glGenVertexArrays(1, &name);
+      break;
+    case GlKind::texture:
+      glGenTextures(1, &name);
+      break;
+    case GlKind::framebuffer:
+      glGenFramebuffers(1, &name);
+      break;
+    case GlKind::renderbuffer:
+      glGenRenderbuffers(1, &name);
+      break;
+    case GlKind::program:
+      return glCreateProgram();
+  }
+  return name;
+}
+
+void delete_gl_object(GlKind kind, GLuint name) {
+  switch (kind) {
+    case GlKind::buffer:
+      return glDeleteBuffers(1, &name);
+    case GlKind::vertex_array:
+      return glDeleteVertexArrays(1, &name);
+    case GlKind::texture:
+      return glDeleteTextures(1, &name);
+    case GlKind::framebuffer:
+      return glDeleteFramebuffers(1, &name);
+    case GlKind::renderbuffer:
+      return glDeleteRenderbuffers(1, &name);
+    case GlKind::program:
+      return glDeleteProgram(name);
+  }
+}
+
 void check_reset(GLenum status) {
   if (status == GL_NO_ERROR) return;
   const char* cause = status == GL_GUILTY_CONTEXT_RESET     ? " because of what was drawn"

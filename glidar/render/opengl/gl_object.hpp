@@ -10,13 +10,25 @@
 
 namespace glidar::opengl {
 
+enum class GlKind : unsigned char {
+  buffer,
+  vertex_array,
+  texture,
+  framebuffer,
+  renderbuffer,
+  program
+};
+
+GLuint make_gl_object(GlKind kind);
+void delete_gl_object(GlKind kind, GLuint name);
+
 /// Owns one OpenGL object; the context it was made in must be current when it is deleted.
-template <class Kind>
+template <GlKind kKind>
 class GlObject {
  public:
-  GlObject() : name_(Kind::make()) {}
+  GlObject() : name_(make_gl_object(kKind)) {}
   ~GlObject() {
-    if (name_ != 0) Kind::drop(name_);
+    if (name_ != 0) delete_gl_object(kKind, name_);
   }
   GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
   GlObject& operator=(GlObject&& other) noexcept {
@@ -32,62 +44,12 @@ class GlObject {
   GLuint name_;
 };
 
-struct BufferKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenBuffers(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteBuffers(1, &name); }
-};
-
-struct VertexArrayKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenVertexArrays(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteVertexArrays(1, &name); }
-};
-
-struct TextureKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteTextures(1, &name); }
-};
-
-struct FramebufferKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenFramebuffers(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteFramebuffers(1, &name); }
-};
-
-struct RenderbufferKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenRenderbuffers(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteRenderbuffers(1, &name); }
-};
-
-struct ProgramKind {
-  static GLuint make() { return glCreateProgram(); }
-  static void drop(GLuint name) { glDeleteProgram(name); }
-};
-
-using Buffer = GlObject<BufferKind>;
-using VertexArray = GlObject<VertexArrayKind>;
-using GlTexture = GlObject<TextureKind>;
-using Framebuffer = GlObject<FramebufferKind>;
-using Renderbuffer = GlObject<RenderbufferKind>;
-using Program = GlObject<ProgramKind>;
+using Buffer = GlObject<GlKind::buffer>;
+using VertexArray = GlObject<GlKind::vertex_array>;
+using GlTexture = GlObject<GlKind::texture>;
+using Framebuffer = GlObject<GlKind::framebuffer>;
+using Renderbuffer = GlObject<GlKind::renderbuffer>;
+using Program = GlObject<GlKind::program>;
 
 /// Throws Error with a remedy for a glGetGraphicsResetStatus() other than GL_NO_ERROR.
 void check_reset(GLenum status);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/raster/raster_renderer.hpp>
+#include <glidar/render/cpu_base.hpp>
 
 #include <glidar/core/report.hpp>
 #include <glidar/render/grid_window.hpp>

@@ -9,6 +9,7 @@
 #include <glidar/sensor/noise/intensity_noise.hpp>
 #include <glidar/sensor/noise/noise_workspace.hpp>
 #include <glidar/sensor/noise/pointing_noise.hpp>
+#include <glidar/sensor/noise/range_bias.hpp>
 #include <glidar/sensor/noise/range_noise.hpp>
 #include <glidar/sensor/noise/tof_noise.hpp>
 

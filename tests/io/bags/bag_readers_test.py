@@ -51,11 +51,11 @@ class RosbagsTest(unittest.TestCase):
 
     def test_hashes_follow_from_the_definitions(self):
         store = self.store()
-        if not hasattr(store, "hash_rihs01"):
-            self.skipTest("this version of rosbags computes no hashes")
         for entry in types():
             with self.subTest(entry["name"]):
-                self.assertEqual(store.hash_rihs01(entry["name"]), entry["type_hash"])
+                self.assertIn(entry["name"], known_types(store))
+                if hasattr(store, "hash_rihs01"):  # not in rosbags 0.9
+                    self.assertEqual(store.hash_rihs01(entry["name"]), entry["type_hash"])
 
     def test_types_are_those_of_the_distribution(self):
         from rosbags.typesys import Stores, get_typestore

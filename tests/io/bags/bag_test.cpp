@@ -27,8 +27,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::filesystem::path kRosbag1Corpus =
-    std::filesystem::path(kCorpusFolder) / "rosbag1";
+const std::filesystem::path kRosbag1Corpus = std::filesystem::path(kCorpusFolder) / "rosbag1";
 constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 /// One kind of bag.

@@ -4,8 +4,48 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 namespace glidar::ros {
 namespace {
+
+TEST(FrameArrivals, OfOneSensorAreCompleteUntilItsNextFrame) {
+  FrameArrivals arrivals(1, true);
+  arrivals.add(0, 1000, 100);
+  EXPECT_EQ(arrivals.complete_ns(), 1100);
+  EXPECT_EQ(arrivals.next_end_ns(), 1200);
+}
+
+TEST(FrameArrivals, OfARigAreCompleteUntilTheFirstOfTheNextFrames) {
+  FrameArrivals arrivals(2, true);
+  arrivals.add(0, 0, 100);
+  EXPECT_EQ(arrivals.complete_ns(), 0);  // the other sensor may have a frame that begins now
+  arrivals.add(1, 0, 30);
+  EXPECT_EQ(arrivals.complete_ns(), 30);
+  EXPECT_EQ(arrivals.next_end_ns(), 60);
+}
+
+TEST(FrameArrivals, DoNotWaitForASensorThatEnded) {
+  FrameArrivals arrivals(2, true);
+  arrivals.add(1, 0, 30);
+  arrivals.add(0, 100, 100);
+  EXPECT_EQ(arrivals.complete_ns(), 100);
+}
+
+TEST(FrameArrivals, OfGivenPosesAreCompleteWithTheLastSensor) {
+  FrameArrivals arrivals(2, false);
+  arrivals.add(0, 50, 100);
+  EXPECT_EQ(arrivals.complete_ns(), 50);
+  arrivals.add(1, 50, 100);
+  EXPECT_EQ(arrivals.complete_ns(), std::numeric_limits<std::int64_t>::max());
+}
+
+TEST(FrameArrivals, BeginAnewAfterAStepBack) {
+  FrameArrivals arrivals(1, true);
+  EXPECT_TRUE(arrivals.add(0, 1000, 100));
+  EXPECT_FALSE(arrivals.add(0, 500, 100));
+  EXPECT_EQ(arrivals.complete_ns(), 600);
+}
 
 using ::testing::ElementsAre;
 
@@ -40,4 +80,5 @@ TEST(HeldMessages, ReuseTheMemoryOfWrittenOnes) {
 }
 
 }  // namespace
+
 }  // namespace glidar::ros
