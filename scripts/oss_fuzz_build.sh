@@ -28,7 +28,8 @@ for target in "${targets[@]}"; do
   cp "$WORK/tests/fuzz/$target" "$OUT/"
   programs+=("$OUT/$target")
   cp "tests/fuzz/corpus/$name.zip" "$OUT/${target}_seed_corpus.zip"
-  if [[ -f tests/fuzz/dictionaries/$name.dict ]]; then cp "tests/fuzz/dictionaries/$name.dict" "$OUT/$target.dict"; fi
+  scripts/fuzz_dictionary.py "$name" >"$OUT/$target.dict"
+  [[ -s $OUT/$target.dict ]] || rm "$OUT/$target.dict"
 done
 # The C library is the runner's own.
 ldd "${programs[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
