@@ -87,7 +87,7 @@ class Capture final : public Output {
         writer_(path, rig.sensors[sensor_].sensor, setup_.options, setup_.imu_samples) {}
 
   [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor) const override {
-    return sensor == sensor_ ? hit_columns_for(packet_columns()) : HitColumnMask{};
+    return sensor == sensor_ ? hit_columns_for(packet_columns(setup_.options)) : HitColumnMask{};
   }
   void write(const RigFrame& written) override {
     if (written.sensor == sensor_) writer_.write(written.frame, written.beams);
