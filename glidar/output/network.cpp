@@ -317,7 +317,7 @@ std::unique_ptr<Output> open_packet_output(const PacketTarget& target, const Out
                                            const OutputOptions& options, double speed,
                                            link::ErrorLog& errors,
                                            const std::optional<link::Endpoint>& control) {
-  const std::size_t index = packet_sensor(rig, target.sensor_name, "--udp");
+  const std::size_t index = packet_sensor(rig, target.sensor_name, "packets by UDP");
   const Sensor& sensor = rig.sensors[index].sensor;
   const ros::PublishedPackets setup = packet_setup(rig, options, rig.sensors[index]);
   link::PacketRoute route = route_of(target, sensor);

@@ -57,7 +57,7 @@ void read_scene(const fs::path& file) {
 
 /// The file is a cloud's sidecar.
 void read_sidecar_of_cloud(const fs::path& file) {
-  read_sidecar(fs::path(file).replace_extension());
+  read_sidecar(fs::path(file).replace_filename("cloud.pcd"));
 }
 
 void read_recording(const fs::path& file) {
@@ -224,7 +224,7 @@ constexpr std::array<FileDecoder, 30> kDecoders = {{
     {"trajectory", "poses.txt", [](const fs::path& file) { load_trajectory_file(file); }},
     {"png", "texture.png", [](const fs::path& file) { read_png_texture_unconfined(file); }},
     {"grey_png", "image.png", [](const fs::path& file) { load_grey_image_unconfined(file); }},
-    {"sidecar", "cloud.pcd.json", read_sidecar_of_cloud},
+    {"sidecar", "cloud.glidar.json", read_sidecar_of_cloud},
     {"recording", "stream.jsonl", read_recording},
     {"mesh_blob", "a.model", read_block},
     {"pose_text", "pose.txt", read_pose_text},

@@ -300,7 +300,8 @@ Column made(const LayoutField& field, const std::vector<double>& numbers, std::s
 void check_returns(const Layout& layout, const Beams& beams) {
   if (layout.name != "autoware" || beams.returns == 1) return;
   throw Error({"cloud layout autoware", fmt::format("the sensor reports {} returns", beams.returns),
-               "one return of each pulse", "use --returns strongest, or another layout"});
+               "one return of each pulse",
+               "measure with the strongest one, or use another layout"});
 }
 
 /// Turns the axes of a cloud; all coordinates of layouts are in xyz.

@@ -126,6 +126,11 @@ def colour_bytes(columns):
     return np.floor(full + np.float32(0.5)).astype(np.uint32)
 
 
+
+def sidecar_of(path):
+    return path.with_name(path.name.partition(".")[0] + ".glidar.json")
+
+
 class Formats(unittest.TestCase):
     def same(self, found, wanted, text):
         found, wanted = np.asarray(found), np.asarray(wanted)
@@ -335,14 +340,15 @@ class Formats(unittest.TestCase):
 
     def test_sidecar(self):
         for path, _, rows, cols in self.each("a.pcd", "dense1.ply", "a.bin"):
-            reported = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
-            self.assertEqual((reported["cloud"]["rows"], reported["cloud"]["cols"]), (rows, cols))
-            self.assertEqual(reported["cloud"]["file"], path.name)
+            reported = json.loads(sidecar_of(path).read_text("utf-8"))
+            (file,) = (one for one in reported["files"] if one["file"] == path.name)
+            self.assertEqual((file["rows"], file["cols"]), (rows, cols))
 
     def told_columns(self, path):
         """The sidecar's (name, type, components)."""
-        reported = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
-        return [(c["name"], c["type"], c["components"]) for c in reported["cloud"]["columns"]]
+        reported = json.loads(sidecar_of(path).read_text("utf-8"))
+        (file,) = (one for one in reported["files"] if one["file"] == path.name)
+        return [(c["name"], c["type"], c["components"]) for c in file["columns"]]
 
     def test_sidecars_name_every_field_of_the_file_with_its_type(self):
         types = {"f4": "f32", "f8": "f64", "u1": "u8", "u2": "u16", "u4": "u32", "i8": "i64"}
