@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/box_classes.hpp>
 #include <glidar/depth_camera/stereo.hpp>
 #include <glidar/sensor/lidar/plane_echo.hpp>
 #include <glidar/simulate/direction_grid.hpp>
@@ -97,6 +98,7 @@ struct InfraredWorkspace {
 
 /// What boxes of objects are found with.
 struct BoxWorkspace {
+  BoxedClasses classes;  ///< whose objects have boxes; empty: the countable ones
   std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it is needed
   Beams nominal;                        ///< one per firing, when pulses have several returns
   Hits nominal_hits;                    ///< of the nominal beams

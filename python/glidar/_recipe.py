@@ -24,6 +24,7 @@ _BUILTIN = "builtin:"
 
 #: A step: its name and its arguments.
 Step = tuple[str, dict[str, Any]]
+_STEPS = ("model", "models", "mesh", "copy", "copies", "drop", "set", "materials", "box_classes")
 
 
 class _Register:
@@ -208,12 +209,17 @@ class Recipe:
         arguments = {"index": index, "text": text, "folder": folder or _working_folder()}
         self._steps.append(("materials", arguments))
 
+    def set_box_classes(self, names: list[str]) -> None:
+        """Sets the classes whose objects have boxes."""
+        self._editable().set_box_classes(names)
+        self._steps.append(("box_classes", {"names": names}))
+
     def key(self) -> object:
         """A hashable value that is equal for scenes with bit-identical measurements."""
         sensors = [(name, core.values(), core.beam_table(), pose) for name, core, pose in self.core.rig()]
         imus = [(name, core.document(), pose) for name, core, pose in self.core.imus()]
         parts = [_core.scene_digest(self.core), _core.placing_state(self.core), sensors]
-        return key_of([*parts, imus, self.core.gravity_m_s2])
+        return key_of([*parts, imus, self.core.gravity_m_s2, self.core.box_classes])
 
     def digest(self) -> str:
         """A hash of the key."""
@@ -261,7 +267,7 @@ class Recipe:
         return recipe
 
     def _replay(self, name: str, arguments: dict[str, Any]) -> None:
-        one_of(name, "pickled Scene, step", ("model", "models", "mesh", "copy", "copies", "drop", "set", "materials"))
+        one_of(name, "pickled Scene, step", _STEPS)
         if name == "model":
             self.add_model(_resolved_path(arguments), part(arguments, "options", dict))
         elif name == "models":
@@ -276,6 +282,8 @@ class Recipe:
             self.add_instances(of, poses, part(arguments, "names", list), part(arguments, "ids", list))
         elif name == "drop":
             self.drop_last()
+        elif name == "box_classes":
+            self.set_box_classes(part(arguments, "names", list))
         elif name == "set":
             self.set_object(self._checked_index(arguments["index"]), part(arguments, "changes", dict))
         else:

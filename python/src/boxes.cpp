@@ -14,21 +14,26 @@
 namespace glidar::python {
 namespace {
 
-std::vector<ObjectBox> find_boxes(Measured& measured, BoxSelection selection) {
+std::vector<ObjectBox> find_boxes(Measured& measured, const BoxedClasses& classes) {
   PreparedScene& prepared = measured.rendered();
   Simulator simulator(*prepared.scene, measured.sensor, *prepared.renderer);
-  return simulator.find_boxes(*measured.motion, measured.frame, selection);
+  simulator.set_boxed_classes(classes);
+  return simulator.find_boxes(*measured.motion, measured.frame, BoxSelection::with_class);
 }
 
-/// The boxes of the objects with a class, or of all.
-std::vector<ObjectBox> boxes_of(Measured& measured, bool all) {
+/// The boxes of all objects, or of those of the classes; no classes: those of the scene.
+std::vector<ObjectBox> boxes_of(Measured& measured, bool all,
+                                const std::vector<std::string>& names) {
   return unlocked([&](Watch&) {
-    if (!all) {
+    if (!all && names.empty()) {
       ensure_boxes(measured);
       return measured.frame.boxes;
     }
+    const Scene& scene = *measured.scene().scene;
+    BoxedClasses classes(scene.class_names.size(), true);
+    if (!all) classes = boxed_classes(scene.class_names, names, "classes");
     const std::lock_guard lock(measured.rendered().mutex);
-    return find_boxes(measured, BoxSelection::all);
+    return find_boxes(measured, classes);
   });
 }
 
@@ -52,7 +57,7 @@ bool lacks_boxes(const Measured& measured) {
 void ensure_boxes(Measured& measured) {
   const std::lock_guard lock(measured.rendered().mutex);
   if (measured.has_boxes) return;
-  measured.frame.boxes = find_boxes(measured, BoxSelection::with_class);
+  measured.frame.boxes = find_boxes(measured, measured.rendered().boxed_classes);
   measured.has_boxes = true;
 }
 
@@ -67,7 +72,7 @@ void bind_boxes(nb::module_& module) {
       .def_ro("beams", &ObjectBox::beams)
       .def_ro("visible_beams", &ObjectBox::visible_beams)
       .def_prop_ro("occlusion", [](const ObjectBox& self) { return occlusion(self); });
-  module.def("boxes", boxes_of, nb::arg("frame"), nb::arg("all"));
+  module.def("boxes", boxes_of, nb::arg("frame"), nb::arg("all"), nb::arg("names"));
   module.def("cloud_from_sensor", cloud_from_sensor, nb::arg("frame"), nb::arg("name"));
   module.def(
       "object_name",

@@ -41,6 +41,8 @@ struct SceneFile {
   std::optional<Trajectory> rig_motion = {};         ///< empty: the rig is static
   std::vector<RigImu> imus = {};                     ///< on the rig
   Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();  ///< that IMUs measure, world axes
+  /// Names of the classes whose objects have boxes, see boxed_classes().
+  std::vector<std::string> box_classes = {};
 };
 
 /// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.
