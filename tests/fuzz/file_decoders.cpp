@@ -213,7 +213,7 @@ void read_calibration(const fs::path& file) {
   apply_calibration(file, camera);
 }
 
-constexpr std::array<FileDecoder, 30> kDecoders = {{
+constexpr std::array<FileDecoder, 34> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
@@ -244,6 +244,10 @@ constexpr std::array<FileDecoder, 30> kDecoders = {{
     {"ply", "a.ply", read_model_file},
     {"stl", "a.stl", read_model_file},
     {"off", "a.off", read_model_file},
+    {"mtl", "a.mtl", read_mtl_file},
+    {"image", "a.image", read_image_file},
+    {"collada", "a.dae", read_mended_file},
+    {"package", "a.3mf", read_mended_file},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.
