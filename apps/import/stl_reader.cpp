@@ -138,7 +138,7 @@ class AsciiStl {
   /// The words after "solid", up to the end of the line or a facet in the same line.
   std::string read_name() {
     TextCursor from = text_;
-    const std::string whole(from.rest());
+    const std::string whole = from.rest();
     std::string name;
     for (;;) {
       TextCursor ahead = text_;

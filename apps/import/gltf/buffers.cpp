@@ -18,7 +18,7 @@ std::string_view Buffers::data_of(const Value& buffer, std::size_t number) {
     buffer.refuse("it has no data: neither a URI nor a binary chunk");
   }
   const std::string text = uri.text();
-  if (!text.starts_with("data:")) return open_(text);
+  if (!is_data_uri(text)) return open_(text);
   const auto [known, is_new] = from_uris_.try_emplace(number);
   if (is_new) {
     auto content = data_uri_content(text);

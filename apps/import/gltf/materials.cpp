@@ -249,7 +249,7 @@ class Reader {
     const Value view = image["bufferView"];
     if (uri && view) image.refuse("it has both a URI and a buffer view");
     const std::string text = view ? "" : uri.text();
-    if (!view && !text.starts_with("data:")) return text;
+    if (!view && !is_data_uri(text)) return text;
     const std::string name =
         image["name"].text_or("").empty() ? image.path() : embedded_name(image);
     if (model_.images.contains(name)) return name;

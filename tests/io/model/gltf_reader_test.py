@@ -4,6 +4,7 @@
 """glTF files: each statement is used, named in a note, or refused with its JSON path. The files are made here; their
 shape is compared with that which NumPy reads by the standard."""
 
+import base64
 import json
 import os
 import subprocess
@@ -376,6 +377,12 @@ class GltfReader(unittest.TestCase):
         path = made.write(self.folder / "a.gltf")
         path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
         self.assertEqual(info(path)["triangles"], 2)
+
+    def test_schemes_of_data_uris_are_in_letters_of_any_case(self):
+        made = plate()
+        uri = "Data:application/octet-stream;BASE64," + base64.b64encode(made.bytes).decode()
+        made.json["buffers"] = [{"byteLength": len(made.bytes), "uri": uri}]
+        self.assertEqual(self.read(made)["triangles"], 2)
 
     def test_damaged_containers_are_refused(self):
         sound = plate().write(self.folder / "a.glb").read_bytes()
