@@ -49,6 +49,9 @@ class Mender {
       : root_(document.document_element()), notes_(notes) {
     // Explicit walks, because hostile documents are deep.
     for (Node node = root_; node; node = following(node)) strip_prefix(node);
+    if (root_.name() != std::string_view("COLLADA")) {
+      throw Refusal{"its XML has no element <COLLADA> around all others", kExport};
+    }
     drop_libraries();
     for (Node node = root_; node; node = following(node)) elements_[node.name()].push_back(node);
   }
@@ -89,7 +92,7 @@ class Mender {
   static void strip_prefix(Node& node) {
     const std::string_view name = node.name();
     const std::size_t colon = name.find(':');
-    if (colon != std::string_view::npos) node.set_name(std::string(name.substr(colon + 1)).c_str());
+    if (colon < name.size() - 1) node.set_name(std::string(name.substr(colon + 1)).c_str());
   }
 
   void refuse_unreadable() {
