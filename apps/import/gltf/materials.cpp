@@ -95,6 +95,9 @@ class Reader {
     const Value glossiness = source.extension("KHR_materials_pbrSpecularGlossiness");
     if (glossiness) {
       read_glossiness(glossiness, to);
+      if (source["pbrMetallicRoughness"]) {
+        note("KHR_materials_pbrSpecularGlossiness replaces pbrMetallicRoughness");
+      }
     } else {
       read_metallic(source, to);
     }

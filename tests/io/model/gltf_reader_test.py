@@ -266,6 +266,7 @@ NOTED = {
     "hidden nodes": (lambda: changed(lambda j: [j["nodes"].append({"mesh": 0, "extensions": {"KHR_node_visibility": {"visible": False}}}),
                                                 j["scenes"][0].update(nodes=[0, 1])]), "1 nodes are hidden"),
     "emission": (lambda: material(emissiveFactor=[1, 0, 0]), "light that surfaces emit is left out"),
+    "replaced surface": (lambda: material({"KHR_materials_pbrSpecularGlossiness": {}}, pbrMetallicRoughness={}), "replaces pbrMetallicRoughness"),
     "occlusion": (lambda: material(occlusionTexture={"index": 0}), "textures of occlusion are left out"),
     "roughness": (lambda: material(pbrMetallicRoughness={"metallicRoughnessTexture": {"index": 0}}), "textures of metal and roughness are left out"),
     "attribute of its own": (lambda: plate_with("_AGE", np.zeros(4)), "attributes are left out: _AGE"),
