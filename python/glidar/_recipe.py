@@ -118,6 +118,12 @@ class Recipe:
         return Recipe(core, [("scene_file", {"path": path, "folder": _working_folder(), "options": options})])
 
     @staticmethod
+    def of_content(content: str, path: str) -> Recipe:
+        """The recipe of a scene file with this content."""
+        core = _core.load_scene_content(path, content, log)
+        return Recipe(core, [("scene", {"text": content, "folder": os.path.dirname(os.path.abspath(path))})])
+
+    @staticmethod
     def of_text(text: str, folder: str = "") -> Recipe:
         """The recipe of the keys of a scene file; paths are relative to the folder, or to the working folder."""
         core = _core.parse_scene(text, log, folder)

@@ -312,6 +312,12 @@ SceneHandle load(const std::filesystem::path& path, const nb::dict& given, const
       [&](Watch& watch) { return load_scene_file(path, options, report_to(log, watch)); }));
 }
 
+SceneHandle load_content(const std::filesystem::path& path, const std::string& content,
+                         const nb::object& log) {
+  return handle_of(unlocked(
+      [&](Watch& watch) { return load_scene_content(path, content, {}, report_to(log, watch)); }));
+}
+
 SceneHandle parse(const std::string& text, const nb::object& log,
                   const std::filesystem::path& folder) {
   return handle_of(
@@ -708,6 +714,10 @@ void bind_scene(nb::module_& module) {
   module.def("load_scene", load, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
              nb::sig("def load_scene(path: str, options: dict[str, typing.Any], "
                      "log: object | None) -> Scene"));
+  module.def("load_scene_content", load_content, nb::arg("path"), nb::arg("content"),
+             nb::arg("log").none(),
+             nb::sig("def load_scene_content(path: str, content: str, log: object | None) -> "
+                     "Scene"));
   bind_scene_state(module);
 }
 

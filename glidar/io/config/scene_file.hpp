@@ -49,6 +49,10 @@ struct SceneFile {
 SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
                           const Report& report);
 
+/// The same from the content of the file that is given, such as with other values.
+SceneFile load_scene_content(const std::filesystem::path& path, const std::string& content,
+                             const ModelOptions& defaults, const Report& report);
+
 /// The same from a text, YAML or JSON. Paths are relative to `folder`, or to the working folder
 /// when it is empty. Errors name the field.
 SceneFile parse_scene(const std::string& text, const Report& report,
