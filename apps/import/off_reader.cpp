@@ -321,6 +321,7 @@ void finish_colours(SourceModel& source, FileLists& lists) {
 
 SourceModel read_off(const ReaderInput& input) {
   SourceModel source;
+  source.budget.add_input(input.content().size());
   source.format = "Object File Format (OFF)";
   source.materials.emplace_back();
   std::string storage;

@@ -327,6 +327,7 @@ bool is_ascii(std::string_view file) {
 
 SourceModel read_stl(const ReaderInput& input) {
   SourceModel source;
+  source.budget.add_input(input.content().size());
   source.format = "Stereolithography (STL)";
   source.materials.emplace_back();
   std::string storage;

@@ -256,6 +256,7 @@ class Reader {
     EmbeddedImage& to = model_.images[name];
     if (view) {
       const View bytes = buffers_.view(view);
+      buffers_.take(Budget::held_bytes, bytes.bytes.size(), image.path());
       to.bytes.assign(bytes.bytes.begin(), bytes.bytes.end());
     } else {
       const auto content = data_uri_content(text);
