@@ -7,9 +7,8 @@
 #include "ratio_reporter.hpp"
 
 #include <apps/glidar/run/delivery.hpp>
-#include <glidar/io/bags/bag_clouds.hpp>
+#include <glidar/io/bags/bag_contents.hpp>
 #include <glidar/io/bags/bag_records.hpp>
-#include <glidar/io/bags/bag_topics.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>

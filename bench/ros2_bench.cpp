@@ -96,7 +96,7 @@ void publish_topic(benchmark::State& state, const ModelView& view) {
       [&](const app::MeasuredFrame& slot) {
         make_point_cloud(slot.frame, *slot.beams, view.scene, {}, kColumns, cloud);
         ros::serialize_to(ros::to_point_cloud2(cloud, {slot.frame, view.sensor, *slot.beams}),
-                          sink.wire(), bytes);
+                          bytes);
         sink.take(topic, slot.frame.stamp_ns, bytes);
       },
       [] {}, [] {});

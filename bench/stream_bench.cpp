@@ -6,7 +6,7 @@
 #include "ratio_reporter.hpp"
 
 #include <apps/glidar/run/delivery.hpp>
-#include <glidar/woods2016/cloud_publisher.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include <atomic>
 #include <chrono>

@@ -7,7 +7,6 @@
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/io/pictures/picture.hpp>
-#include <glidar/io/pictures/png_image.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 #include <glidar/woods2016/framebuffer.hpp>

@@ -30,7 +30,7 @@ from study_tools import Progress
 TOPIC = "/lidar/points"
 EXAMPLE = """examples:
   examples/odometry_bags.py                             # 20 s through the street with a VLP-16
-  examples/odometry_bags.py --sensor OS1-32 --seconds 8 --format .bag
+  examples/odometry_bags.py --sensor OS1-32 --seconds 8 --format .mcap
   examples/odometry_bags.py --keep bags                 # the bags, for other programs
   examples/odometry_bags.py --picture odometry.png      # the trajectories"""
 
@@ -90,7 +90,7 @@ def flags_of(arguments):
     parser.add_argument("--sensor", default="VLP-16", help="a spinning sensor [VLP-16]")
     parser.add_argument("--street", type=int, default=3, help="seed of the objects beside the road [3]")
     parser.add_argument("--seed", type=int, default=1, help="of the sensor's noise [1]")
-    parser.add_argument("--format", choices=[".rosbag2", ".bag"], default=".rosbag2", help="of the bags [.rosbag2]")
+    parser.add_argument("--format", choices=[".rosbag2", ".mcap"], default=".rosbag2", help="of the bags [.rosbag2]")
     parser.add_argument("--keep", metavar="FOLDER", help="existing folder for the bags [a temporary one]")
     parser.add_argument("--picture", metavar="FILE", help="draws the trajectories and errors, for example as PNG")
     flags = parser.parse_args(arguments)

@@ -1,10 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/core/error.hpp>
-#include <glidar/core/point_cloud.hpp>
-#include <glidar/io/formats/file_sink.hpp>
-#include <glidar/io/model/model.hpp>
-#include <glidar/simulate/simulator.hpp>
+#include <glidar/glidar.hpp>
 
 #include <cstdio>
 #include <string>

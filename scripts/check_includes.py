@@ -13,6 +13,7 @@ from pathlib import Path
 # Which layers the files of a layer may include. Folders that are not named (apps, tests, bench,
 # examples) may include any.
 ALLOWED = {
+    "glidar": {"core", "depth_camera", "sensor", "motion", "render", "simulate", "verify", "explain", "io", "output"},
     "math": {"math"},
     "core": {"math", "core"},
     "sensor": {"math", "core", "depth_camera", "sensor"},
@@ -28,6 +29,7 @@ ALLOWED = {
     "woods2016": {"math", "core", "sensor", "motion", "render", "simulate", "link", "woods2016"},
 }
 PUBLIC_LIST = "glidar/public_headers.txt"
+UMBRELLA = "glidar/glidar.hpp"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -50,6 +52,17 @@ def includes_of(file):
 def read_public_headers(root):
     lines = (root / PUBLIC_LIST).read_text(encoding="utf-8").splitlines()
     return {line.strip() for line in lines if line.strip() and not line.startswith("#")}
+
+
+def included_by(root, path):
+    """The project's headers that a file includes, themselves or through others, and the file."""
+    found, open_files = set(), [path]
+    while open_files:
+        file = open_files.pop()
+        if file not in found and (root / file).is_file():
+            found.add(file)
+            open_files += [target for _, _, target in includes_of(root / file) if layer_of(target)]
+    return found
 
 
 def check_direction(path, target):
@@ -121,6 +134,8 @@ def check_tree(root):
         for header in sorted(public)
         if not (root / header).is_file()
     ]
+    complaints += [f"{PUBLIC_LIST}:1: {header} is not included by {UMBRELLA}"
+                   for header in sorted(public - included_by(root, UMBRELLA)) if (root / header).is_file()]
     for folder in ("glidar", "apps", "bench", "examples", "python", "tests"):
         for file in sorted((root / folder).rglob("*.[ch]pp")):
             complaints += check_file(root, file.relative_to(root).as_posix(), public)

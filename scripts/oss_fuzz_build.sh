@@ -18,7 +18,7 @@ OUT=$(realpath "$OUT")
 cmake -S . -B "$WORK" -G Ninja -DGLIDAR_BUILD_FUZZERS=ON -DGLIDAR_BUILD_VIEWER=OFF -DGLIDAR_HARDENING=OFF \
   -DCMAKE_BUILD_RPATH='$ORIGIN/lib' -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags
 targets=()
-for corpus in tests/fuzz/corpus/*/; do targets+=("glidar_fuzz_$(basename "$corpus")"); done
+for corpus in tests/fuzz/corpus/*.zip; do targets+=("glidar_fuzz_$(basename "$corpus" .zip)"); done
 ninja -C "$WORK" glidar_import "${targets[@]}"
 
 cp "$WORK/apps/import/glidar-import" "$OUT/"
@@ -27,8 +27,9 @@ for target in "${targets[@]}"; do
   name=${target#glidar_fuzz_}
   cp "$WORK/tests/fuzz/$target" "$OUT/"
   programs+=("$OUT/$target")
-  (cd "tests/fuzz/corpus/$name" && python3 -m zipfile -c "$OUT/${target}_seed_corpus.zip" ./*)
-  if [[ -f tests/fuzz/dictionaries/$name.dict ]]; then cp "tests/fuzz/dictionaries/$name.dict" "$OUT/$target.dict"; fi
+  cp "tests/fuzz/corpus/$name.zip" "$OUT/${target}_seed_corpus.zip"
+  scripts/fuzz_dictionary.py "$name" >"$OUT/$target.dict"
+  [[ -s $OUT/$target.dict ]] || rm "$OUT/$target.dict"
 done
 # The C library is the runner's own.
 ldd "${programs[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |

@@ -4,6 +4,7 @@
 """What README.md and docs/files/images.md show works: marked shell blocks and the commands of pictures run, the C++
 is that of examples/render.cpp."""
 
+import json
 import os
 import re
 import subprocess
@@ -52,6 +53,19 @@ class Readme(unittest.TestCase):
         example = (ROOT / "examples/render.cpp").read_text(encoding="utf-8")
         shown = re.search(r"// \[README\]\n(.*?) *// \[README\]", example, re.DOTALL)[1]
         self.assertIn(f"```cpp\n{textwrap.dedent(shown)}```", README)
+
+    def test_numbers_are_those_of_the_pages_and_the_program(self):
+        peers = (ROOT / "docs/peers.md").read_text(encoding="utf-8").split("<!-- peers.py -->")[1]
+        ours = [row.split("|")[3].split("/")[0].strip() for row in peers.splitlines() if row.startswith("| ")][1:]
+        self.assertEqual(set(ours), {"0"})
+        self.assertIn(f"0 wrong hits in {len(ours)} scenes", README)
+        performance = (ROOT / "docs/performance.md").read_text(encoding="utf-8")
+        faster = re.search(r"a depth camera is ([\d.]+ to [\d.]+ times as fast as )", README)[1]
+        self.assertIn(faster, performance)
+        listed = subprocess.run(["glidar", "sensors", "--json"], capture_output=True, timeout=TIME_LIMIT_S, check=True)
+        presets = len(json.loads(listed.stdout))
+        for stated in re.findall(r"(\d+) presets", README):
+            self.assertEqual(int(stated), presets)
 
     def test_files_it_links_to_exist(self):
         for target in re.findall(r"\]\(([^)#:]+)\)", README):

@@ -7,7 +7,7 @@
 #include <glidar/io/bags/sqlite.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/model/png_texture.hpp>
-#include <glidar/io/packets/packet_records.hpp>
+#include <glidar/io/packets/packet_frames.hpp>
 
 #include <sys/resource.h>
 

@@ -7,9 +7,9 @@
 #include <apps/glidar/run/console.hpp>
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/io/pictures/picture.hpp>
 
 #include <CLI/CLI.hpp>
 

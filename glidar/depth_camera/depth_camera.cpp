@@ -4,8 +4,8 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
-#include <glidar/depth_camera/stereo_costs.hpp>
-#include <glidar/sensor/optics/sub_pixels.hpp>
+#include <glidar/depth_camera/stereo_matcher.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <array>
 #include <string>

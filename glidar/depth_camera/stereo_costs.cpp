@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/depth_camera/stereo_costs.hpp>
+#include <glidar/depth_camera/stereo_matcher.hpp>
 
 #include <glidar/core/error.hpp>
 

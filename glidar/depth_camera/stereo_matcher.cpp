@@ -4,9 +4,8 @@
 
 #include <glidar/core/function_ref.hpp>
 #include <glidar/core/instruction_set.hpp>
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/depth_camera/stereo.hpp>
-#include <glidar/depth_camera/stereo_costs.hpp>
 #include <glidar/depth_camera/stereo_kernel.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>

@@ -10,7 +10,7 @@
 #include <glidar/depth_camera/imager.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/sensor/optics/projection.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,20 +2,91 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/files/unique_fd.hpp>
 #include <glidar/link/error_log.hpp>
-#include <glidar/link/limits.hpp>
-#include <glidar/link/listener.hpp>
 
 #include <chrono>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
 namespace glidar::link {
+
+/// Limits of peers, for each or for all together. limit_kinds() describes each.
+struct Limits {
+  std::int64_t connections = 256;
+  std::int64_t connections_per_s = 500;
+  std::int64_t handshake_s = 5;
+  std::int64_t request_mib = 16;
+  std::int64_t requests = 16;
+  std::int64_t request_s = 600;
+  std::int64_t reply_mib = 1024;
+  std::int64_t memory_mib = 2048;
+  std::int64_t subscriptions = 64;
+  std::int64_t topic_bytes = 64;
+
+  bool operator==(const Limits&) const = default;
+};
+
+/// One limit: its name, range and description.
+struct LimitKind {
+  std::string_view name;
+  std::int64_t Limits::*value;
+  std::int64_t min;
+  std::int64_t max;
+  std::string_view meaning;
+};
+
+/// All limits, in the order of the members.
+std::span<const LimitKind> limit_kinds();
+
+/// Sets a limit by "NAME=VALUE", for example "reply-mib=4096". Throws Error for an unknown name and
+/// for a value that is not an integer in its range.
+void set_limit(Limits& limits, std::string_view text);
+
+/// "at most 16 (--limit requests=16)", for errors.
+std::string limit_text(const Limits& limits, std::int64_t Limits::*value);
+
+constexpr std::int64_t bytes_of_mib(std::int64_t mib) {
+  return mib << 20;
+}
+
+/// Blocks and drains a listening socket of ZeroMQ, which itself accepts every connection. Used by
+/// one thread.
+class Listener {
+ public:
+  /// For this descriptor, which ZeroMQ owns.
+  explicit Listener(int descriptor);
+
+  /// Makes the kernel discard attempts to connect, which clients repeat for a minute or more;
+  /// existing connections are not affected. TCP only.
+  void pause();
+  void resume();
+  [[nodiscard]] bool is_paused() const { return is_paused_; }
+  /// Closes the connections that wait to be accepted; returns true if none is left. Works without a
+  /// free descriptor.
+  bool discard_waiting();
+
+ private:
+  UniqueFd descriptor_;
+  UniqueFd spare_;  ///< closed temporarily if there is no free descriptor
+  bool is_paused_ = false;
+};
+
+/// Raises the process's limit of open files for these connections, as far as the system allows.
+void raise_descriptor_limit(std::int64_t connections);
+
+/// Throws Error unless the process can open this many more descriptors.
+void require_descriptors(int count);
+
+/// The maximum number of descriptors of this process.
+int descriptor_limit();
 
 /// Events of a socket's connections.
 enum class PeerEvent : std::uint8_t { joined, left, refused };

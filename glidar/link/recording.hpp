@@ -5,7 +5,7 @@
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/file_sink.hpp>
 #include <glidar/io/formats/line_file.hpp>
-#include <glidar/link/lockstep/messages.hpp>
+#include <glidar/link/lockstep.hpp>
 
 #include <cstdint>
 #include <filesystem>

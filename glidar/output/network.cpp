@@ -4,11 +4,10 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/option_name.hpp>
-#include <glidar/io/packets/hesai_codec.hpp>
-#include <glidar/io/packets/hesai_packet.hpp>
-#include <glidar/io/packets/livox_codec.hpp>
+#include <glidar/io/packets/hesai.hpp>
+#include <glidar/io/packets/livox.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
-#include <glidar/io/packets/velodyne_packet.hpp>
+#include <glidar/io/packets/velodyne.hpp>
 #include <glidar/link/control/control_server.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/udp/packet_sender.hpp>

@@ -9,9 +9,9 @@
 #include <glidar/io/formats/imu_samples_file.hpp>
 #include <glidar/io/formats/kitti_writer.hpp>
 #include <glidar/io/osi/osi_trace.hpp>
-#include <glidar/io/packets/ouster_packet.hpp>
-#include <glidar/io/packets/packet_writer.hpp>
-#include <glidar/io/ros/driver.hpp>
+#include <glidar/io/packets/ouster.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
+#include <glidar/io/ros/published_rig.hpp>
 #include <glidar/output/frame_files.hpp>
 #include <glidar/output/network.hpp>
 #include <glidar/output/rig_messages.hpp>
@@ -200,7 +200,6 @@ std::vector<OutputFormat> make_formats() {
                   {".imu.npz", OutputKind::imu_samples, "samples of IMUs, NumPy archive"},
                   {".mcap", OutputKind::bag, "ROS bag of all frames and sensors"},
                   {".rosbag2", OutputKind::bag, "the same as a folder with SQLite, for ros2 bag"},
-                  {".bag", OutputKind::bag, "the same for ROS 1"},
                   {".pcap", OutputKind::capture, "UDP packets as the sensor sends them"},
                   {".osi", OutputKind::osi_trace, "OSI trace of all frames and sensors"}});
   return formats;

@@ -1,14 +1,165 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled once for every instruction set, under the rules of rays/kernel.cpp.
 #include <glidar/render/block_kernel.hpp>
 
-#include <glidar/render/corner_gather.hpp>
-#include <glidar/render/plane_gather.hpp>
+#include <glidar/render/lanes.hpp>
+#include <glidar/render/rays/kernel_simd.hpp>
 
 #include <cstddef>
 
 namespace glidar::rays::GLIDAR_KERNEL {
+
+// Loads planes of triangles row by row and transposes them in registers: vectors that are written
+// number by number are slow to load. In namespace glidar::rays::GLIDAR_KERNEL.
+
+/// Columns of planes, kLanes numbers each.
+struct PlaneColumns {
+  double* x;
+  double* y;
+  double* z;
+  double* offset;
+};
+
+#if defined(__AVX512F__)
+
+GLIDAR_INLINE __m512d two_planes(const double* low, const double* high) {
+  return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high), 1);
+}
+
+/// planes: four numbers each.
+GLIDAR_INLINE void gather_planes(const double* planes, const std::uint32_t* primitive,
+                                 const PlaneColumns& to) {
+  const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+  const __m512i high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  for (unsigned i = 0; i < kLanes; i += 8) {
+    const __m512d a = two_planes(planes + std::size_t{4} * primitive[i],
+                                 planes + std::size_t{4} * primitive[i + 4]);
+    const __m512d b = two_planes(planes + std::size_t{4} * primitive[i + 1],
+                                 planes + std::size_t{4} * primitive[i + 5]);
+    const __m512d c = two_planes(planes + std::size_t{4} * primitive[i + 2],
+                                 planes + std::size_t{4} * primitive[i + 6]);
+    const __m512d d = two_planes(planes + std::size_t{4} * primitive[i + 3],
+                                 planes + std::size_t{4} * primitive[i + 7]);
+    const __m512d ab_even = _mm512_unpacklo_pd(a, b);
+    const __m512d ab_odd = _mm512_unpackhi_pd(a, b);
+    const __m512d cd_even = _mm512_unpacklo_pd(c, d);
+    const __m512d cd_odd = _mm512_unpackhi_pd(c, d);
+    _mm512_store_pd(to.x + i, _mm512_permutex2var_pd(ab_even, low, cd_even));
+    _mm512_store_pd(to.y + i, _mm512_permutex2var_pd(ab_odd, low, cd_odd));
+    _mm512_store_pd(to.z + i, _mm512_permutex2var_pd(ab_even, high, cd_even));
+    _mm512_store_pd(to.offset + i, _mm512_permutex2var_pd(ab_odd, high, cd_odd));
+  }
+}
+
+#elif defined(__AVX2__)
+
+GLIDAR_INLINE void gather_planes(const double* planes, const std::uint32_t* primitive,
+                                 const PlaneColumns& to) {
+  for (unsigned i = 0; i < kLanes; i += 4) {
+    const __m256d a = _mm256_loadu_pd(planes + std::size_t{4} * primitive[i]);
+    const __m256d b = _mm256_loadu_pd(planes + std::size_t{4} * primitive[i + 1]);
+    const __m256d c = _mm256_loadu_pd(planes + std::size_t{4} * primitive[i + 2]);
+    const __m256d d = _mm256_loadu_pd(planes + std::size_t{4} * primitive[i + 3]);
+    const __m256d ab_even = _mm256_unpacklo_pd(a, b);
+    const __m256d ab_odd = _mm256_unpackhi_pd(a, b);
+    const __m256d cd_even = _mm256_unpacklo_pd(c, d);
+    const __m256d cd_odd = _mm256_unpackhi_pd(c, d);
+    _mm256_store_pd(to.x + i, _mm256_permute2f128_pd(ab_even, cd_even, 0x20));
+    _mm256_store_pd(to.y + i, _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20));
+    _mm256_store_pd(to.z + i, _mm256_permute2f128_pd(ab_even, cd_even, 0x31));
+    _mm256_store_pd(to.offset + i, _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31));
+  }
+}
+
+#else
+
+GLIDAR_INLINE void gather_planes(const double* planes, const std::uint32_t* primitive,
+                                 const PlaneColumns& to) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double* const plane = planes + std::size_t{4} * primitive[i];
+    to.x[i] = plane[0];
+    to.y[i] = plane[1];
+    to.z[i] = plane[2];
+    to.offset[i] = plane[3];
+  }
+}
+
+#endif
+
+}  // namespace glidar::rays::GLIDAR_KERNEL
+
+// Compiled once for every instruction set, under the rules of rays/kernel.cpp.
+
+namespace glidar::rays::GLIDAR_KERNEL {
+
+// Loads vectors at the corners of triangles one by one and transposes them in registers: vectors
+// that are written number by number are slow to load. In namespace glidar::rays::GLIDAR_KERNEL.
+
+#if defined(__AVX2__)
+
+/// Three numbers; the fourth is not read.
+GLIDAR_INLINE __m128 load_three(const float* p) {
+#if defined(__AVX512VL__)
+  return _mm_maskz_loadu_ps(7, p);
+#else
+  return _mm_maskload_ps(p, _mm_setr_epi32(-1, -1, -1, 0));
+#endif
+}
+
+/// The vectors at two vertices.
+GLIDAR_INLINE __m256 load_two(const float* of_vertex, std::uint32_t low, std::uint32_t high) {
+  return _mm256_insertf128_ps(_mm256_castps128_ps256(load_three(of_vertex + std::size_t{3} * low)),
+                              load_three(of_vertex + std::size_t{3} * high), 1);
+}
+
+/// Writes corner k of eight triangles to lanes [first, first + 8).
+GLIDAR_INLINE void gather_corner(const float* of_vertex, const std::uint32_t* const (&triangle)[8],
+                                 unsigned k, unsigned first, Lanes3<float>& to) {
+  const __m256 a = load_two(of_vertex, triangle[0][k], triangle[4][k]);
+  const __m256 b = load_two(of_vertex, triangle[1][k], triangle[5][k]);
+  const __m256 c = load_two(of_vertex, triangle[2][k], triangle[6][k]);
+  const __m256 d = load_two(of_vertex, triangle[3][k], triangle[7][k]);
+  const __m256d ab = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
+  const __m256d cd = _mm256_castps_pd(_mm256_unpacklo_ps(c, d));
+  const __m256d ab_z = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
+  const __m256d cd_z = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
+  const auto store_at = [first](Lanes<float>& lanes, __m256d numbers) {
+    _mm256_store_ps(reinterpret_cast<float*>(&lanes) + first, _mm256_castpd_ps(numbers));
+  };
+  store_at(to.x, _mm256_unpacklo_pd(ab, cd));
+  store_at(to.y, _mm256_unpackhi_pd(ab, cd));
+  store_at(to.z, _mm256_unpacklo_pd(ab_z, cd_z));
+}
+
+GLIDAR_INLINE void gather_lanes(const TrianglesToGather& from, CornerBlock& to) {
+  for (unsigned first = 0; first < kLanes; first += 8) {
+    const std::uint32_t* triangle[8];
+    for (unsigned i = 0; i < 8; ++i) {
+      triangle[i] = from.vertices + std::size_t{3} * from.primitive[first + i];
+    }
+    gather_corner(from.of_vertex, triangle, 0, first, to.c0);
+    gather_corner(from.of_vertex, triangle, 1, first, to.c1);
+    gather_corner(from.of_vertex, triangle, 2, first, to.c2);
+  }
+}
+
+#else
+
+GLIDAR_INLINE void gather_lanes(const TrianglesToGather& from, CornerBlock& to) {
+  Lanes3<float>* const corners[3] = {&to.c0, &to.c1, &to.c2};
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const std::uint32_t* const triangle = from.vertices + std::size_t{3} * from.primitive[i];
+    for (unsigned k = 0; k < 3; ++k) {
+      const float* const vector = from.of_vertex + std::size_t{3} * triangle[k];
+      corners[k]->x.at[i] = vector[0];
+      corners[k]->y.at[i] = vector[1];
+      corners[k]->z.at[i] = vector[2];
+    }
+  }
+}
+
+#endif
+
 namespace {
 
 #if defined(__AVX512F__)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/coincident_triangles.hpp>
+#include <glidar/render/resolver.hpp>
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,10 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/math/thread_pool.hpp>
 #include <glidar/render/rays/scene_search.hpp>
+#include <glidar/render/renderer.hpp>
 #include <glidar/render/resolver.hpp>
+
+#include <memory>
 
 namespace glidar {
 
@@ -19,5 +22,10 @@ struct CpuBase {
   Resolver resolver;
   rays::SceneSearch search;
 };
+
+/// Rasterises pinhole cameras on the CPU: clusters of triangles, front to back, vectorised, one
+/// tile of the image at a time.
+std::unique_ptr<Renderer> make_raster_renderer(const Scene& scene, const RendererOptions& options);
+std::unique_ptr<Renderer> make_raster_renderer(std::shared_ptr<CpuBase> base);
 
 }  // namespace glidar

@@ -2,11 +2,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/grid_window.hpp>
 
+#include <glidar/math/simd.hpp>
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 namespace glidar {
+
+void find_plane_points(const Beams& beams, PlanePoints& points) {
+  points.x.clear();
+  points.y.clear();
+  if (!beams.pinhole) return;
+  for (std::uint32_t u = 0; u < beams.cols; ++u) points.x.push_back(plane_x(*beams.pinhole, u));
+  for (std::uint32_t v = 0; v < beams.rows; ++v) points.y.push_back(plane_y(*beams.pinhole, v));
+}
+
+GLIDAR_SIMD void directions_through(const Lanes<double>& x, const Lanes<double>& y,
+                                    Lanes3<double>& out) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double length = std::sqrt(x[i] * x[i] + y[i] * y[i] + 1.0);
+    out.x[i] = x[i] / length;
+    out.y[i] = y[i] / length;
+    out.z[i] = 1.0 / length;
+  }
+}
+
+Eigen::AlignedBox3d local_box(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& p : mesh.positions_m) box.extend(p.cast<double>());
+  return box;
+}
+
+void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, double& nearest_m,
+                   double& farthest_m) {
+  if (box.isEmpty()) return;
+  const Eigen::Vector3d boresight = view.scale * view.object_from_sensor.col(2);
+  const double middle = boresight.dot(box.center() - view.sensor_in_object);
+  const double half = boresight.cwiseAbs().dot(0.5 * box.sizes());
+  nearest_m = std::min(nearest_m, middle - half);
+  farthest_m = std::max(farthest_m, middle + half);
+}
+
+DepthRange tight_depth_range(double nearest_m, double farthest_m) {
+  // Single precision rounds a depth by 6e-8 of it, and positions by 6e-8 of the farthest depth.
+  constexpr double kRounding = 0x1p-22;
+  // Of the farthest depth; smaller depths are rounding errors.
+  constexpr double kNearestPart = 1e-7;
+  const double margin = kRounding * (farthest_m - std::max(nearest_m, 0.0)) +
+                        0x1p-50 * (std::abs(farthest_m) + std::abs(nearest_m));
+  const double far_m = farthest_m + margin;
+  return {std::max(nearest_m - margin, kNearestPart * far_m), far_m};
+}
+
 namespace {
 
 constexpr double kMinDepth = 1e-3;  // of the distance: up to 89.9 degrees from the boresight

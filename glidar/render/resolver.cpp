@@ -3,11 +3,12 @@
 #include <glidar/render/resolver.hpp>
 
 #include <glidar/math/constants.hpp>
+#include <glidar/math/double_double.hpp>
 #include <glidar/math/simd.hpp>
-#include <glidar/render/block_kernels.hpp>
-#include <glidar/render/coincident_triangles.hpp>
-#include <glidar/render/grazing.hpp>
-#include <glidar/render/shading.hpp>
+#include <glidar/render/block_kernel.hpp>
+#include <glidar/render/common/triangle_blocks.hpp>
+#include <glidar/render/corners.hpp>
+#include <glidar/render/rays/kernels.hpp>
 #include <glidar/render/uncertain_hits.hpp>
 
 #include <algorithm>
@@ -15,8 +16,204 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <string_view>
 
 namespace glidar {
+namespace {
+
+/// The sensor's position relative to that of the mesh's origin, in the axes of the world, rounded
+/// once: a mesh whose vertices are 1000 km from its origin would lose 1e-10 m if that offset were
+/// rotated in double.
+Eigen::Vector3d from_mesh_origin(const Instance& instance, const Mesh& mesh,
+                                 const Pose& world_from_object, const Pose& world_from_sensor) {
+  Eigen::Vector3d offset;
+  for (int row = 0; row < 3; ++row) {
+    DoubleDouble sum = exact_sum(world_from_sensor(row, 3), -world_from_object(row, 3));
+    for (int col = 0; col < 3; ++col) {
+      sum -= exact_product(instance.scale, mesh.origin_m[col]) * world_from_object(row, col);
+    }
+    offset[row] = sum.high;
+  }
+  return offset;
+}
+
+}  // namespace
+
+InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
+                     const Pose& world_from_sensor) {
+  const Eigen::Matrix3d object_from_world = world_from_object.linear().transpose();
+  return {
+      .object_from_sensor = object_from_world * world_from_sensor.linear(),
+      .sensor_in_object = object_from_world *
+                          from_mesh_origin(instance, mesh, world_from_object, world_from_sensor) /
+                          instance.scale,
+      .scale = instance.scale};
+}
+
+Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {
+  const Eigen::Matrix3d rotation = view.scale * view.object_from_sensor.transpose();
+  Eigen::Matrix<double, 3, 4> matrix;
+  matrix << rotation, -(rotation * view.sensor_in_object);
+  return matrix;
+}
+
+ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam) {
+  const Eigen::Matrix3d& rotation = view.object_from_sensor;
+  ObjectRay ray{view.sensor_in_object, rotate(rotation, beams.directions[beam])};
+  if (!beams.origins_m.empty()) ray.origin += rotate(rotation, beams.origins_m[beam]) / view.scale;
+  return ray;
+}
+
+GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
+                         Lanes3<double>& direction) {
+  rotate(view.object_from_sensor, beams.direction, direction);
+  const Eigen::Vector3d& sensor = view.sensor_in_object;
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] = sensor.x();
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] = sensor.y();
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] = sensor.z();
+  if (!beams.has_origins) return;
+  Lanes3<double> offset_m;
+  rotate(view.object_from_sensor, beams.origin_m, offset_m);
+  if (view.scale != 1.0) {  // divisions take half of the time
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.x[i] /= view.scale;
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.y[i] /= view.scale;
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.z[i] /= view.scale;
+  }
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] += offset_m.x[i];
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] += offset_m.y[i];
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i];
+}
+
+/// The kernel with the instruction set of the ray caster's (rays::select_kernel()).
+const BlockKernel& select_block_kernel();
+
+namespace rays::baseline {
+extern const BlockKernel kBlockKernel;
+}
+#ifdef __x86_64__
+namespace rays::avx2 {
+extern const BlockKernel kBlockKernel;
+}
+namespace rays::avx512 {
+extern const BlockKernel kBlockKernel;
+}
+#endif
+
+const BlockKernel& select_block_kernel() {
+#ifdef __x86_64__
+  const std::string_view name = rays::select_kernel().name;
+  if (name == rays::avx512::kBlockKernel.name) return rays::avx512::kBlockKernel;
+  if (name == rays::avx2::kBlockKernel.name) return rays::avx2::kBlockKernel;
+#endif
+  return rays::baseline::kBlockKernel;
+}
+
+/// Replaces the distances of a block's hits by those of the hit rule where the plane is not
+/// accurate enough: at grazing incidence, and close to the beam's start. The rule's distance is
+/// always between those of the triangle's corners. A triangle without area, which a beam hits only
+/// by rounding, gets a plane that faces the beam.
+void intersect_grazing(const Resolver& resolver, const HitBlock& block, ExactHits& exact);
+
+namespace {
+
+/// Sets the plane of a triangle without area, which a beam hits only by rounding: it contains the
+/// longest edge and faces the beam as far as possible.
+void set_facing_plane(unsigned lane, const HitTriangle& triangle, ExactHits& exact) {
+  const auto vector = [](const std::array<float, 3>& p) {
+    return Eigen::Vector3d(double{p[0]}, double{p[1]}, double{p[2]});
+  };
+  const Eigen::Vector3d a = vector(triangle.a);
+  Eigen::Vector3d edge = vector(triangle.b) - a;
+  const Eigen::Vector3d other = vector(triangle.c) - a;
+  if (other.squaredNorm() > edge.squaredNorm()) edge = other;
+  const Eigen::Vector3d d = exact.direction.get(lane);
+  const Eigen::Vector3d along = edge.normalized();
+  const Eigen::Vector3d normal = (along * along.dot(d) - d).normalized();
+  exact.normal.set(lane, normal);
+  exact.offset[lane] = normal.dot(a);
+  exact.cosine[lane] = normal.dot(d);
+}
+
+/// 0 where the plane is accurate enough for a lane, else 1. An integer, so that loops vectorise.
+[[gnu::always_inline]] inline unsigned is_uncertain(const ExactHits& exact, unsigned lane) {
+  const auto is_steep = static_cast<unsigned>(std::abs(exact.cosine[lane]) > kGrazing);
+  const auto is_ahead = static_cast<unsigned>(exact.distance[lane] > 0.0);
+  return (is_steep & is_ahead) ^ 1U;
+}
+
+/// True when the planes are accurate enough for all lanes.
+GLIDAR_SIMD bool are_all_certain(const ExactHits& exact) {
+  unsigned unsure = 0;
+  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_uncertain(exact, i);
+  return unsure == 0;
+}
+
+}  // namespace
+
+void intersect_grazing(const Resolver& resolver, const HitBlock& block, ExactHits& exact) {
+  if (are_all_certain(exact)) return;
+  std::uint32_t unsure = 0;
+  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_uncertain(exact, i) << i;
+  for_lanes(unsure & block.mask, [&](unsigned i) {
+    const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
+    const HitTriangle corners = corners_of(resolver.mesh(block.instance[i]), block.primitive[i]);
+    if (std::isnan(exact.offset[i])) set_facing_plane(i, corners, exact);
+    const double distance = hit_distance(ray, corners);
+    if (distance > 0.0) exact.distance[i] = distance;
+  });
+}
+
+// Barycentric weights and what is interpolated with them, lane by lane.
+
+/// Barycentric weights of corners 1 and 2 at the hit point.
+void interpolate_weights(const ExactHits& e, const CornerBlock& c, Lanes<float>& w1,
+                         Lanes<float>& w2);
+
+/// w0 a + w1 b + w2 c, normalised; `flat` where that has no length.
+void blend_normals(const CornerBlock& n, const Lanes<float>& w1, const Lanes<float>& w2,
+                   const Lanes3<double>& flat, Lanes3<double>& out);
+
+/// Cosines between -beams and normals; normals are on the side of the plane's and are turned to the
+/// sensor.
+void cosines(const ExactHits& e, const Lanes3<double>& normal, Lanes<float>& out);
+
+GLIDAR_SIMD void interpolate_weights(const ExactHits& e, const CornerBlock& c, Lanes<float>& w1,
+                                     Lanes<float>& w2) {
+  constexpr float kThird = 1.0F / 3.0F;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const CornerAreas areas = areas_around(e, c, i);
+    const float whole = areas.at_0 + areas.at_1 + areas.at_2;
+    const bool has_area = whole != 0.0F;
+    w1[i] = has_area ? areas.at_1 / whole : kThird;
+    w2[i] = has_area ? areas.at_2 / whole : kThird;
+  }
+}
+
+GLIDAR_SIMD void blend_normals(const CornerBlock& n, const Lanes<float>& w1, const Lanes<float>& w2,
+                               const Lanes3<double>& flat, Lanes3<double>& out) {
+  constexpr float kShortest = 1e-12F;  // squared; opposite normals cancel out
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const float w0 = 1.0F - w1[i] - w2[i];
+    const float x = w0 * n.c0.x[i] + w1[i] * n.c1.x[i] + w2[i] * n.c2.x[i];
+    const float y = w0 * n.c0.y[i] + w1[i] * n.c1.y[i] + w2[i] * n.c2.y[i];
+    const float z = w0 * n.c0.z[i] + w1[i] * n.c1.z[i] + w2[i] * n.c2.z[i];
+    const float squared = x * x + y * y + z * z;
+    const bool has_length = squared > kShortest;
+    const float inverse = 1.0F / std::sqrt(has_length ? squared : 1.0F);
+    out.x[i] = has_length ? static_cast<double>(x * inverse) : flat.x[i];
+    out.y[i] = has_length ? static_cast<double>(y * inverse) : flat.y[i];
+    out.z[i] = has_length ? static_cast<double>(z * inverse) : flat.z[i];
+  }
+}
+
+GLIDAR_SIMD void cosines(const ExactHits& e, const Lanes3<double>& normal, Lanes<float>& out) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double along = normal.x[i] * e.direction.x[i] + normal.y[i] * e.direction.y[i] +
+                         normal.z[i] * e.direction.z[i];
+    out[i] = static_cast<float>(e.cosine[i] > 0.0 ? along : -along);
+  }
+}
+
 namespace {
 
 /// The lanes that did not hit this instance.

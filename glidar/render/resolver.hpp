@@ -4,19 +4,52 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
+#include <glidar/core/mesh.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/math/thread_pool.hpp>
 #include <glidar/render/hit_block.hpp>
-#include <glidar/render/instance_view.hpp>
+#include <glidar/render/lanes.hpp>
 #include <glidar/render/planes.hpp>
 #include <glidar/render/surface.hpp>
-#include <glidar/render/surface_colours.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace glidar {
+
+/// The sensor in the frame of an instance: object units, relative to the mesh's origin.
+struct InstanceView {
+  Eigen::Matrix3d object_from_sensor;  ///< rotation
+  Eigen::Vector3d sensor_in_object;    ///< the sensor's origin
+  double scale;                        ///< metres per object unit
+};
+
+InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
+                     const Pose& world_from_sensor);
+
+/// From a point relative to the mesh's origin into the sensor's frame, metres.
+Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view);
+
+/// A beam in an instance's view: origin and unit direction.
+struct ObjectRay {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;
+};
+
+ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam);
+
+/// The beams of a block, in the sensor frame.
+struct BeamBlock {
+  Lanes3<double> direction;
+  Lanes3<double> origin_m;
+  bool has_origins = false;  ///< else they start at the sensor's origin, and origin_m is unset
+};
+
+/// The beams in an instance's frame, lane by lane as ray_in().
+void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
+             Lanes3<double>& direction);
 
 struct BlockKernel;
 
@@ -186,5 +219,14 @@ class Resolver {
   SurfaceColours colours_;
   std::vector<InstanceView> views_;  ///< per instance
 };
+
+/// For meshes with coincident triangles (same corners in any order): the first of each group, per
+/// triangle, so that every renderer reports the same one. Empty when there are none.
+std::vector<std::uint32_t> find_first_coincident(const Mesh& mesh);
+
+/// The triangles of a mesh without copies, which have the same corners and winding as an earlier
+/// one. Rising indices; empty when there are no copies. `firsts`: find_first_coincident(mesh).
+std::vector<std::uint32_t> distinct_triangles(const Mesh& mesh,
+                                              const std::vector<std::uint32_t>& firsts);
 
 }  // namespace glidar

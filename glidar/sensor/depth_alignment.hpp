@@ -4,7 +4,7 @@
 
 #include <glidar/core/pose.hpp>
 #include <glidar/depth_camera/depth_filters.hpp>
-#include <glidar/sensor/optics/projection.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <array>
 #include <cstdint>

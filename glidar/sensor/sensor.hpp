@@ -2,22 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/phong_headlight.hpp>
 #include <glidar/depth_camera/depth_camera.hpp>
 #include <glidar/sensor/lidar/doppler.hpp>
 #include <glidar/sensor/lidar/echo.hpp>
 #include <glidar/sensor/lidar/footprint.hpp>
 #include <glidar/sensor/lidar/lidar_equation.hpp>
 #include <glidar/sensor/lidar/weather.hpp>
-#include <glidar/sensor/limits.hpp>
 #include <glidar/sensor/noise/noise.hpp>
 #include <glidar/sensor/optics/line_scan.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
-#include <glidar/sensor/optics/prism.hpp>
 #include <glidar/sensor/optics/ray_table.hpp>
+#include <glidar/sensor/optics/rotating_optics.hpp>
 #include <glidar/sensor/optics/spinning.hpp>
-#include <glidar/sensor/optics/wedge_mirror.hpp>
-#include <glidar/sensor/phong_shading.hpp>
 
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +31,44 @@
 #include <vector>
 
 namespace glidar {
+
+class FieldVisitor;
+class ThreadPool;
+
+/// The distances that the sensor reports. A surface outside them still blocks the beam. They are
+/// applied twice: to surfaces, and to what noise makes of their distances.
+struct Limits {
+  enum class Along : std::uint8_t { depth, range };
+  double near_m = 0.0;  ///< 0: no limit, so depths below 0 (views wider than 180 degrees) count too
+  double far_m = std::numeric_limits<double>::infinity();
+  Along along = Along::depth;  ///< the limits apply to depth (boresight) or range (beam)
+};
+
+/// Keys of `limits` in sensor files.
+void describe(Limits& limits, FieldVisitor& visitor);
+
+/// The status of a surface at this range on a beam: hit, too_near or too_far.
+Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m);
+
+/// Ranges and statuses of a tile of beams from the ranges of the ground truth.
+void classify_surfaces(const Limits& limits, const Beams& beams, BeamRange tile, Frame& frame);
+
+/// Removes the returns whose measured distance is outside the limits. `beams` are the nominal
+/// beams, without pointing noise, along which the sensor reports.
+void remove_returns_outside(const Limits& limits, const Beams& beams, ThreadPool& thread_pool,
+                            Frame& frame);
+
+/// A measured depth or range within the limits in whole units of an output: the nearest number, or
+/// its neighbour where the nearest is outside the limits.
+double to_whole_units(const Limits& limits, Limits::Along along, double distance_m, double unit_m);
+
+/// Throws Error unless the attenuation coefficients are finite, non-negative and not all zero.
+void validate(const PhongHeadlight& light);
+
+/// Fills a range of frame.intensity from frame.ground_truth by equations (3) to (5) of the 2016
+/// paper with h of (2), for beams whose status is hit; 0 elsewhere. Requires cos_shading and
+/// reflectance in frame.ground_truth.
+void shade_phong(const PhongHeadlight& light, BeamRange range, Frame& frame);
 
 class FieldVisitor;
 
@@ -104,5 +148,25 @@ Beams make_beams(const Sensor& sensor, const FrameInterval& interval);
 
 /// The same for frame 0.
 Beams make_beams(const Sensor& sensor);
+
+/// A sensor that does not change, with the beams of its first and its latest frame and those in
+/// use.
+class BeamCache {
+ public:
+  explicit BeamCache(Sensor sensor);
+  /// The same with the beams of frame 0, where they are known.
+  BeamCache(Sensor sensor, Beams first);
+
+  [[nodiscard]] const Sensor& sensor() const { return sensor_; }
+  /// The beams of a frame; all frames of a camera share theirs. May be called from any thread.
+  [[nodiscard]] std::shared_ptr<const Beams> beams(std::uint32_t frame = 0) const;
+
+ private:
+  Sensor sensor_;
+  std::shared_ptr<const Beams> first_;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const Beams> latest_;
+  mutable std::map<std::uint32_t, std::weak_ptr<const Beams>> in_use_;  ///< by frame
+};
 
 }  // namespace glidar

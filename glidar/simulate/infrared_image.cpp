@@ -4,7 +4,7 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/sensor/lidar/lidar_equation.hpp>
-#include <glidar/sensor/optics/sub_pixels.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
 #include <glidar/simulate/simulation.hpp>
 

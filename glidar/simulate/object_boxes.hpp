@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/object_box.hpp>
+#include <glidar/core/frame.hpp>
 
 #include <vector>
 

@@ -7,7 +7,7 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/depth_camera/imager.hpp>
 #include <glidar/sensor/lidar/weather_echoes.hpp>
-#include <glidar/sensor/optics/projection.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 #include <glidar/sensor/sensor.hpp>
 #include <glidar/simulate/prepared_tof.hpp>
 

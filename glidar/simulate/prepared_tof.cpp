@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/prepared_tof.hpp>
 
-#include <glidar/sensor/optics/sub_pixels.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <cmath>
 

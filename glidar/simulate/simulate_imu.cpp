@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/motion/kinematics.hpp>
-#include <glidar/sensor/imu/bias_process.hpp>
+#include <glidar/sensor/imu.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/motion/motion.hpp>
-#include <glidar/sensor/imu/imu_samples.hpp>
+#include <glidar/sensor/imu.hpp>
 
 #include <cstdint>
 

@@ -6,7 +6,7 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/motion/motion.hpp>
 #include <glidar/render/renderer.hpp>
-#include <glidar/sensor/beam_cache.hpp>
+#include <glidar/sensor/sensor.hpp>
 #include <glidar/simulate/return_replacement.hpp>
 
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/sensor/lidar/surface_reflectance.hpp>
-#include <glidar/sensor/optics/sub_pixels.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
 
 #include <algorithm>

@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/verify/special_cases.hpp>
+#include <glidar/verify/cases.hpp>
 
 #include <glidar/math/portable.hpp>
-#include <glidar/verify/cases.hpp>
 #include <glidar/verify/comparison.hpp>
-#include <glidar/verify/probes.hpp>
 
 #include <algorithm>
 #include <array>

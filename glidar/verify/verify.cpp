@@ -5,7 +5,6 @@
 #include <glidar/math/constants.hpp>
 #include <glidar/verify/cases.hpp>
 #include <glidar/verify/comparison.hpp>
-#include <glidar/verify/special_cases.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,18 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "frame.hpp"
-
-#include "report.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/output_frame.hpp>
+#include <glidar/explain/trace_text.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
 #include <glidar/io/pictures/colour_scale.hpp>
 #include <glidar/output/output.hpp>
+#include <glidar/simulate/explain.hpp>
+#include <glidar/simulate/simulator.hpp>
+
+#include "convert.hpp"
+#include "objects.hpp"
+#include "report.hpp"
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -386,6 +392,153 @@ void bind_frame(nb::module_& module) {
       .def(
           "save", save, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
           nb::sig("def save(self, path: str, options: OutputOptions, log: object | None) -> None"));
+}
+
+namespace {
+
+std::vector<ObjectBox> find_boxes(Measured& measured, BoxSelection selection) {
+  PreparedScene& prepared = measured.rendered();
+  Simulator simulator(*prepared.scene, measured.sensor, *prepared.renderer);
+  return simulator.find_boxes(*measured.motion, measured.frame, selection);
+}
+
+/// The boxes of the objects with a class, or of all.
+std::vector<ObjectBox> boxes_of(Measured& measured, bool all) {
+  return unlocked([&](Watch&) {
+    if (!all) {
+      ensure_boxes(measured);
+      return measured.frame.boxes;
+    }
+    const std::lock_guard lock(measured.rendered().mutex);
+    return find_boxes(measured, BoxSelection::all);
+  });
+}
+
+/// The pose of a coordinate frame of clouds.
+Matrix4 cloud_from_sensor(const Measured& measured, const std::string& frame) {
+  return matrix_of(
+      output_frame(frame, *measured.beams, measured.frame.world_from_sensor).cloud_from_sensor);
+}
+
+std::string class_of(const Measured& measured, const ObjectBox& box) {
+  const Scene& scene = *measured.scene().scene;
+  return scene.class_names.at(scene.instances.at(box.instance).class_id);
+}
+
+}  // namespace
+
+bool lacks_boxes(const Measured& measured) {
+  return !measured.has_boxes && has_classes(*measured.scene().scene);
+}
+
+void ensure_boxes(Measured& measured) {
+  const std::lock_guard lock(measured.rendered().mutex);
+  if (measured.has_boxes) return;
+  measured.frame.boxes = find_boxes(measured, BoxSelection::with_class);
+  measured.has_boxes = true;
+}
+
+void bind_boxes(nb::module_& module) {
+  nb::class_<ObjectBox>(module, "ObjectBox")
+      .def_ro("instance", &ObjectBox::instance)
+      .def_prop_ro("sensor_from_box",
+                   [](const ObjectBox& self) { return matrix_of(self.sensor_from_box); })
+      .def_ro("size_m", &ObjectBox::size_m)
+      .def_ro("velocity_m_s", &ObjectBox::velocity_m_s)
+      .def_ro("points", &ObjectBox::points)
+      .def_ro("beams", &ObjectBox::beams)
+      .def_ro("visible_beams", &ObjectBox::visible_beams)
+      .def_prop_ro("occlusion", [](const ObjectBox& self) { return occlusion(self); });
+  module.def("boxes", boxes_of, nb::arg("frame"), nb::arg("all"));
+  module.def("cloud_from_sensor", cloud_from_sensor, nb::arg("frame"), nb::arg("name"));
+  module.def(
+      "object_name",
+      [](const Measured& measured, const ObjectBox& box) {
+        return measured.scene().scene->instances.at(box.instance).name;
+      },
+      nb::arg("frame"), nb::arg("box"));
+  module.def(
+      "object_id",
+      [](const Measured& measured, const ObjectBox& box) {
+        return measured.scene().scene->instances.at(box.instance).id;
+      },
+      nb::arg("frame"), nb::arg("box"));
+  module.def("object_class", class_of, nb::arg("frame"), nb::arg("box"));
+}
+
+namespace {
+
+/// A trace as text and as data.
+struct TracedPoint {
+  PointTrace trace;
+  std::string text;
+};
+
+TracedPoint trace_point(const Measured& measured, std::size_t entry) {
+  return unlocked([&](Watch& watch) {
+    Frame frame;
+    frame.stamp_ns = measured.frame.stamp_ns;
+    frame.seed = measured.frame.seed;
+    frame.sensor_id = measured.frame.sensor_id;
+    frame.number = measured.frame.number;
+    PreparedScene& prepared = measured.rendered();
+    const std::lock_guard lock(prepared.mutex);
+    Simulator simulator(*prepared.scene, measured.sensor, *prepared.renderer);
+    TracedPoint traced{explain(simulator, *measured.motion, entry, frame, watch.progress()), ""};
+    traced.text = format_trace(traced.trace, simulator, frame);
+    return traced;
+  });
+}
+
+std::vector<Measurement> measurements(const TracedPoint& traced) {
+  std::vector<Measurement> all = {traced.trace.measured};
+  for (const PointTrace::Step& step : traced.trace.noise) all.push_back(step.after);
+  all.push_back(traced.trace.reported);
+  return all;
+}
+
+std::vector<RandomSample> samples(const TracedPoint& traced, std::size_t step) {
+  return traced.trace.noise.at(step).samples;
+}
+
+void bind_parts(nb::module_& module) {
+  nb::class_<Measurement>(module, "Measurement")
+      .def_prop_ro("status", [](const Measurement& self) { return static_cast<int>(self.status); })
+      .def_prop_ro("return_source",
+                   [](const Measurement& self) { return static_cast<int>(self.return_source); })
+      .def_ro("range_m", &Measurement::range_m)
+      .def_ro("intensity", &Measurement::intensity)
+      .def_ro("sigma_m", &Measurement::sigma_m)
+      .def_ro("radial_velocity_m_s", &Measurement::radial_velocity_m_s);
+  nb::class_<RandomSample>(module, "RandomSample")
+      .def_prop_ro("is_normal",
+                   [](const RandomSample& self) {
+                     return self.distribution == RandomSample::Distribution::normal;
+                   })
+      .def_ro("value", &RandomSample::value)
+      .def_ro("use", &RandomSample::use)
+      .def_ro("probability", &RandomSample::probability);
+  nb::class_<PulseEcho>(module, "Echo")
+      .def_ro("range_m", &PulseEcho::range_m)
+      .def_ro("signal", &PulseEcho::signal)
+      .def_ro("sigma_m", &PulseEcho::sigma_m)
+      .def_ro("is_mixed", &PulseEcho::is_mixed);
+}
+
+}  // namespace
+
+void bind_point_trace(nb::module_& module) {
+  bind_parts(module);
+  nb::class_<TracedPoint>(module, "PointTrace")
+      .def_ro("text", &TracedPoint::text)
+      .def_prop_ro("entry", [](const TracedPoint& self) { return self.trace.entry; })
+      .def_prop_ro("direction", [](const TracedPoint& self) { return self.trace.direction; })
+      .def_prop_ro("measurements", measurements)
+      .def("samples", samples, nb::arg("step"))
+      .def_prop_ro("echoes", [](const TracedPoint& self) {
+        return self.trace.waveform ? self.trace.waveform->received : std::vector<PulseEcho>{};
+      });
+  module.def("explain", trace_point, nb::arg("frame"), nb::arg("entry"));
 }
 
 }  // namespace glidar::python

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene.hpp"
+#include "objects.hpp"
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
@@ -10,8 +10,8 @@
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/model/model_parts.hpp>
 #include <glidar/math/single_precision.hpp>
+#include "motion.hpp"
 #include "report.hpp"
-#include "trajectory_state.hpp"
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/array.h>

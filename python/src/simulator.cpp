@@ -3,12 +3,11 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/motion/run_clock.hpp>
-#include <glidar/sensor/lidar_placement.hpp>
 #include <glidar/sensor/view_placement.hpp>
 #include <glidar/simulate/simulator.hpp>
-#include "frame.hpp"
+#include "motion.hpp"
+#include "objects.hpp"
 #include "report.hpp"
-#include "trajectory_state.hpp"
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "convert.hpp"
-#include "frame.hpp"
+#include "objects.hpp"
 #include "report.hpp"
 
 #include <glidar/io/config/surface_presets.hpp>

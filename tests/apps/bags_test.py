@@ -6,6 +6,8 @@
 import io
 import json
 import struct
+import subprocess
+import sys
 import unittest
 from pathlib import Path
 
@@ -118,11 +120,26 @@ class Bags(CliTest):
                 self.assertAlmostEqual(getattr(first.orientation, axis), getattr(again.orientation, axis), 9)
 
     def test_compressed_images_replace_raw_ones(self):
-        self.succeed("render", *ROOM, "--sensor", "D435", "--image-transport", "compressed", "-o", "run.bag")
-        topics = {topic for topic, _, _ in self.messages("run.bag")}
+        self.succeed("render", *ROOM, "--sensor", "D435", "--image-transport", "compressed", "-o", "run.rosbag2")
+        topics = {topic for topic, _, _ in self.messages("run.rosbag2")}
         self.assertIn("/camera/depth/image_raw/compressedDepth", topics)
         self.assertIn("/camera/depth/camera_info", topics)
         self.assertNotIn("/camera/depth/image_raw", topics)
+
+    def test_bags_of_ros_1_are_converted_and_read(self):
+        error = self.refused("render", *ROOM, "--sensor", "VLP-16", "-o", "run.bag")
+        self.assertIn("`rosbags-convert --src run.rosbag2 --dst run.bag`", error)
+        self.succeed("render", *ROOM, "--sensor", "VLP-16", "-o", "run.rosbag2")
+        subprocess.run([sys.executable, "-m", "rosbags.convert", "--src", "run.rosbag2", "--dst", "run.bag"], cwd=self.folder,
+                       check=True)
+        for name in ("run.bag", "run.rosbag2"):
+            self.succeed("decode", name, "--topic", "/lidar/points", "-o", name + ".npz")
+        for k in range(2):
+            with np.load(self.path(f"run.bag_00000{k}.npz")) as a, np.load(self.path(f"run.rosbag2_00000{k}.npz")) as b:
+                self.assertEqual(set(a.files), set(b.files))
+                for column in a.files:
+                    self.assertTrue(np.array_equal(a[column], b[column], equal_nan=True), column)
+        self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--trajectory", "run.bag", "--duration", "0.1", "-o", "a.npz")
 
     def test_ouster_packets_are_those_of_a_capture(self):
         self.succeed("render", *ROOM, "--sensor", "OS1-32", "--packet-topics", "-o", "run.mcap", "-o", "scan.pcap",

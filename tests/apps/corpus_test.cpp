@@ -20,8 +20,7 @@ namespace {
 /// The valid files of a reader's corpus.
 std::set<std::string> taken(const testing::FileDecoder& decoder, std::size_t& files) {
   std::set<std::string> names;
-  const auto folder =
-      std::filesystem::path(kSourceFolder) / "tests/fuzz/corpus" / std::string(decoder.name);
+  const auto folder = std::filesystem::path(kCorpusFolder) / std::string(decoder.name);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});

@@ -216,7 +216,7 @@ class Refusals(ReplayTest):
         self.record_scene()
         self.write("box.obj", self.bytes_of("box.obj").decode().replace("v 1.0 1.0 1.0", "v 1.1 1.0 1.0"))
         before = self.files()
-        for name in ("x.mcap", "x.rosbag2", "x.bag", "x.osi", "x.kitti", "x.pcd"):
+        for name in ("x.mcap", "x.rosbag2", "x.osi", "x.kitti", "x.pcd"):
             done = self.run_program("replay", "r.jsonl", "-o", name)
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn("differs from the recorded one", done.stderr)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Dates in every output that has them: packets of Velodyne, Ouster, Hesai and Livox, bags of ROS 1 and ROS 2, MCAP, OSI and the
+"""Dates in every output that has them: packets of Velodyne, Ouster, Hesai and Livox, bags of ROS 2, MCAP, OSI and the
 live view. Independent readers find the times that follow from the date of the trajectory and from the periods of the sensor.
 The built program is found in PATH. DDS has its own test: tests/link/dds/cyclonedds_test.py."""
 
@@ -166,7 +166,7 @@ class Stamps(CliTest):
     def path(self, name):
         return Path(self.folder, name)
 
-    READERS = {"run.bag": read_by_rosbags, "run.rosbag2": read_by_rosbags, "run.mcap": read_by_mcap, "run.osi": read_by_osi,
+    READERS = {"run.rosbag2": read_by_rosbags, "run.mcap": read_by_mcap, "run.osi": read_by_osi,
                "run.pcap": read_ouster_packets}
 
     def check(self, found, frames, samples):
@@ -212,9 +212,9 @@ class Stamps(CliTest):
         for sensor in ("XT32", "Pandar64", "QT64"):
             with self.subTest(sensor):
                 size, time_of, *_ = DATA_PACKETS[sensor]
-                self.succeed("render", *ROOM, "--sensor", sensor, "--duration", "0.1", "--as", "hesai", "-o", "a.bag",
+                self.succeed("render", *ROOM, "--sensor", sensor, "--duration", "0.1", "--as", "hesai", "-o", "a.rosbag2",
                              "-o", "run.pcap")
-                with AnyReader([self.path("a.bag")]) as reader:
+                with AnyReader([self.path("a.rosbag2")]) as reader:
                     (cloud,) = [reader.deserialize(data, connection.msgtype)
                                 for connection, _, data in reader.messages() if connection.topic == "/lidar_points"]
                 packets = [time_of(payload) for _, payload in datagrams(self.path("run.pcap")) if len(payload) == size]
@@ -235,8 +235,8 @@ class Stamps(CliTest):
         cases = (("OS1-32", "hesai", "/lidar/points", SECOND, 360), ("OS1-32", "livox", "/lidar/points", 1, 130))
         for sensor, layout, topic, unit_ns, limit_ns in cases:  # doubles have steps of 238 ns and 256 ns at this date
             with self.subTest(layout):
-                self.succeed("render", *ROOM, "--sensor", sensor, "--duration", "0.1", "--layout", layout, "-o", "a.bag")
-                with AnyReader([self.path("a.bag")]) as reader:
+                self.succeed("render", *ROOM, "--sensor", sensor, "--duration", "0.1", "--layout", layout, "-o", "a.rosbag2")
+                with AnyReader([self.path("a.rosbag2")]) as reader:
                     (cloud,) = [reader.deserialize(data, connection.msgtype)
                                 for connection, _, data in reader.messages() if connection.topic == topic]
                 kind = np.dtype({"names": ["t"], "formats": ["<f8"], "itemsize": cloud.point_step,
@@ -245,8 +245,8 @@ class Stamps(CliTest):
                 wanted = column_times(RECORDED)
                 errors = [abs(Fraction(float(a)) * unit_ns - int(b)) for a, b in zip(stamps, wanted, strict=True)]
                 self.assertLessEqual(max(errors), limit_ns)
-        self.succeed("render", *ROOM, "--sensor", "Livox-Mid-360", "--duration", "0.1", "--as", "livox", "-o", "b.bag")
-        with AnyReader([self.path("b.bag")]) as reader:
+        self.succeed("render", *ROOM, "--sensor", "Livox-Mid-360", "--duration", "0.1", "--as", "livox", "-o", "b.rosbag2")
+        with AnyReader([self.path("b.rosbag2")]) as reader:
             (message,) = [reader.deserialize(data, connection.msgtype)
                           for connection, _, data in reader.messages() if connection.topic == "/livox/lidar"]
         self.assertEqual(message.timebase, RECORDED + 10_000)

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/model/builtin_models.hpp>
-#include <glidar/simulate/simulator.hpp>
+#include <glidar/glidar.hpp>
 
 #include <cmath>
 #include <cstdio>

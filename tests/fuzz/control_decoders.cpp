@@ -5,11 +5,11 @@
 #include "demand.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/packets/livox_codec.hpp>
+#include <glidar/io/packets/livox.hpp>
 #include <glidar/io/packets/packet_bytes.hpp>
 #include <glidar/link/control/control_server.hpp>
-#include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/livox_commands.hpp>
+#include <glidar/link/control/tcp_service.hpp>
 
 #include <array>
 #include <string_view>

@@ -9,14 +9,13 @@
 
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag_clouds.hpp>
-#include <glidar/io/bags/bag_poses.hpp>
+#include <glidar/io/bags/bag_contents.hpp>
 #include <glidar/io/bags/bag_records.hpp>
 #include <glidar/io/config/imu_file.hpp>
-#include <glidar/io/config/optics_keys.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_calibration.hpp>
 #include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
@@ -26,9 +25,9 @@
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/mesh_blob.hpp>
 #include <glidar/io/model/png_texture.hpp>
-#include <glidar/io/packets/ouster_codec.hpp>
+#include <glidar/io/packets/ouster.hpp>
 #include <glidar/io/packets/packet_frames.hpp>
-#include <glidar/io/ros/cloud_from_message.hpp>
+#include <glidar/io/ros/cloud_message.hpp>
 #include <glidar/link/recording.hpp>
 
 #include <fcntl.h>

@@ -11,7 +11,7 @@ namespace glidar::testing {
 
 /// A reader of one kind of file.
 struct FileDecoder {
-  std::string_view name;       ///< of its corpus, tests/fuzz/corpus/NAME
+  std::string_view name;       ///< of its corpus, tests/fuzz/corpus/NAME.zip
   std::string_view file_name;  ///< readers go by it
   void (*read)(const std::filesystem::path& file);
 };

@@ -5,8 +5,7 @@
 #include "demand.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/link/foxglove/http_routes.hpp>
-#include <glidar/link/foxglove/messages.hpp>
+#include <glidar/link/foxglove/protocol.hpp>
 
 #include <string_view>
 #include <variant>

@@ -5,7 +5,7 @@
 #include "demand.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/link/lockstep/messages.hpp>
+#include <glidar/link/lockstep.hpp>
 
 namespace glidar::testing {
 namespace {

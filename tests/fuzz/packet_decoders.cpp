@@ -5,11 +5,10 @@
 #include "demand.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/packets/livox_packet.hpp>
+#include <glidar/io/packets/livox.hpp>
 #include <glidar/io/packets/pcap_file.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
-#include <glidar/io/packets/velodyne_model.hpp>
-#include <glidar/io/packets/velodyne_packet.hpp>
+#include <glidar/io/packets/velodyne.hpp>
 
 #include <algorithm>
 #include <array>

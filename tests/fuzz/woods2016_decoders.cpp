@@ -5,7 +5,7 @@
 #include "demand.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/woods2016/message_codec.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include <cmath>
 #include <cstring>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/png_texture.hpp>
-#include <glidar/io/pictures/font.hpp>
+#include <glidar/io/pictures/chart.hpp>
 #include <glidar/io/pictures/point_image.hpp>
 #include <glidar/math/constants.hpp>
 

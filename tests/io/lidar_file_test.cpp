@@ -5,7 +5,7 @@
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/formats/npy_file.hpp>
 #include <glidar/io/formats/ouster_file.hpp>
-#include <glidar/io/packets/ouster_codec.hpp>
+#include <glidar/io/packets/ouster.hpp>
 #include <support/data.hpp>
 
 #include <array>

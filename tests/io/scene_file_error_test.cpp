@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/config/scene_builder.hpp>
+#include <glidar/io/config/scene_plan.hpp>
 
 #include "yaml_files.hpp"
 

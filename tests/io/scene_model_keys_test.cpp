@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Keys of a scene file's models that change their size and place, and paths.
-#include <glidar/io/config/scene_builder.hpp>
+#include <glidar/io/config/scene_plan.hpp>
 
 #include "yaml_files.hpp"
 

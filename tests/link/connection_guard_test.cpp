@@ -3,11 +3,12 @@
 #include <glidar/link/connection_guard.hpp>
 
 #include <glidar/io/files/unique_fd.hpp>
-#include <glidar/link/router.hpp>
+#include <glidar/link/socket.hpp>
 
 #include "loopback.hpp"
 #include "message_bytes.hpp"
 #include "raw_peer.hpp"
+#include "support/error_text.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -20,6 +21,7 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <string>
 
 namespace glidar::link {
 namespace {
@@ -252,5 +254,45 @@ TEST_F(ConnectionGuardTest, KnowsWhetherAConnectionIsOpenAndWhatItsPeerHasReceiv
   EXPECT_FALSE(router->socket().is_open({connection.descriptor, connection.cookie + 1}));
 }
 
+using ::testing::AllOf;
+
+std::string refusal(const std::string& text) {
+  Limits limits;
+  std::string error = error_text([&] { set_limit(limits, text); });
+  EXPECT_EQ(limits, Limits{});
+  return error;
+}
+
+TEST(Limits, EachIsSetByItsNameWithinItsRange) {
+  for (const LimitKind& kind : limit_kinds()) {
+    Limits limits;
+    EXPECT_GE(limits.*kind.value, kind.min) << kind.name;
+    EXPECT_LE(limits.*kind.value, kind.max) << kind.name;
+    for (const std::int64_t value : {kind.min, kind.max}) {
+      set_limit(limits, std::string(kind.name) + "=" + std::to_string(value));
+      EXPECT_EQ(limits.*kind.value, value) << kind.name;
+    }
+    limits.*kind.value = Limits{}.*kind.value;
+    EXPECT_EQ(limits, Limits{}) << kind.name;
+    EXPECT_THAT(limit_text(limits, kind.value), HasSubstr(std::string(kind.name)));
+  }
+}
+
+TEST(Limits, AnUnknownNameIsAnErrorWithTheClosestMatch) {
+  EXPECT_THAT(refusal("reply-mb=4"), AllOf(HasSubstr("--limit"), HasSubstr("'reply-mb=4'"),
+                                           HasSubstr("did you mean reply-mib?")));
+  EXPECT_THAT(refusal(""), HasSubstr("connections, connections-per-s"));
+}
+
+TEST(Limits, AnInvalidValueIsAnErrorWithRangeAndExample) {
+  for (const char* value : {"=0", "=-1", "=1.5", "=many", "=", "", "=1000001", "=4 "}) {
+    EXPECT_THAT(refusal("requests" + std::string(value)),
+                AllOf(HasSubstr("--limit requests"), HasSubstr("from 1 to 1000000"),
+                      HasSubstr("for example --limit requests=16")))
+        << value;
+  }
+}
+
 }  // namespace
+
 }  // namespace glidar::link

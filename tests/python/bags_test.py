@@ -8,7 +8,7 @@ from rosbags.highlevel import AnyReader
 
 import glidar
 
-NAMES = ["run.mcap", "run.bag", "run.rosbag2"]
+NAMES = ["run.mcap", "run.rosbag2"]
 
 
 @pytest.fixture(scope="module")

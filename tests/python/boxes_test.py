@@ -134,7 +134,7 @@ def test_threads_may_share_a_frame(scene):
     assert len(found) == 4 and all(boxes == found[0] for boxes in found)
 
 
-@pytest.mark.parametrize("name", ["run.mcap", "run.rosbag2", "run.bag"])
+@pytest.mark.parametrize("name", ["run.mcap", "run.rosbag2"])
 def test_bags_have_a_cube_for_each_box(name, tmp_path, program):
     rosbags = pytest.importorskip("rosbags.highlevel")
     stores = pytest.importorskip("rosbags.typesys")
@@ -142,7 +142,7 @@ def test_bags_have_a_cube_for_each_box(name, tmp_path, program):
     program("render", "scene.yaml", "--sensor", "VLP-16", "--eye", "0,0,0.4", "--duration", "0.2", "-o", name, folder=tmp_path)
     frames = [glidar.simulate(glidar.Scene(tmp_path / "scene.yaml"), glidar.load_sensor("VLP-16"), pose=glidar.pose([0, 0, 0.4]), frame=k)
               for k in range(2)]  # fmt: skip
-    store = stores.get_typestore(stores.Stores.ROS1_NOETIC if name.endswith(".bag") else stores.Stores.ROS2_HUMBLE)
+    store = stores.get_typestore(stores.Stores.ROS2_HUMBLE)
     with rosbags.AnyReader([tmp_path / name], default_typestore=store) as reader:
         found = [reader.deserialize(data, topic.msgtype) for topic, _, data in reader.messages() if topic.topic == "/lidar/boxes"]
     assert len(found) == 2

@@ -25,7 +25,7 @@ imus:
 """
 START_NS = 1_600_000_000_000_000_000
 RIG = glidar.Trajectory.constant(glidar.pose([1, 0, 0.5]))
-NAMES = ["run.mcap", "run.bag", "run.rosbag2", "run.osi", "run.kitti", "run.pcap", "run.pcd", "run.las", "run.npz", "run.imu.csv"]
+NAMES = ["run.mcap", "run.rosbag2", "run.osi", "run.kitti", "run.pcap", "run.pcd", "run.las", "run.npz", "run.imu.csv"]
 
 
 @pytest.fixture(scope="module")

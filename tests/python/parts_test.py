@@ -185,7 +185,6 @@ FORMATS = {
     "a.class.png": ({}, labels_of_image),
     "a.exr": ({"columns": ["xyz", "instance"]}, labels_of_exr),
     "a.mcap": ({"columns": ["xyz", "instance"]}, labels_of_bag),
-    "a.bag": ({"columns": ["xyz", "instance"]}, labels_of_bag),
     "a.rosbag2": ({"columns": ["xyz", "instance"]}, labels_of_bag),
 }
 

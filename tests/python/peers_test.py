@@ -51,3 +51,14 @@ def test_points_of_a_moving_target_are_on_it_at_their_own_time():
     own_time, one_pose = peers.moving_target()
     assert own_time < 1e-12
     assert one_pose > 1.0
+
+
+def test_signals_follow_the_range_equation_at_every_incidence():
+    assert peers.signal_over_incidence() < 4 * np.finfo(np.float32).eps
+
+
+def test_shares_at_an_edge_approach_those_of_a_gaussian_beam_with_more_sub_rays():
+    errors = [peers.shares_at_an_edge(rings) for rings in (1, 3, 6)]
+    assert errors[0] < 0.2  # half of the middle ray's share and of two others
+    assert errors == sorted(errors, reverse=True)
+    assert errors[2] < 0.03

@@ -8,6 +8,7 @@ import json
 import pickle
 import re
 import subprocess
+import zipfile
 from pathlib import Path
 
 import jsonschema
@@ -146,7 +147,7 @@ def test_errors_are_found_by_the_schema_and_by_the_reader(sensor_schema, path, v
 
 
 SCENES = [path for path in sorted((ROOT / "examples").glob("*.yaml")) if "\nmodels:" in path.read_text(encoding="utf-8")]
-CORPUS = [ROOT / "tests/fuzz/corpus/scene" / name for name in ("models", "motion", "rig")]
+CORPUS = [zipfile.Path(ROOT / "tests/fuzz/corpus/scene.zip", name) for name in ("models", "motion", "rig")]
 #: Blocks of documentation that are scene files.
 DOCUMENTED = [
     (page, block)

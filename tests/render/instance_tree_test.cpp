@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // The tree over instances finds the same instances as a test of each.
-#include <glidar/render/instance_tree.hpp>
+#include <glidar/render/hit_writer.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <set>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/math/constants.hpp>
-#include <glidar/render/surface_colours.hpp>
+#include <glidar/render/surface.hpp>
 
 #include <gtest/gtest.h>
 

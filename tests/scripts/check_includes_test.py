@@ -13,7 +13,8 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import check_includes  # noqa: E402
 
 GOOD = {
-    "glidar/public_headers.txt": "# comment\nglidar/core/pose.hpp\nglidar/io/sink.hpp\n",
+    "glidar/public_headers.txt": "# comment\nglidar/glidar.hpp\nglidar/core/pose.hpp\nglidar/io/sink.hpp\n",
+    "glidar/glidar.hpp": "#pragma once\n#include <glidar/core/pose.hpp>\n#include <glidar/io/sink.hpp>\n",
     "glidar/core/pose.hpp": "#pragma once\n#include <Eigen/Core>\n#include <vector>\n",
     "glidar/core/pose.cpp": "#include <glidar/core/pose.hpp>\n#include <cmath>\n",
     "glidar/io/sink.hpp": "#pragma once\n#include <glidar/core/pose.hpp>\n",
@@ -71,6 +72,10 @@ class CheckIncludes(unittest.TestCase):
     def test_listed_header_must_exist(self):
         text = GOOD["glidar/public_headers.txt"] + "glidar/core/gone.hpp\n"
         self.expect({"glidar/public_headers.txt": text}, "glidar/core/gone.hpp does not exist")
+
+    def test_listed_header_must_be_part_of_the_umbrella(self):
+        text = GOOD["glidar/public_headers.txt"] + "glidar/render/renderer.hpp\n"
+        self.expect({"glidar/public_headers.txt": text}, "glidar/render/renderer.hpp is not included by glidar/glidar.hpp")
 
     def test_header_needs_pragma_once(self):
         self.expect({"glidar/core/pose.hpp": "// #pragma once\n"}, "#pragma once is missing")

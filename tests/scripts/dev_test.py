@@ -53,8 +53,9 @@ removed config-files
 unpacked half-installed
 present installed
 """
-UPDATE = "apt-get update -q"
-INSTALL = "apt-get install -q -y --no-install-recommends "
+WAIT = "-o DPkg::Lock::Timeout=600"  # for another installation
+UPDATE = f"apt-get update -q {WAIT}"
+INSTALL = f"apt-get install -q -y {WAIT} --no-install-recommends "
 
 
 class Dev(unittest.TestCase):

@@ -29,7 +29,7 @@ MAX_DRIFT_PERCENT = 4.0
 
 class OdometryOfBags(unittest.TestCase):
     def test_drift_is_small_and_larger_without_times(self):
-        for suffix in (".rosbag2", ".bag"):
+        for suffix in (".rosbag2", ".mcap"):
             with self.subTest(suffix), tempfile.TemporaryDirectory() as folder:
                 with_times, without = study.run(
                     study.flags_of(["--seconds", str(SECONDS), "--format", suffix]), folder)

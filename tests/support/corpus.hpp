@@ -20,12 +20,12 @@ struct DecodedCorpus {
   std::size_t files = 0;
 };
 
-/// Decodes every file of tests/fuzz/corpus/PROTOCOL.
+/// Decodes every file of tests/fuzz/corpus/PROTOCOL.zip.
 inline DecodedCorpus decode_corpus(const char* protocol,
                                    bool (*decode)(std::span<const std::byte>)) {
   DecodedCorpus result;
-  for (const auto& entry : std::filesystem::directory_iterator(
-           std::filesystem::path(kSourceFolder) / "tests/fuzz/corpus" / protocol)) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(kCorpusFolder) / protocol)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});
     ++result.files;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/math/constants.hpp>
-#include <glidar/verify/special_cases.hpp>
+#include <glidar/verify/cases.hpp>
 
 #include <gtest/gtest.h>
 

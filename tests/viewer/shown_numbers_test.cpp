@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/viewer/panels.hpp>
+#include <apps/viewer/screen.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

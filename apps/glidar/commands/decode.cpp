@@ -9,10 +9,9 @@
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag_clouds.hpp>
-#include <glidar/io/bags/bag_topics.hpp>
+#include <glidar/io/bags/bag_contents.hpp>
 #include <glidar/io/packets/packet_frames.hpp>
-#include <glidar/io/packets/packet_writer.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

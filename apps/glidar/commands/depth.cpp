@@ -10,7 +10,7 @@
 #include <glidar/depth_camera/depth_filters.hpp>
 #include <glidar/io/config/depth_camera_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
-#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/io/pictures/picture.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <fmt/format.h>

@@ -8,7 +8,7 @@
 #include <glidar/io/config/depth_camera_files.hpp>
 #include <glidar/io/formats/grey_image_file.hpp>
 #include <glidar/io/formats/raw_image_file.hpp>
-#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/io/pictures/picture.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

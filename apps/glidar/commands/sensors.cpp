@@ -12,7 +12,7 @@
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/surface_presets.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/io/pictures/pattern_picture.hpp>
+#include <glidar/io/pictures/beam_picture.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/portable.hpp>
 #include <glidar/sensor/lidar/return_names.hpp>

@@ -8,7 +8,7 @@
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/stream_run.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/link/listener.hpp>
+#include <glidar/link/connection_guard.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -3,8 +3,6 @@
 #include <apps/glidar/options/message_options.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/ros/driver.hpp>
-#include <glidar/io/ros/image_transport.hpp>
 #include <glidar/io/ros/published_rig.hpp>
 #include <glidar/link/dds/topic_names.hpp>
 

@@ -6,8 +6,8 @@
 #include <apps/glidar/options/option_group.hpp>
 #include <apps/glidar/options/option_values.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/packets/livox_packet.hpp>
-#include <glidar/io/packets/ouster_packet.hpp>
+#include <glidar/io/packets/livox.hpp>
+#include <glidar/io/packets/ouster.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

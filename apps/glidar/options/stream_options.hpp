@@ -5,8 +5,8 @@
 #include <apps/glidar/options/cli_fwd.hpp>
 #include <apps/glidar/options/message_options.hpp>
 #include <apps/glidar/options/render_options.hpp>
+#include <glidar/link/connection_guard.hpp>
 #include <glidar/link/endpoint.hpp>
-#include <glidar/link/limits.hpp>
 #include <glidar/output/network.hpp>
 
 #include <cstdint>

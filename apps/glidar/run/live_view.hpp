@@ -5,7 +5,7 @@
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/io/ros/rig_publisher.hpp>
-#include <glidar/link/foxglove/messages.hpp>
+#include <glidar/link/foxglove/protocol.hpp>
 #include <glidar/link/foxglove/ros_channels.hpp>
 #include <glidar/link/foxglove/server.hpp>
 #include <glidar/output/output.hpp>

@@ -6,7 +6,7 @@
 #include <apps/glidar/run/pose_source.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/files/input_file.hpp>
 #include <glidar/link/socket.hpp>

@@ -9,7 +9,7 @@
 #include <apps/glidar/run/recorded_command.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/link/error_log.hpp>
-#include <glidar/link/lockstep/server.hpp>
+#include <glidar/link/lockstep.hpp>
 #include <glidar/link/payload.hpp>
 
 #include <nlohmann/json_fwd.hpp>

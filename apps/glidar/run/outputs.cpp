@@ -6,7 +6,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
-#include <glidar/io/ros/image_transport.hpp>
+#include <glidar/io/ros/published_rig.hpp>
 #include <glidar/output/network.hpp>
 #include <glidar/output/rig_messages.hpp>
 

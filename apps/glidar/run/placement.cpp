@@ -6,7 +6,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/model.hpp>
-#include <glidar/sensor/lidar_placement.hpp>
 #include <glidar/sensor/view_placement.hpp>
 
 #include <string>

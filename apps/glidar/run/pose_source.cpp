@@ -4,7 +4,7 @@
 
 #include <apps/glidar/run/placement.hpp>
 #include <glidar/core/pose.hpp>
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 
 #include <fmt/format.h>
 

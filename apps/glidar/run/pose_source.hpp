@@ -5,9 +5,9 @@
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/core/beams.hpp>
-#include <glidar/link/lockstep/messages.hpp>
+#include <glidar/link/lockstep.hpp>
 #include <glidar/motion/motion.hpp>
-#include <glidar/woods2016/pose_receiver.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include <chrono>
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include <apps/glidar/run/ros2_link.hpp>
 
 #include <apps/glidar/options/message_options.hpp>
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/output/network.hpp>
 #include <glidar/sensor/sensor.hpp>
 

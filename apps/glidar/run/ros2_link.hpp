@@ -7,7 +7,6 @@
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/prepared_scene.hpp>
 #include <glidar/link/dds/participant.hpp>
-#include <glidar/link/dds/subscribers.hpp>
 #include <glidar/link/error_log.hpp>
 #include <glidar/output/output.hpp>
 

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <apps/glidar/options/stream_options.hpp>
-#include <glidar/woods2016/cloud_publisher.hpp>
-#include <glidar/woods2016/pose_receiver.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include <array>
 #include <chrono>

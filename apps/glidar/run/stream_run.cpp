@@ -14,12 +14,11 @@
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/stream_report.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/link/recording.hpp>
-#include <glidar/woods2016/cloud_publisher.hpp>
-#include <glidar/woods2016/pose_receiver.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include <fmt/format.h>
 

@@ -17,7 +17,7 @@
 #include <glidar/link/error_log.hpp>
 #include <glidar/link/recording.hpp>
 #include <glidar/output/output.hpp>
-#include <glidar/woods2016/cloud_publisher.hpp>
+#include <glidar/woods2016/protocol.hpp>
 
 #include <map>
 #include <memory>

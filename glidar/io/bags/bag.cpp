@@ -3,14 +3,11 @@
 #include <glidar/io/bags/bag.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag_file.hpp>
+#include <glidar/io/bags/bag_formats.hpp>
 #include <glidar/io/bags/bag_records.hpp>
-#include <glidar/io/bags/mcap_reader.hpp>
-#include <glidar/io/bags/mcap_writer.hpp>
-#include <glidar/io/bags/rosbag1_reader.hpp>
-#include <glidar/io/bags/rosbag1_writer.hpp>
-#include <glidar/io/bags/rosbag2_reader.hpp>
-#include <glidar/io/bags/rosbag2_writer.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
+
+#include <fmt/format.h>
 
 #include <system_error>
 
@@ -61,7 +58,12 @@ std::unique_ptr<BagWriter> create_bag(const std::filesystem::path& path,
     case BagFormat::rosbag1:
       break;
   }
-  return std::make_unique<Rosbag1Writer>(name, options);
+  const std::string stem = name.stem().string();
+  throw Error(
+      {path.string(), "bags of ROS 1 are not written", ".mcap .rosbag2",
+       fmt::format("write {0}.rosbag2, then `rosbags-convert --src {0}.rosbag2 --dst {0}.bag`"
+                   " (pip install rosbags)",
+                   stem)});
 }
 
 std::unique_ptr<BagReader> open_bag(const std::filesystem::path& path) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/file_text.hpp>
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -19,14 +19,14 @@ namespace glidar::bags {
 enum class BagFormat : std::uint8_t {
   mcap,     ///< NAME.mcap, one file: mcap.dev/spec
   rosbag2,  ///< NAME.rosbag2, a folder with metadata.yaml
-  rosbag1,  ///< NAME.bag, one file of ROS 1: wiki.ros.org/Bags/Format/2.0
+  rosbag1,  ///< NAME.bag, one file of ROS 1: wiki.ros.org/Bags/Format/2.0; only read
 };
 
 /// True for paths that name a bag: .mcap, .rosbag2 and .bag, and existing folders with a
 /// metadata.yaml.
 bool is_bag_path(const std::filesystem::path& path);
 
-/// True for the names of new bags: with the suffix .mcap, .rosbag2 or .bag.
+/// True for names with the suffix .mcap, .rosbag2 or .bag.
 bool is_bag_name(const std::filesystem::path& path);
 
 /// Throws Error naming the suffixes.
@@ -35,7 +35,7 @@ BagFormat bag_format_for(const std::filesystem::path& path);
 enum class Compression : std::uint8_t { none, lz4, zstd };
 
 struct BagOptions {
-  Compression compression = Compression::none;  ///< of chunks; rosbag1: none or lz4
+  Compression compression = Compression::none;  ///< of chunks
   bool mcap_storage = false;                    ///< rosbag2: one MCAP file instead of SQLite
 };
 
@@ -43,8 +43,8 @@ struct BagOptions {
 /// remains, and an existing bag stays unchanged.
 using BagWriter = ros::MessageSink;
 
-/// A new bag, in the format of the path's suffix. Throws Error when the suffix is unknown, an
-/// option does not fit the format, or nothing can be created in the folder.
+/// A new bag, in the format of the path's suffix. Throws Error when the suffix is unknown or that
+/// of ROS 1, an option does not fit the format, or nothing can be created in the folder.
 std::unique_ptr<BagWriter> create_bag(const std::filesystem::path& path,
                                       const BagOptions& options = {});
 

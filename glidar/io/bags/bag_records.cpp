@@ -3,8 +3,7 @@
 #include <glidar/io/bags/bag_records.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/byte_reader.hpp>
-#include <glidar/io/bags/byte_writer.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>

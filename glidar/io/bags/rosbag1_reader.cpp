@@ -1,14 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/bags/rosbag1_reader.hpp>
+#include <glidar/io/bags/bag_formats.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/bags/bag_file.hpp>
-#include <glidar/io/bags/byte_reader.hpp>
-#include <glidar/io/bags/chunk_codec.hpp>
-#include <glidar/io/bags/chunk_merger.hpp>
-#include <glidar/io/bags/rosbag1_records.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
 
 #include <fmt/format.h>
 
@@ -20,7 +16,17 @@
 namespace glidar::bags {
 namespace {
 
-using Rosbag1Op = rosbag1::Op;
+// wiki.ros.org/Bags/Format/2.0
+
+constexpr std::string_view kRosbag1Magic = "#ROSBAG V2.0\n";
+
+enum class Rosbag1Op : std::uint8_t {
+  message = 0x02,
+  bag_header = 0x03,
+  chunk = 0x05,
+  chunk_info = 0x06,
+  connection = 0x07,
+};
 
 /// Of headers, and of the data of records other than chunks.
 constexpr std::uint32_t kMaxHeader = std::uint32_t{16} << 20U;
@@ -28,8 +34,6 @@ constexpr std::uint32_t kMaxHeader = std::uint32_t{16} << 20U;
 /// The fields of a header, which refer to its bytes.
 class BagFields {
  public:
-  static constexpr std::size_t kMaxFields = 100;
-
   explicit BagFields(std::span<const std::byte> bytes, std::string place)
       : place_(std::move(place)) {
     ByteReader reader(bytes, place_);
@@ -39,7 +43,7 @@ class BagFields {
       if (equals == field.end()) reader.reject("a field without '='");
       const auto name_size = static_cast<std::size_t>(equals - field.begin());
       const std::string_view name(reinterpret_cast<const char*>(field.data()), name_size);
-      if (fields_.size() == kMaxFields) reader.reject("a header of more than 100 fields");
+      if (fields_.size() == 100) reader.reject("a header of more than 100 fields");
       fields_.insert_or_assign(name, field.subspan(name_size + 1));
     }
   }
@@ -95,8 +99,11 @@ class Rosbag1Reader : public BagReader {
  public:
   Rosbag1Reader(const std::filesystem::path& path, SharedBudget budget)
       : file_(path), budget_(std::move(budget)) {
-    check_start();
-    std::uint64_t at = rosbag1::kMagic.size();
+    const auto magic = std::as_bytes(std::span(kRosbag1Magic));
+    const auto start = file_.peek(0, std::min<std::uint64_t>(magic.size(), file_.size()));
+    if (!std::ranges::equal(start, magic))
+      reject_bag(file_.place(0), "no bag of ROS 1", "a file that begins with #ROSBAG V2.0");
+    std::uint64_t at = kRosbag1Magic.size();
     while (at < file_.size()) at = scan_record(at);
     std::vector<ChunkRange> ranges;
     for (const Rosbag1Chunk& chunk : chunks_) {
@@ -120,17 +127,9 @@ class Rosbag1Reader : public BagReader {
   bool next(BagMessage& message) override { return merger_->next(message); }
 
  private:
-  void check_start() {
-    const std::size_t size = rosbag1::kMagic.size();
-    const auto bytes = file_.peek(0, std::min<std::uint64_t>(size, file_.size()));
-    const auto magic = std::as_bytes(std::span(rosbag1::kMagic));
-    if (std::equal(bytes.begin(), bytes.end(), magic.begin(), magic.end())) return;
-    reject_bag(file_.place(0), "no bag of ROS 1", "a file that begins with #ROSBAG V2.0");
-  }
-
   std::uint32_t size_at(std::uint64_t at) {
-    ByteReader reader(file_.peek(at, sizeof(std::uint32_t)), file_.place(at));
-    return reader.number<std::uint32_t>();
+    return ByteReader(file_.peek(at, sizeof(std::uint32_t)), file_.place(at))
+        .number<std::uint32_t>();
   }
 
   /// Returns the place of the next record.
@@ -146,7 +145,9 @@ class Rosbag1Reader : public BagReader {
       reject_bag(file_.place(at), "a record longer than the file");
     switch (fields.op()) {
       case Rosbag1Op::bag_header:
-        check_index(fields, at);
+        if (fields.number<std::uint64_t>("index_pos") == 0)
+          throw Error({file_.place(at), "the bag has no index", "a bag that was completed",
+                       "use `rosbag reindex`"});
         break;
       case Rosbag1Op::chunk:
         by_position_[at] = chunks_.size();
@@ -166,12 +167,6 @@ class Rosbag1Reader : public BagReader {
         break;
     }
     return data_at + data_size;
-  }
-
-  void check_index(const BagFields& fields, std::uint64_t at) {
-    if (fields.number<std::uint64_t>("index_pos") != 0) return;
-    throw Error({file_.place(at), "the bag has no index", "a bag that was completed",
-                 "use `rosbag reindex`"});
   }
 
   void add_connection(const BagFields& fields, std::uint64_t data_at, std::uint32_t data_size) {

@@ -4,8 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/bags/bag_file.hpp>
-#include <glidar/io/bags/byte_reader.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
 
 #include <fmt/format.h>
 #include <sqlite3.h>

@@ -3,8 +3,7 @@
 #include <glidar/io/bags/sqlite_bag_reader.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/bags/bag_file.hpp>
-#include <glidar/io/bags/byte_reader.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
 #include <glidar/io/bags/sqlite.hpp>
 
 #include <fmt/format.h>

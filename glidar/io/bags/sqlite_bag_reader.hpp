@@ -4,7 +4,7 @@
 
 // Private to glidar/io/bags.
 
-#include <glidar/io/bags/chunk_merger.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
 
 namespace glidar::bags {
 

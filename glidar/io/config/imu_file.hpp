@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/io/config/sensor_presets.hpp>
-#include <glidar/sensor/imu/imu.hpp>
+#include <glidar/sensor/imu.hpp>
 
 #include <filesystem>
 #include <string>

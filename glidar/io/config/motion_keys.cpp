@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/motion_keys.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/core/time_text.hpp>
+#include <glidar/io/config/field_json.hpp>
+#include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/formats/trajectory_file.hpp>
 
 #include <array>
@@ -11,6 +14,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -147,6 +151,25 @@ Pose start_pose(const Trajectory& trajectory) {
 bool visit_motion(FieldVisitor& visitor, const FieldInfo& field, MotionKeys& keys) {
   const auto body = [&](FieldVisitor& nested) { describe(keys, nested); };
   return visitor.object(field, keys.trajectory.has_value(), FieldVisitor::Describe(body));
+}
+
+std::string motion_document(const Trajectory& trajectory) {
+  MotionKeys keys;
+  keys.trajectory = trajectory;
+  const nlohmann::ordered_json document = write_struct(FieldVisitor::Mode::document, keys);
+  if (!document.empty()) return document.dump();
+  throw Error({.where = "motion",
+               .found = "a trajectory that has no such keys",
+               .allowed = "a spin, a twist or a torque-free rotation",
+               .remedy = ""});
+}
+
+Trajectory parse_motion(const std::string& text, const Pose& start, std::int64_t t0_ns) {
+  MotionKeys keys;
+  keys.start = start;
+  keys.t0_ns = t0_ns;
+  read_struct(read_yaml_text("motion", text), keys);
+  return *std::move(keys.trajectory);
 }
 
 }  // namespace glidar

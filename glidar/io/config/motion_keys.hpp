@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/io: motion as scene files describe it.
-
 #include <glidar/core/field.hpp>
 #include <glidar/motion/motion.hpp>
 
@@ -30,5 +28,13 @@ Pose start_pose(const Trajectory& trajectory);
 
 /// A motion as a nested map. Returns whether it is present.
 bool visit_motion(FieldVisitor& visitor, const FieldInfo& field, MotionKeys& keys);
+
+/// The numbers of a spin, a twist or a torque-free rotation as a JSON text with the keys of
+/// `motion` in scene files (docs/files/motion.md), without its start. parse_motion() makes the same
+/// motion from it and the start, to the last bit. Throws Error for another kind of trajectory.
+std::string motion_document(const Trajectory& trajectory);
+
+/// The motion of a text, YAML or JSON, from its pose at t0. Errors name the field.
+Trajectory parse_motion(const std::string& text, const Pose& start, std::int64_t t0_ns);
 
 }  // namespace glidar

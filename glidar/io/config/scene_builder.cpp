@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/config/scene_builder.hpp>
+#include <glidar/io/config/scene_plan.hpp>
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/mesh.hpp>
 #include <glidar/core/text.hpp>
-#include <glidar/io/config/scene_plan.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/model/model_parts.hpp>
 #include <glidar/io/model/png_texture.hpp>

@@ -5,7 +5,7 @@
 #include <glidar/core/report.hpp>
 #include <glidar/io/model/model.hpp>
 #include <glidar/motion/motion.hpp>
-#include <glidar/sensor/imu/imu.hpp>
+#include <glidar/sensor/imu.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <filesystem>

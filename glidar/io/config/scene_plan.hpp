@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -96,5 +97,18 @@ void describe(ScenePlan& plan, FieldVisitor& visitor);
 ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
 /// The same for the contents of such a file; `files` lacks the file itself.
 ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults);
+
+/// The sensors of a scene file and where they are: `sensor`, `sensor_pose` and `sensor_motion`, or
+/// `sensors`, `rig_pose` and `rig_motion`.
+void visit_rig(FieldVisitor& visitor, ScenePlan& plan);
+
+/// The key `name` of something on a rig. Returns its place in the file, for later errors.
+std::string visit_rig_name(FieldVisitor& visitor, std::string& name);
+
+using ModelLoader = std::function<Model(const std::string& source, const ModelOptions& options)>;
+
+/// Loads every model once and places its instances, in a scene that may have others. Errors of
+/// `load` state their place in the scene file.
+SceneFile build_scene(const ScenePlan& plan, const ModelLoader& load, Scene into = {});
 
 }  // namespace glidar

@@ -8,10 +8,10 @@
 #include <glidar/io/config/yaml_reader.hpp>
 #include <glidar/io/files/input_file.hpp>
 #include <glidar/io/formats/ouster_file.hpp>
-#include <glidar/io/packets/velodyne_model.hpp>
+#include <glidar/io/packets/velodyne.hpp>
 #include <glidar/math/constants.hpp>
 #include <glidar/math/elementary.hpp>
-#include <glidar/sensor/optics/spinning_keys.hpp>
+#include <glidar/sensor/optics/spinning.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

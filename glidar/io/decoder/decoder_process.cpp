@@ -3,7 +3,7 @@
 #include <glidar/io/decoder/decoder_process.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/io/decoder/import_program.hpp>
 
 #include <fcntl.h>

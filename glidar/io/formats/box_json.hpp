@@ -4,7 +4,7 @@
 
 // Private to glidar/io: boxes of objects as JSON.
 
-#include <glidar/core/object_box.hpp>
+#include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
 
 #include <nlohmann/json.hpp>

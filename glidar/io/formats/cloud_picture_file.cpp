@@ -4,8 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/pictures/chart.hpp>
-#include <glidar/io/pictures/font.hpp>
-#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/io/pictures/picture.hpp>
 #include <glidar/io/pictures/point_image.hpp>
 #include <glidar/math/portable.hpp>
 

@@ -3,7 +3,7 @@
 #include <glidar/io/formats/format.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/io/pictures/picture.hpp>
 #include <glidar/math/portable.hpp>
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/pose.hpp>
-#include <glidar/sensor/imu/imu_samples.hpp>
+#include <glidar/sensor/imu.hpp>
 
 #include <filesystem>
 #include <span>

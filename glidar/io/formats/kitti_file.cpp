@@ -3,7 +3,7 @@
 #include <glidar/io/formats/kitti_file.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/object_box.hpp>
+#include <glidar/core/frame.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/formats/point_rows.hpp>
 

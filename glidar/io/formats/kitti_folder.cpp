@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/kitti_folder.hpp>
 
-#include <glidar/core/object_box.hpp>
+#include <glidar/core/frame.hpp>
 #include <glidar/io/formats/kitti_file.hpp>
 #include <glidar/io/formats/kitti_labels.hpp>
 

@@ -12,7 +12,6 @@
 #include <glidar/io/formats/kitti_folder.hpp>
 #include <glidar/io/formats/truth_images.hpp>
 #include <glidar/io/pictures/picture.hpp>
-#include <glidar/io/pictures/png_image.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -5,7 +5,7 @@
 #include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
 #include <glidar/io/pictures/chart.hpp>
-#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/io/pictures/picture.hpp>
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <glidar/io/files/input_file.hpp>
 #include <glidar/io/files/npy_head.hpp>
 #include <glidar/io/formats/npy_file.hpp>
-#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/io/pictures/picture.hpp>
 
 #include <algorithm>
 #include <array>

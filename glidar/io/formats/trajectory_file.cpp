@@ -5,7 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/time_text.hpp>
 #include <glidar/io/bags/bag.hpp>
-#include <glidar/io/bags/bag_poses.hpp>
+#include <glidar/io/bags/bag_contents.hpp>
 #include <glidar/io/files/input_file.hpp>
 
 #include <algorithm>

@@ -3,7 +3,8 @@
 #include <glidar/io/packets/sensor_packets.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/packets/hesai_codec.hpp>
+#include <glidar/io/packets/hesai.hpp>
+#include <glidar/io/packets/ouster.hpp>
 #include <glidar/math/constants.hpp>
 
 #include <algorithm>
@@ -123,6 +124,48 @@ void SensorPackets::encode_imu(std::int64_t from_ns, std::int64_t until_ns,
     packets.push_back(is_livox_ ? livox_imu_packet(samples, i)
                                 : ouster_imu_packet(samples, i, imu_port_));
   }
+}
+
+bool is_capture_name(const std::filesystem::path& path) {
+  return path.extension() == ".pcap";
+}
+
+PacketWriter::PacketWriter(const std::filesystem::path& path, const Sensor& sensor,
+                           const PacketOptions& options, PacketImuSampler imu_samples)
+    : packets_(sensor, options, std::move(imu_samples)),
+      pcap_(path),
+      path_(path),
+      metadata_(is_ouster(sensor) ? ouster_metadata(sensor, options.ouster) : "") {}
+
+void PacketWriter::write(const Frame& frame, const Beams& beams) {
+  packets_.encode(frame, beams, made_);
+  write_packets();
+}
+
+void PacketWriter::write_packets() {
+  for (const UdpPacket& packet : made_) pcap_.write(packet);
+  count_ += made_.size();
+  made_.clear();
+}
+
+std::vector<std::filesystem::path> PacketWriter::files() const {
+  if (metadata_.empty()) return {path_};
+  return {path_, std::filesystem::path(path_).replace_extension(".json")};
+}
+
+void PacketWriter::finish() {
+  packets_.finish(made_);
+  write_packets();
+  pcap_.finish();
+  if (!metadata_.empty()) {
+    AtomicFile json(files().back());
+    json.write(metadata_);
+    json.finish();
+    pcap_.commit();
+    json.commit();
+    return;
+  }
+  pcap_.commit();
 }
 
 }  // namespace glidar

@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -46,5 +47,11 @@ BeamPicture make_beam_picture(const Beams& beams, std::span<const double> range_
 /// The picture of a camera of this size: its pixels unchanged.
 BeamPicture make_image_picture(std::uint32_t rows, std::uint32_t cols,
                                std::uint32_t number_of_return = 0);
+
+/// Writes a PNG of the beam directions: azimuth (left of the boresight is left) and elevation in
+/// degrees, with axes, coloured by firing time, or by ring when all fire at the same time. For
+/// images a part of the pixels is drawn. Throws Error when there is no beam or the file cannot be
+/// written.
+void write_pattern_picture(const Beams& beams, const std::filesystem::path& path);
 
 }  // namespace glidar

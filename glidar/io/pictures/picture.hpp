@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/files/atomic_file.hpp>
+
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace glidar {
@@ -52,5 +56,23 @@ Colour hue(double turn);
 /// Colours of categories, with large differences between consecutive ones: twelve fixed ones that
 /// are visible on a dark background, then hues at golden-ratio steps.
 Colour category_colour(std::uint32_t number);
+
+enum class PngKind : std::uint8_t { grey8, grey16, rgb8, rgb16, rgba8 };
+
+/// Pixels row by row from the top, without padding; 16-bit numbers in memory order.
+struct PngImage {
+  PngKind kind = PngKind::rgb8;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::span<const std::byte> pixels;
+  std::string description;  ///< text stored in the file; empty: none
+};
+
+/// Writes a PNG. Throws Error when it cannot be written.
+void write_png(const PngImage& image, AtomicFile& file);
+void write_png(const Picture& picture, const std::string& description, AtomicFile& file);
+
+/// The bytes of a PNG file. Throws Error when the system has no memory for them.
+std::vector<std::byte> encode_png(const PngImage& image);
 
 }  // namespace glidar

@@ -11,11 +11,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace glidar::ros {
+
+/// Sorts point indices by their times, stably. A time is that of times_ns[point].
+void sort_by_time(std::span<const std::uint32_t> times_ns, std::vector<std::uint32_t>& points);
 
 /// What a cloud was measured with.
 struct CloudSource {
@@ -92,5 +96,16 @@ CustomMsg to_custom_msg(const PointCloud& cloud, const CloudSource& source,
 
 /// The columns by which the rows of an Ouster's images are shifted: pixel_shift_by_row.
 std::vector<std::size_t> row_shifts(const Sensor& sensor, const Beams& beams);
+
+/// The points of a message with any fields, offsets and byte order, in the frame
+/// message.header.frame_id. x, y and z become the column `xyz`; other fields become columns of
+/// their name, see FileText::column_name(), with a number if that is in use: a_b and a.b become a_b
+/// and a_b_2. Signed integers become int64. Throws Error when sizes contradict each other,
+/// fields overlap or repeat, or x, y or z are missing or no floats.
+PointCloud to_point_cloud(const PointCloud2& message);
+
+/// The same for a CustomMsg: columns xyz, reflectivity, tag, line and offset_time, ns since
+/// timebase.
+PointCloud to_point_cloud(const CustomMsg& message);
 
 }  // namespace glidar::ros

@@ -10,10 +10,9 @@
 #include <glidar/io/formats/box_json.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/pictures/picture.hpp>
-#include <glidar/io/ros/image_message.hpp>
-#include <glidar/io/ros/laser_scan.hpp>
 #include <glidar/io/ros/messages.hpp>
 #include <glidar/io/ros/pose_message.hpp>
+#include <glidar/io/ros/sensor_topics.hpp>
 #include <glidar/motion/kinematics.hpp>
 
 #include <algorithm>
@@ -174,7 +173,7 @@ RigMotionPublisher::RigMotionPublisher(MessageSink& sink, const PublishedRig& ri
 
 template <class Message>
 void RigMotionPublisher::write(std::size_t topic, std::int64_t time_ns, const Message& message) {
-  serialize_to(message, sink_.wire(), bytes_);
+  serialize_to(message, bytes_);
   sink_.write(topic, time_ns, bytes_);
 }
 
@@ -467,7 +466,7 @@ template <class Message>
 void RigPublisher::hold(std::size_t topic, std::int64_t stamp_ns, std::int64_t time_ns,
                         const Message& message) {
   held_.hold({.time_ns = stamp_ns, .topic = std::nullopt, .bytes = {}});
-  held_.hold(topic, time_ns, message, sink_.wire());
+  held_.hold(topic, time_ns, message);
 }
 
 void RigPublisher::hold_cloud(std::size_t sensor, const CloudSource& source, std::int64_t end_ns) {

@@ -5,9 +5,7 @@
 #include <glidar/core/frame.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/ros/cloud_message.hpp>
-#include <glidar/io/ros/frame_arrivals.hpp>
-#include <glidar/io/ros/held_messages.hpp>
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 #include <glidar/io/ros/published_rig.hpp>
 #include <glidar/io/ros/sensor_topics.hpp>

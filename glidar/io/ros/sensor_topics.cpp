@@ -4,17 +4,70 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/packets/velodyne_packet.hpp>
+#include <glidar/io/packets/velodyne.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <utility>
 #include <variant>
 
 namespace glidar::ros {
+namespace {
+
+constexpr std::int64_t kAlways_ns = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
+bool FrameArrivals::add(std::size_t sensor, std::int64_t start_ns, std::int64_t duration_ns) {
+  const bool is_in_order = !last_start_ns_ || start_ns >= *last_start_ns_;
+  if (!is_in_order) std::fill(sensors_.begin(), sensors_.end(), SensorFrames{});
+  last_start_ns_ = start_ns;
+  sensors_[sensor] = {.start_ns = start_ns,
+                      .next_start_ns = start_ns + duration_ns,
+                      .next_end_ns = start_ns + 2 * duration_ns};
+  return is_in_order;
+}
+
+std::int64_t FrameArrivals::complete_ns() const {
+  if (!last_start_ns_) return std::numeric_limits<std::int64_t>::min();
+  std::int64_t complete_ns = kAlways_ns;
+  for (const SensorFrames& frames : sensors_) {
+    const bool is_complete = is_periodic_ ? frames.start_ns.has_value()  //
+                                          : frames.start_ns == last_start_ns_;
+    if (!is_complete) return *last_start_ns_;
+    if (is_periodic_) complete_ns = std::min(complete_ns, frames.next_start_ns);
+  }
+  return std::max(complete_ns, *last_start_ns_);
+}
+
+std::optional<std::int64_t> FrameArrivals::next_end_ns() const {
+  std::optional<std::int64_t> end_ns;
+  for (const SensorFrames& frames : sensors_) {
+    if (!frames.start_ns) continue;
+    end_ns = std::min(end_ns.value_or(kAlways_ns), frames.next_end_ns);
+  }
+  return end_ns;
+}
+
+void HeldMessages::hold(Held message) {
+  const auto is_earlier = [](std::int64_t time_ns, const Held& held) {
+    return time_ns < held.time_ns;
+  };
+  const auto place = std::upper_bound(held_.begin(), held_.end(), message.time_ns, is_earlier);
+  held_.insert(place, std::move(message));
+}
+
+std::optional<HeldMessages::Held> HeldMessages::release(std::int64_t until_ns) {
+  if (held_.empty() || held_.front().time_ns > until_ns) return std::nullopt;
+  Held message = std::move(held_.front());
+  held_.pop_front();
+  return message;
+}
+
 namespace {
 
 const PublishedPackets& packets_of(const PublishedSensor& sensor) {
@@ -301,7 +354,7 @@ void PacketTopics::hold_packets(HeldMessages& held) {
     PacketMsg message;
     message.buf.resize(packet.payload.size());
     std::memcpy(message.buf.data(), packet.payload.data(), packet.payload.size());
-    held.hold(topic, packet.stamp_ns, message, sink_.wire());
+    held.hold(topic, packet.stamp_ns, message);
   }
   made_.clear();
 }
@@ -323,7 +376,7 @@ void PacketTopics::hold_scan(HeldMessages& held) {
   made_.clear();
   if (scan.packets.empty() || !sink_.is_wanted(packets_topic_)) return;
   scan.header.stamp = time_from_ns(last_ns);
-  held.hold(packets_topic_, last_ns, scan, sink_.wire());
+  held.hold(packets_topic_, last_ns, scan);
 }
 
 bool is_camera(const Sensor& sensor) {

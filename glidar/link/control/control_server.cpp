@@ -5,7 +5,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/files/unique_fd.hpp>
 #include <glidar/io/packets/packet_bytes.hpp>
-#include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/livox_commands.hpp>
 #include <glidar/link/control/tcp_service.hpp>
 #include <glidar/link/udp/packet_sender.hpp>

@@ -3,7 +3,7 @@
 #include <glidar/link/control/livox_commands.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/packets/livox_packet.hpp>
+#include <glidar/io/packets/livox.hpp>
 #include <glidar/io/packets/packet_bytes.hpp>
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Instead of tcp_service.cpp and http_conversation.cpp in builds without Boost.
+// Instead of tcp_service.cpp in builds without Boost.
 #include <glidar/core/error.hpp>
-#include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/tcp_service.hpp>
 
 namespace glidar::control {

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/link/dds/participant.hpp>
-#include <glidar/link/dds/publications.hpp>
 #include <glidar/link/dds/topics.hpp>
 #include <glidar/link/dds/wake_up.hpp>
 #include <glidar/link/payload.hpp>
@@ -28,7 +27,6 @@ class MessageSink final : public ros::MessageSink {
   /// The participant must outlive it. Throws Error when the namespace is not valid.
   MessageSink(const Participant& participant, MessageSinkOptions options);
 
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
   std::size_t add_topic(const ros::Topic& topic) override;
   /// Whether a node reads the topic. The last message of a transient local topic is always wanted.
   [[nodiscard]] bool is_wanted(std::size_t topic) const override;

@@ -106,17 +106,17 @@ std::vector<FramedPose> poses_of(const ros::TFMessage& message) {
 std::vector<FramedPose> decode_poses(const ros::MessageType& type,
                                      std::span<const std::byte> message) {
   if (&type == &ros::message_type<ros::TFMessage>())
-    return poses_of(ros::deserialize<ros::TFMessage>(message, ros::Wire::cdr));
+    return poses_of(ros::deserialize<ros::TFMessage>(message));
   if (&type == &ros::message_type<ros::Odometry>()) {
-    const auto odometry = ros::deserialize<ros::Odometry>(message, ros::Wire::cdr);
+    const auto odometry = ros::deserialize<ros::Odometry>(message);
     return {checked_pose(odometry.header, &odometry.child_frame_id, ros::timed_pose(odometry))};
   }
-  const auto pose = ros::deserialize<ros::PoseStamped>(message, ros::Wire::cdr);
+  const auto pose = ros::deserialize<ros::PoseStamped>(message);
   return {checked_pose(pose.header, nullptr, ros::timed_pose(pose))};
 }
 
 std::int64_t decode_clock(std::span<const std::byte> message) {
-  const auto clock = ros::deserialize<ros::Clock>(message, ros::Wire::cdr);
+  const auto clock = ros::deserialize<ros::Clock>(message);
   require_stamp(clock.clock);
   return ros::to_ns(clock.clock);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/message_types.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/message_types.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/link/dds/participant.hpp>
 #include <glidar/link/dds/wake_up.hpp>
 #include <glidar/link/payload.hpp>

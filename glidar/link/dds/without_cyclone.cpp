@@ -3,8 +3,6 @@
 // Instead of the files that include Cyclone DDS in builds without it.
 #include <glidar/core/error.hpp>
 #include <glidar/link/dds/participant.hpp>
-#include <glidar/link/dds/publications.hpp>
-#include <glidar/link/dds/subscribers.hpp>
 #include <glidar/link/dds/topics.hpp>
 
 namespace glidar::dds {

@@ -26,7 +26,7 @@ std::size_t RosChannels::add_topic(const ros::Topic& topic) {
   const ChannelId channel =
       server_.add_channel({.topic = topic.name,
                            .schema_name = std::string(topic.type->name),
-                           .schema = definition_text(*topic.type, ros::Wire::cdr),
+                           .schema = definition_text(*topic.type),
                            .depth = topic.qos.transient_local ? 1 : depth_of(*topic.type)});
   topics_.push_back(
       {.channel = channel, .is_clock = topic.type == &ros::message_type<ros::Clock>()});

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/link/foxglove/server.hpp>
 #include <glidar/link/payload.hpp>
 
@@ -22,7 +22,6 @@ class RosChannels final : public ros::MessageSink {
   RosChannels(FoxgloveServer& server, bool keeps_newest)
       : server_(server), keeps_newest_(keeps_newest) {}
 
-  [[nodiscard]] ros::Wire wire() const override { return ros::Wire::cdr; }
   std::size_t add_topic(const ros::Topic& topic) override;
   [[nodiscard]] bool is_wanted(std::size_t topic) const override;
   /// A message of the type Clock also sets the time that clients show.

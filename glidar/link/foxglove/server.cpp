@@ -3,9 +3,8 @@
 #include <glidar/link/foxglove/server.hpp>
 
 #include <glidar/core/text.hpp>
-#include <glidar/link/foxglove/client_session.hpp>
-#include <glidar/link/foxglove/http_routes.hpp>
 #include <glidar/link/foxglove/hub.hpp>
+#include <glidar/link/foxglove/protocol.hpp>
 #include <glidar/link/http_parser.hpp>
 
 #include <boost/asio/io_context.hpp>

@@ -4,7 +4,7 @@
 
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/error_log.hpp>
-#include <glidar/link/foxglove/messages.hpp>
+#include <glidar/link/foxglove/protocol.hpp>
 #include <glidar/link/http_guard.hpp>
 #include <glidar/link/payload.hpp>
 

@@ -4,7 +4,6 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/render/gpu/device_batch.hpp>
-#include <glidar/render/gpu/device_check.hpp>
 #include <glidar/render/opengl/draw_state.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/pieces_renderer.hpp>

@@ -4,17 +4,31 @@
 
 #include <epoxy/gl.h>
 
+#include <initializer_list>
+#include <string_view>
 #include <utility>
 
 namespace glidar::opengl {
 
+enum class GlKind : unsigned char {
+  buffer,
+  vertex_array,
+  texture,
+  framebuffer,
+  renderbuffer,
+  program
+};
+
+GLuint make_gl_object(GlKind kind);
+void delete_gl_object(GlKind kind, GLuint name);
+
 /// Owns one OpenGL object; the context it was made in must be current when it is deleted.
-template <class Kind>
+template <GlKind kKind>
 class GlObject {
  public:
-  GlObject() : name_(Kind::make()) {}
+  GlObject() : name_(make_gl_object(kKind)) {}
   ~GlObject() {
-    if (name_ != 0) Kind::drop(name_);
+    if (name_ != 0) delete_gl_object(kKind, name_);
   }
   GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
   GlObject& operator=(GlObject&& other) noexcept {
@@ -30,62 +44,12 @@ class GlObject {
   GLuint name_;
 };
 
-struct BufferKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenBuffers(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteBuffers(1, &name); }
-};
-
-struct VertexArrayKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenVertexArrays(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteVertexArrays(1, &name); }
-};
-
-struct TextureKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteTextures(1, &name); }
-};
-
-struct FramebufferKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenFramebuffers(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteFramebuffers(1, &name); }
-};
-
-struct RenderbufferKind {
-  static GLuint make() {
-    GLuint name = 0;
-    glGenRenderbuffers(1, &name);
-    return name;
-  }
-  static void drop(GLuint name) { glDeleteRenderbuffers(1, &name); }
-};
-
-struct ProgramKind {
-  static GLuint make() { return glCreateProgram(); }
-  static void drop(GLuint name) { glDeleteProgram(name); }
-};
-
-using Buffer = GlObject<BufferKind>;
-using VertexArray = GlObject<VertexArrayKind>;
-using GlTexture = GlObject<TextureKind>;
-using Framebuffer = GlObject<FramebufferKind>;
-using Renderbuffer = GlObject<RenderbufferKind>;
-using Program = GlObject<ProgramKind>;
+using Buffer = GlObject<GlKind::buffer>;
+using VertexArray = GlObject<GlKind::vertex_array>;
+using GlTexture = GlObject<GlKind::texture>;
+using Framebuffer = GlObject<GlKind::framebuffer>;
+using Renderbuffer = GlObject<GlKind::renderbuffer>;
+using Program = GlObject<GlKind::program>;
 
 /// Throws Error with a remedy for a glGetGraphicsResetStatus() other than GL_NO_ERROR.
 void check_reset(GLenum status);
@@ -96,5 +60,23 @@ void check_not_lost();
 
 /// Throws Error when OpenGL reports an error since the last call. `doing` names the operation.
 void check_gl(const char* doing);
+
+/// Text of a file of a folder shaders/, embedded in the library; throws std::out_of_range for
+/// unknown names.
+std::string_view shader_text(std::string_view file);
+
+/// Texts of each stage, which are concatenated, and macros for their compilation.
+struct ProgramSource {
+  std::initializer_list<std::string_view> vertex;
+  std::initializer_list<std::string_view> fragment;
+  std::initializer_list<std::string_view> macros;
+};
+
+/// Compiles and links for GLSL 3.30. Throws Error with the driver's log on failure.
+Program make_program(const ProgramSource& source);
+
+/// The same for a compute shader and GLSL 4.30.
+Program make_compute_program(std::initializer_list<std::string_view> texts,
+                             std::initializer_list<std::string_view> macros);
 
 }  // namespace glidar::opengl

@@ -1,28 +1,48 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/raster/raster_renderer.hpp>
+#include <glidar/render/cpu_base.hpp>
 
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/hit_writer.hpp>
 #include <glidar/render/pinhole_only.hpp>
-#include <glidar/render/plane_points.hpp>
 #include <glidar/render/raster/cluster_drawing.hpp>
 #include <glidar/render/raster/packed_mesh.hpp>
-#include <glidar/render/raster/tile_grid.hpp>
-#include <glidar/render/raster/visible_clusters.hpp>
 #include <glidar/render/rays/tile_cast.hpp>
-#include <glidar/render/workspace_pool.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
 namespace glidar {
+
+/// Workspaces that threads acquire and release; they are kept for later casts.
+template <class T>
+class WorkspacePool {
+ public:
+  std::unique_ptr<T> acquire() {
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) return std::make_unique<T>();
+    std::unique_ptr<T> taken = std::move(free_.back());
+    free_.pop_back();
+    return taken;
+  }
+  void release(std::unique_ptr<T> taken) {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(std::move(taken));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<T>> free_;
+};
+
 namespace {
 
 using raster::DrawContext;

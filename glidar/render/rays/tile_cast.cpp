@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/tile_cast.hpp>
 
-#include <glidar/core/progress_counter.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/math/simd.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/rays/tiles.hpp>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/render/cpu_base.hpp>
-#include <glidar/render/plane_points.hpp>
+#include <glidar/render/grid_window.hpp>
 #include <glidar/render/renderer.hpp>
 
 #include <cstdint>

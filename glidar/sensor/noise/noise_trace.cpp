@@ -3,7 +3,7 @@
 #include <glidar/sensor/noise/noise_trace.hpp>
 
 #include <glidar/sensor/noise/noise.hpp>
-#include <glidar/sensor/noise/sampler.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
 
 namespace glidar {
 

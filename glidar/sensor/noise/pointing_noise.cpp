@@ -5,7 +5,7 @@
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/math/elementary.hpp>
 #include <glidar/math/simd.hpp>
-#include <glidar/sensor/noise/sampler.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
 
 #include <Eigen/Geometry>
 

@@ -6,8 +6,12 @@
 #include <glidar/core/field.hpp>
 #include <glidar/sensor/optics/firing_schedule.hpp>
 
+#include <Eigen/Core>
+
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <variant>
 
 namespace glidar {
@@ -134,5 +138,58 @@ Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y
 /// One beam per pixel, all at the start of the interval. Pixels at which the distortion model is
 /// not invertible have no beam. Throws Error if a number is out of range.
 Beams make_beams(const Pinhole& pinhole, const FrameInterval& interval = {});
+
+/// Derivative of a place of the image by the point that is imaged there.
+using ImageDerivative = Eigen::Matrix<double, 2, 3>;
+
+/// How far from the axis a model is followed: a radius of the plane z = 1 (radial_tangential, fov),
+/// an angle (fisheye), or a radius of the undistorted image (omni). Beyond it, the model has folded
+/// over.
+double distortion_limit(const Distortion& model);
+
+/// The unit ray through a place of the image; NaN if there is none. Places count in focal lengths
+/// from the principal point; of equirectangular images they are longitude and latitude.
+Eigen::Vector3d undistorted_ray(const Distortion& model, const Eigen::Vector2d& place);
+
+/// The inverse: where a point of the optical frame is imaged. Empty if it is not seen, also where
+/// the model has folded over. `limit` is distortion_limit(model).
+std::optional<Eigen::Vector2d> imaged(const Distortion& model, double limit,
+                                      const Eigen::Vector3d& point);
+
+/// Derivative of imaged(), where there is an image.
+ImageDerivative imaged_derivative(const Distortion& model, const Eigen::Vector3d& point);
+
+/// Finds the pixels of points, the inverse of make_beams(pinhole).
+class PinholeProjection {
+ public:
+  explicit PinholeProjection(const Pinhole& pinhole);
+
+  /// Column and row of the image of a point in the optical frame, where whole numbers are centres
+  /// of pixels, also outside the image. Empty when the camera does not see it: a point behind it,
+  /// unless the model looks back, or where the distortion model has folded over.
+  [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& point) const;
+  /// Derivative of pixel_of(), pixels per metre; NaN or infinite where there is no image.
+  [[nodiscard]] Eigen::Matrix<double, 2, 3> pixel_derivative(const Eigen::Vector3d& point) const;
+  /// The unit ray through a place of the image; NaN if there is none.
+  [[nodiscard]] Eigen::Vector3d ray_through(const Eigen::Vector2d& pixel) const;
+
+ private:
+  Pinhole pinhole_;
+  double limit_;  ///< distortion_limit()
+};
+
+/// A camera with `sub_rays` x `sub_rays` pixels in place of each: the centre of each block is the
+/// centre of a pixel. The distortion is the same.
+Pinhole divide_pixels(const Pinhole& camera, std::uint32_t sub_rays);
+
+/// Throws Error when an image has too many rays for the memory.
+void check_sub_rays(const PinholeIntrinsics& image, std::uint32_t sub_rays);
+
+/// The index of ray i of sub_rays^2 of a pixel, of a camera with this number of columns.
+inline std::size_t ray_of_pixel(std::size_t columns, std::size_t sub_rays, std::size_t pixel,
+                                std::size_t i) {
+  const std::size_t row = pixel / columns * sub_rays + i / sub_rays;
+  return row * columns * sub_rays + pixel % columns * sub_rays + i % sub_rays;
+}
 
 }  // namespace glidar

@@ -4,7 +4,7 @@
 
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/model/builtin_models.hpp>
-#include <glidar/link/lockstep/messages.hpp>
+#include <glidar/link/lockstep.hpp>
 
 #include "support/data.hpp"
 #include "support/error_text.hpp"

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads the bags of glidar_bag_files with readers that share nothing with the writers.
 
-usage: bag_readers_test.py PROGRAM rosbags|mcap|ros1
+usage: bag_readers_test.py PROGRAM rosbags|mcap
 """
 
 import functools
@@ -25,11 +25,6 @@ def topic_of(entry):
     return "/" + entry["ros1_name"].split("/")[1]
 
 
-def name_in_ros1(entry):
-    """As rosbags spells it: with "msg/"."""
-    return entry["ros1_name"].replace("/", "/msg/")
-
-
 def types():
     return json.loads((FOLDER / "types.json").read_text())
 
@@ -40,58 +35,49 @@ def known_types(store):
 
 
 class RosbagsTest(unittest.TestCase):
-    """rosbags: types, MD5 sums and hashes computed from definitions, and bytes serialized again."""
+    """rosbags: types and hashes computed from definitions, and bytes serialized again."""
 
     @staticmethod
     @functools.cache
-    def store(ros):
+    def store():
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
         store = get_typestore(Stores.EMPTY)
         for entry in types():
-            definitions = get_types_from_msg(entry["ros2msg" if ros == 2 else "ros1msg"], entry["name"])
+            definitions = get_types_from_msg(entry["ros2msg"], entry["name"])
             known = known_types(store)
             store.register({name: value for name, value in definitions.items() if name not in known})
         return store
 
-    def test_hashes_and_sums_follow_from_the_definitions(self):
-        for ros in (1, 2):
-            store = self.store(ros)
-            for entry in types():
-                with self.subTest(entry["name"], ros=ros):
-                    if ros == 1:
-                        self.assertEqual(store.generate_msgdef(entry["name"], ros_version=1)[1], entry["md5"])
-                    elif hasattr(store, "hash_rihs01"):
-                        self.assertEqual(store.hash_rihs01(entry["name"]), entry["type_hash"])
+    def test_hashes_follow_from_the_definitions(self):
+        store = self.store()
+        for entry in types():
+            with self.subTest(entry["name"]):
+                self.assertIn(entry["name"], known_types(store))
+                if hasattr(store, "hash_rihs01"):  # not in rosbags 0.9
+                    self.assertEqual(store.hash_rihs01(entry["name"]), entry["type_hash"])
 
-    def test_types_are_those_of_the_distributions(self):
+    def test_types_are_those_of_the_distribution(self):
         from rosbags.typesys import Stores, get_typestore
 
-        known = 0
-        for ros, key, name in ((1, "md5", Stores.ROS1_NOETIC), (2, "type_hash", Stores.ROS2_HUMBLE)):
-            store = get_typestore(name)
-            for entry in types():
-                if entry["name"] not in known_types(store):
-                    continue
-                if ros == 1:
-                    self.assertEqual(store.generate_msgdef(entry["name"], ros_version=1)[1], entry[key])
-                elif hasattr(store, "hash_rihs01"):
-                    self.assertEqual(store.hash_rihs01(entry["name"]), entry[key])
-                known += 1
-        self.assertGreaterEqual(known, 20)
+        store = get_typestore(Stores.ROS2_HUMBLE)
+        known = [entry for entry in types() if entry["name"] in known_types(store)]
+        self.assertGreaterEqual(len(known), 10)
+        for entry in known:
+            if hasattr(store, "hash_rihs01"):
+                self.assertEqual(store.hash_rihs01(entry["name"]), entry["type_hash"])
 
     def check_bag(self, name):
         from rosbags.highlevel import AnyReader
 
         expected = {topic_of(entry): entry for entry in types()}
-        ros1 = name.endswith(".bag")
-        store = self.store(1 if ros1 else 2)
+        store = self.store()
         counts = {}
         with AnyReader([FOLDER / name]) as reader:
             self.assertEqual(len(reader.connections), len(expected) + 1)
             for connection, time_ns, raw in reader.messages():
                 entry = expected[connection.topic]
-                self.assertEqual(connection.msgtype, name_in_ros1(entry) if ros1 else entry["name"])
+                self.assertEqual(connection.msgtype, entry["name"])
                 number = counts.get(connection.topic, 0)
                 counts[connection.topic] = number + 1
                 self.assertEqual(time_ns, START_NS + number)
@@ -99,13 +85,12 @@ class RosbagsTest(unittest.TestCase):
                 if hasattr(message, "header"):
                     self.assertEqual(message.header.stamp.sec, 1_700_000_000 + number)
                     self.assertEqual(message.header.frame_id, "lidar_frame")
-                again = (store.serialize_ros1 if ros1 else store.serialize_cdr)(message, entry["name"])
+                again = store.serialize_cdr(message, entry["name"])
                 self.assertEqual(bytes(again), bytes(raw), connection.msgtype)
         self.assertEqual(counts, {topic: MESSAGES for topic in expected})
 
     def test_bags(self):
-        names = ["none.bag", "lz4.bag", "sqlite.rosbag2", "mcap.rosbag2"]
-        for name in names:
+        for name in ("sqlite.rosbag2", "mcap.rosbag2"):
             with self.subTest(name):
                 self.check_bag(name)
 
@@ -200,61 +185,7 @@ class McapTest(unittest.TestCase):
         self.assertEqual(messages, [])
 
 
-class Ros1Test(unittest.TestCase):
-    """Debian's ROS 1."""
-
-    BAGS = ("none.bag", "lz4.bag")
-
-    def test_messages(self):
-        import rosbag
-
-        expected = {topic_of(entry): entry for entry in types()}
-        for name in self.BAGS:
-            with self.subTest(name), rosbag.Bag(FOLDER / name) as bag:
-                counts = {}
-                for topic, message, time in bag.read_messages():
-                    entry = expected[topic]
-                    self.assertEqual(message._type, entry["ros1_name"])
-                    self.assertEqual(message._md5sum, entry["md5"])
-                    self.assertEqual(time.to_nsec(), START_NS + counts.get(topic, 0))
-                    counts[topic] = counts.get(topic, 0) + 1
-                self.assertEqual(counts, {topic: MESSAGES for topic in expected})
-                info = bag.get_type_and_topic_info()
-                self.assertEqual(info.topics["/PointCloud2"].message_count, MESSAGES)
-
-    def test_messages_are_those_of_the_installed_packages(self):
-        import rosbag
-        from roslib.message import get_message_class
-
-        found = 0
-        with rosbag.Bag(FOLDER / "none.bag") as bag:
-            for topic, raw, _ in bag.read_messages(raw=True):
-                message_class = get_message_class(raw[0])
-                if message_class is None:
-                    continue
-                self.assertEqual(raw[2], message_class._md5sum, topic)
-                found += 1
-        self.assertGreaterEqual(found, 11 * MESSAGES)
-
-    def test_values(self):
-        import rosbag
-
-        with rosbag.Bag(FOLDER / "none.bag") as bag:
-            read = {topic: message for topic, message, _ in bag.read_messages()}
-        self.assertEqual(read["/PointCloud2"].header.seq, 2)
-        self.assertEqual(read["/PointCloud2"].data, bytes(i * 7 % 256 for i in range(42)))
-        self.assertEqual(read["/CameraInfo"].P[11], 32.0)
-        self.assertEqual(read["/CustomMsg"].points[1].offset_time, 200)
-        self.assertEqual(read["/Imu"].linear_acceleration.z, 9.81)
-
-    def test_empty_bags(self):
-        import rosbag
-
-        with rosbag.Bag(FOLDER / "empty.bag") as bag:
-            self.assertEqual(bag.get_message_count(), 0)
-
-
-READERS = {"rosbags": (RosbagsTest, "rosbags"), "mcap": (McapTest, "mcap_ros2"), "ros1": (Ros1Test, "rosbag")}
+READERS = {"rosbags": (RosbagsTest, "rosbags"), "mcap": (McapTest, "mcap_ros2")}
 
 
 def main():

@@ -3,8 +3,8 @@
 // Bags that would need much more memory or time than their size.
 #include <glidar/io/bags/bag_records.hpp>
 
-#include <glidar/io/bags/chunk_codec.hpp>
-#include <glidar/io/bags/mcap_records.hpp>
+#include <glidar/io/bags/bag_formats.hpp>
+#include <glidar/io/bags/bag_storage.hpp>
 #include <glidar/io/bags/sqlite.hpp>
 
 #include <support/error_text.hpp>

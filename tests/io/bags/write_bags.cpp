@@ -46,10 +46,8 @@ void write_types(const std::filesystem::path& path) {
   for (const ros::MessageType& type : ros::message_types()) {
     all.push_back({{"name", type.name},
                    {"ros1_name", type.ros1_name},
-                   {"md5", type.md5},
                    {"type_hash", type.type_hash},
-                   {"ros2msg", ros::definition_text(type, ros::Wire::cdr)},
-                   {"ros1msg", ros::definition_text(type, ros::Wire::ros1)}});
+                   {"ros2msg", ros::definition_text(type)}});
   }
   std::ofstream(path) << all.dump(1);
 }
@@ -59,12 +57,9 @@ void write_all_bags(const std::filesystem::path& folder) {
   write_bag(folder / "none.mcap", {});
   write_bag(folder / "lz4.mcap", {.compression = Compression::lz4});
   write_bag(folder / "zstd.mcap", {.compression = Compression::zstd});
-  write_bag(folder / "none.bag", {});
-  write_bag(folder / "lz4.bag", {.compression = Compression::lz4});
   write_bag(folder / "sqlite.rosbag2", {});
   write_bag(folder / "mcap.rosbag2", {.mcap_storage = true});
   bags::create_bag(folder / "empty.mcap")->finish();
-  bags::create_bag(folder / "empty.bag")->finish();
   bags::create_bag(folder / "empty.rosbag2")->finish();
   write_types(folder / "types.json");
 }

@@ -4,8 +4,8 @@
 #include <glidar/core/pose_keys.hpp>
 #include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/motion_keys.hpp>
-#include <glidar/io/config/optics_keys.hpp>
 #include <glidar/io/config/scene_plan.hpp>
+#include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/scene_file.hpp>
 
-#include <glidar/io/config/scene_builder.hpp>
+#include <glidar/io/config/scene_plan.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 
 #include <support/source_folder.hpp>

@@ -7,9 +7,9 @@
 #include <glidar/io/config/sensor_calibration.hpp>
 #include <glidar/io/config/sensor_document.hpp>
 #include <glidar/io/config/sensor_file.hpp>
-#include <glidar/io/packets/hesai_packet.hpp>
+#include <glidar/io/packets/hesai.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
-#include <glidar/io/packets/velodyne_packet.hpp>
+#include <glidar/io/packets/velodyne.hpp>
 #include <support/test_folder.hpp>
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include <glidar/io/decoder/decoder_process.hpp>
 
 #include <glidar/io/bags/bag_records.hpp>
-#include <glidar/io/packets/packet_records.hpp>
+#include <glidar/io/packets/packet_frames.hpp>
 
 #include <support/error_text.hpp>
 #include <support/test_folder.hpp>

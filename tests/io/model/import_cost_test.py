@@ -23,7 +23,7 @@ TRIANGLE = "0 0 0 1 0 0 0 1 0"
 
 
 def grid(side):
-    """A sheet of 2 side^2 triangles with positions of bytes."""
+    """A grid of 2 side^2 triangles with positions of bytes."""
     y, x = np.mgrid[: side + 1, : side + 1]
     at = (y[:side, :side] * (side + 1) + x[:side, :side]).ravel()
     corners = np.stack([at, at + 1, at + side + 2, at, at + side + 2, at + side + 1], axis=1)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "packet_fixture.hpp"
 
-#include <glidar/io/packets/hdl64_status.hpp>
+#include <glidar/io/packets/velodyne.hpp>
 
 #include <gtest/gtest.h>
 

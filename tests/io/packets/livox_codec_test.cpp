@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/packets/livox_codec.hpp>
+#include <glidar/io/packets/livox.hpp>
 
 #include "packet_fixture.hpp"
 

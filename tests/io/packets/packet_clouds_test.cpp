@@ -7,7 +7,6 @@
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/io/packets/sensor_packets.hpp>
-#include <glidar/io/ros/cloud_from_message.hpp>
 #include <glidar/io/ros/cloud_message.hpp>
 #include <glidar/io/ros/codec.hpp>
 
@@ -50,8 +49,8 @@ void append_points(const DecodedFrame& from, const Sensor& sensor,
   PointCloud cloud;
   make_point_cloud(from.frame, from.beams, Scene{}, {}, columns, cloud);
   const ros::PointCloud2 sent = ros::to_point_cloud2(cloud, {from.frame, sensor, from.beams});
-  const auto bytes = ros::serialize(sent, ros::Wire::cdr);
-  const auto message = ros::deserialize<ros::PointCloud2>(bytes, ros::Wire::cdr);
+  const auto bytes = ros::serialize(sent);
+  const auto message = ros::deserialize<ros::PointCloud2>(bytes);
   const PointCloud received = ros::to_point_cloud(message);
   const auto& xyz = column_of<double>(received, "xyz");
   const auto& rings = column_of<std::uint16_t>(received, "ring");

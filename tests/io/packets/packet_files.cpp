@@ -8,8 +8,8 @@
 #include "packet_fixture.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/packets/hesai_codec.hpp>
-#include <glidar/io/packets/packet_writer.hpp>
+#include <glidar/io/packets/hesai.hpp>
+#include <glidar/io/packets/sensor_packets.hpp>
 
 #include <cstdio>
 #include <filesystem>

@@ -5,10 +5,10 @@
 
 #include <glidar/io/bags/sqlite_bag_reader.hpp>
 #include <glidar/io/files/input_file.hpp>
-#include <glidar/io/packets/hesai_packet.hpp>
-#include <glidar/io/packets/ouster_codec.hpp>
+#include <glidar/io/packets/hesai.hpp>
+#include <glidar/io/packets/ouster.hpp>
 #include <glidar/io/packets/pcap_file.hpp>
-#include <glidar/io/packets/velodyne_packet.hpp>
+#include <glidar/io/packets/velodyne.hpp>
 #include <support/data.hpp>
 
 #include <gmock/gmock.h>

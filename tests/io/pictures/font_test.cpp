@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/pictures/font.hpp>
+#include <glidar/io/pictures/chart.hpp>
 
 #include <gtest/gtest.h>
 

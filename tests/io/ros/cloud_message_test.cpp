@@ -4,9 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
-#include <glidar/io/ros/cloud_from_message.hpp>
 #include <glidar/io/ros/codec.hpp>
-#include <glidar/io/ros/firing_order.hpp>
 
 #include <io/cloud_fixture.hpp>
 #include <support/error_text.hpp>
@@ -58,7 +56,7 @@ std::vector<T> values(const PointCloud& cloud, const char* name) {
 }
 
 PointCloud sent(const PointCloud2& message) {
-  return to_point_cloud(deserialize<PointCloud2>(serialize(message, Wire::cdr), Wire::cdr));
+  return to_point_cloud(deserialize<PointCloud2>(serialize(message)));
 }
 
 TEST(CloudMessage, IsDenseAndInFiringOrderWithTheStampOfTheFirstFiring) {

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/ros/image_message.hpp>
+#include <glidar/io/ros/sensor_topics.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/pictures/png_image.hpp>
-#include <glidar/io/ros/laser_scan.hpp>
+#include <glidar/io/pictures/picture.hpp>
 #include <glidar/io/ros/pose_message.hpp>
 #include <glidar/math/constants.hpp>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/ros/message_sink.hpp>
+#include <glidar/io/ros/codec.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,6 @@ class MemorySink final : public MessageSink {
     std::vector<std::byte> bytes;
   };
 
-  [[nodiscard]] Wire wire() const override { return Wire::cdr; }
   std::size_t add_topic(const Topic& topic) override {
     topics.push_back(topic);
     return topics.size() - 1;
@@ -40,7 +39,7 @@ class MemorySink final : public MessageSink {
   [[nodiscard]] std::vector<Message> of(const std::string& topic) const {
     std::vector<Message> found;
     for (const Written& written : messages)
-      if (written.topic == topic) found.push_back(deserialize<Message>(written.bytes, Wire::cdr));
+      if (written.topic == topic) found.push_back(deserialize<Message>(written.bytes));
     return found;
   }
   [[nodiscard]] std::map<std::string, std::size_t> counts() const {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/packets/hesai_codec.hpp>
-#include <glidar/io/packets/ouster_codec.hpp>
+#include <glidar/io/packets/hesai.hpp>
+#include <glidar/io/packets/ouster.hpp>
 #include <glidar/link/control/control_server.hpp>
 
 #include "io/packets/packet_fixture.hpp"

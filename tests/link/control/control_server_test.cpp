@@ -6,7 +6,6 @@
 #include "control_fixture.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/link/control/http_conversation.hpp>
 #include <glidar/link/control/tcp_service.hpp>
 #include <glidar/link/udp/packet_sender.hpp>
 

@@ -36,7 +36,7 @@ inline ros::Odometry odometry(std::int32_t sec, ros::Vector3 position) {
 
 template <class Message>
 std::vector<std::byte> cdr(const Message& message) {
-  return ros::serialize(message, ros::Wire::cdr);
+  return ros::serialize(message);
 }
 
 template <class Message>

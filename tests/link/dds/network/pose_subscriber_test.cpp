@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/dds/subscribers.hpp>
+#include <glidar/link/dds/participant.hpp>
 
 #include "participants.hpp"
 

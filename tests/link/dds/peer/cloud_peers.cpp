@@ -5,7 +5,7 @@
 #include "../network/participants.hpp"
 #include "program.hpp"
 
-#include <glidar/link/dds/publications.hpp>
+#include <glidar/link/dds/participant.hpp>
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -42,7 +42,7 @@ link::Payload make_cloud(std::size_t bytes, std::uint32_t number) {
 
 /// The number of a complete cloud.
 std::optional<std::uint32_t> number_of(const link::Payload& message, std::size_t bytes) {
-  const auto cloud = ros::deserialize<ros::PointCloud2>(message.bytes(), ros::Wire::cdr);
+  const auto cloud = ros::deserialize<ros::PointCloud2>(message.bytes());
   const std::span<const std::byte> data = cloud.data.bytes();
   if (data.size() != bytes) return std::nullopt;
   for (std::size_t i = 0; i < data.size(); ++i) {

@@ -6,7 +6,7 @@
 #include "program.hpp"
 
 #include <glidar/io/bags/bag.hpp>
-#include <glidar/link/dds/subscribers.hpp>
+#include <glidar/link/dds/participant.hpp>
 #include <glidar/link/dds/topics.hpp>
 
 #include <io/ros/sample_messages.hpp>

@@ -4,7 +4,7 @@
 //   glidar_foxglove_feed [SENSOR [PORT [FRAMES]]]
 // Prints the address, and one line per command of the page. Ends at the end of its input.
 #include <glidar/core/error.hpp>
-#include <glidar/io/ros/message_types.hpp>
+#include <glidar/io/ros/codec.hpp>
 #include <glidar/link/foxglove/server.hpp>
 
 #include "ros_bytes.hpp"
@@ -72,7 +72,7 @@ Channels add_channels(foxglove::FoxgloveServer& server) {
   const auto add = [&](const char* topic, const ros::MessageType& type, std::size_t depth = 1) {
     return server.add_channel({.topic = topic,
                                .schema_name = std::string(type.name),
-                               .schema = ros::definition_text(type, ros::Wire::cdr),
+                               .schema = ros::definition_text(type),
                                .depth = depth});
   };
   const ros::MessageType& transforms = ros::message_type<ros::TFMessage>();
@@ -105,8 +105,7 @@ link::Payload boxes_at(std::uint64_t stamp_ns) {
   other.uv_coordinates = {{0.5F, 0.5F}};
   other.text = "a car";
   other.mesh_file.filename = "car.obj";
-  const std::vector<std::byte> bytes =
-      ros::serialize(ros::MarkerArray{{cube, other}}, ros::Wire::cdr);
+  const std::vector<std::byte> bytes = ros::serialize(ros::MarkerArray{{cube, other}});
   link::Payload payload = link::PayloadPool().take(bytes.size());
   std::memcpy(payload.memory.get(), bytes.data(), bytes.size());
   return payload;
