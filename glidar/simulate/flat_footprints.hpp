@@ -15,9 +15,9 @@ class FlatFootprints {
  public:
   explicit FlatFootprints(const Simulation& s);
 
-  /// How the pulse with this first sub-ray is measured. Requires the ids of all its hits, and all
-  /// columns of the first.
-  [[nodiscard]] FlatFootprint find(std::size_t first) const;
+  /// Finds how these pulses are measured. Requires the ids of all hits of their sub-rays, and all
+  /// columns of the first of each.
+  void find(BeamRange pulses) const;
 
   /// The echo of a flat footprint and its only contribution. `signal` is that of the central ray
   /// alone. Requires the diffuse colours of all hits if they differ.
@@ -25,6 +25,11 @@ class FlatFootprints {
                                   WaveformBuffer& waveform) const;
 
  private:
+  struct Surface;
+  [[nodiscard]] FlatFootprint::Kind kind_of(std::size_t first, Surface& last) const;
+  [[nodiscard]] FlatFootprint::Kind kind_of_surface(std::size_t first) const;
+  void integrate(PlaneBatch& planes, std::span<FlatFootprint* const> footprints) const;
+
   const Simulation& s_;
   const Hits& hits_;
   Eigen::Vector3d up_;

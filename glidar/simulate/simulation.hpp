@@ -22,12 +22,13 @@ namespace glidar {
 struct FlatFootprint {
   enum class Kind : std::uint8_t {
     unknown,
+    nothing,   ///< all sub-rays miss
     sampled,   ///< by sub-rays
     plain,     ///< in closed form
     coloured,  ///< in closed form, with reflectances at the sub-rays
   };
   Kind kind = Kind::unknown;
-  PlaneAcrossBeam plane = {};  ///< of closed forms
+  PlaneEcho echo = {};  ///< of closed forms
 
   [[nodiscard]] bool is_in_closed_form() const {
     return kind == Kind::plain || kind == Kind::coloured;

@@ -279,6 +279,32 @@ void measure_pulse(const Simulation& s, std::size_t pulse, const FlatFootprints&
   }
 }
 
+/// The end of the pulses from the first on that meet nothing.
+std::size_t end_of_nothing(const Simulation& s, BeamRange pulses) {
+  std::size_t end = pulses.begin;
+  while (end < pulses.end && flat_footprint(s, end).kind == FlatFootprint::Kind::nothing &&
+         !traces(s, end)) {
+    ++end;
+  }
+  return end;
+}
+
+/// Writes pulses without any echo.
+void report_nothing(const Simulation& s, BeamRange pulses) {
+  Frame& frame = s.frame;
+  for (std::size_t r = 0; r < s.prepared.sensor.receiver.returns.size(); ++r) {
+    const std::size_t first = r * s.fired->firings();
+    write_misses(s.hit_columns, first + pulses.begin, pulses.end - pulses.begin,
+                 frame.ground_truth);
+    for (std::size_t pulse = pulses.begin; pulse < pulses.end; ++pulse) {
+      const bool has_beam = !std::isnan(s.fired->directions[pulse].x());
+      const Status missing = r == 0 ? Status::miss : Status::no_return_of_rank;
+      invalidate_return(frame, first + pulse, has_beam ? missing : Status::invalid_pixel);
+      if (s.hit_columns.radial_velocity) frame.true_radial_velocity_m_s[first + pulse] = kNaN;
+    }
+  }
+}
+
 /// The signal of each sub-ray of a run of pulses alone, of pulses in closed form that of the
 /// central one, and their radial velocities if they are wanted.
 void find_signals(const Simulation& s, BeamRange range, const FlatFootprints& flat_footprints,
@@ -289,11 +315,13 @@ void find_signals(const Simulation& s, BeamRange range, const FlatFootprints& fl
     find_radial_velocities(s.motion, memory.beams, s.frame.stamp_ns, memory.hits, sub_rays,
                            memory.velocities_m_s);
   }
+  if (flat_footprint(s, range.begin).kind == FlatFootprint::Kind::unknown)
+    flat_footprints.find(range);
   of_run.received.clear();
   for (std::size_t pulse = range.begin; pulse < range.end; ++pulse) {
+    const FlatFootprint& flat = flat_footprint(s, pulse);
+    if (flat.kind == FlatFootprint::Kind::nothing) continue;
     const std::size_t first = first_sub_ray(s, pulse);
-    FlatFootprint& flat = flat_footprint(s, pulse);
-    if (flat.kind == FlatFootprint::Kind::unknown) flat = flat_footprints.find(first);
     const std::size_t end = flat.is_in_closed_form() ? first + 1 : first_sub_ray(s, pulse + 1);
     for (std::size_t ray = first; ray < end; ++ray) of_run.received.push_back(ray);
   }
@@ -324,7 +352,10 @@ void measure_waveforms(const Simulation& s, BeamRange tile) {
     find_signals(s, run, flat_footprints, memory);
     sample_receiver(s.prepared.pulse_model->lidar_equation, s.frame, first, memory.samples);
     for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) {
-      measure_pulse(s, pulse, flat_footprints, memory);
+      const std::size_t end_of_misses = end_of_nothing(s, {pulse, run.end});
+      if (end_of_misses > pulse) report_nothing(s, {pulse, end_of_misses});
+      pulse = end_of_misses;
+      if (pulse < run.end) measure_pulse(s, pulse, flat_footprints, memory);
     }
   }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Footprints on one flat triangle are integrated, all others sampled, and both agree.
 #include <glidar/core/error.hpp>
+#include <glidar/sensor/lidar/return_names.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <simulate/panels.hpp>
 
@@ -260,6 +261,27 @@ TEST(FlatFootprints, HaveNormalsAtCornersThatAreThoseOfThePlane) {
   const Eigen::Vector3f front = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
   mesh.normals.assign(mesh.positions_m.size(), front);
   EXPECT_TRUE(stage.trace().is_in_closed_form);
+}
+
+TEST(FlatFootprints, ThatMeetNothingHaveNoReturnForEveryRank) {
+  Stage stage;
+  stage.sensor.optics = pinhole_from_fov(12, 2, 0.6);
+  stage.sensor.receiver.returns = nearest_returns(2);
+  stage.add_wall(10.0, -50.0, 0.0);  // the left half
+  const Frame frame = stage.shoot();
+  const std::size_t firings = frame.status.size() / 2;
+  std::size_t misses = 0;
+  for (std::size_t i = 0; i < frame.status.size(); ++i) {
+    if (frame.ground_truth.instance[i] != kInvalidId) continue;
+    ++misses;
+    EXPECT_EQ(frame.status[i], i < firings ? Status::miss : Status::no_return_of_rank) << i;
+    EXPECT_TRUE(std::isnan(frame.range_m[i])) << i;
+    EXPECT_TRUE(std::isnan(frame.ground_truth.range_m[i])) << i;
+    EXPECT_EQ(frame.intensity[i], 0.0F) << i;
+    EXPECT_EQ(frame.return_source[i], ReturnSource::none) << i;
+  }
+  EXPECT_GT(misses, 10U);
+  EXPECT_LT(misses, frame.status.size());
 }
 
 class FlatFootprintsBy : public ::testing::TestWithParam<std::string> {

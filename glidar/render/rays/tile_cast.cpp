@@ -14,6 +14,9 @@
 namespace glidar::rays {
 namespace {
 
+// About 50 microseconds of work, and its hits fit into a core's private cache.
+constexpr std::size_t kTilesPerTask = 64;
+
 /// Inputs that all tiles of a cast share.
 struct Job {
   const Beams& beams;
@@ -228,20 +231,21 @@ void cast_footprints(const Job& job, const CastRequest& request, BeamRange range
     add_or_miss(job, first, all_columns);
   }
   all_columns.finish();
+  std::array<OtherHits, kTilesPerTask * kLanes> needed;
+  const std::size_t footprints = (range.end - range.begin) / size;
+  request.needed_of_others(range, {needed.data(), footprints});
   BeamQueue diffuse(job, {.diffuse = true});
-  for (std::size_t first = range.begin; first < range.end; first += size) {
-    const OtherHits needed = request.needed_of_others(first);
+  for (std::size_t i = 0; i < footprints; ++i) {
+    if (needed[i] == OtherHits::ids) continue;
+    const std::size_t first = range.begin + i * size;
     for (std::size_t beam = first + 1; beam < first + size; ++beam) {
-      if (needed == OtherHits::diffuse) diffuse.add(beam);
-      if (needed == OtherHits::all_columns) add_or_miss(job, beam, all_columns);
+      if (needed[i] == OtherHits::diffuse) diffuse.add(beam);
+      if (needed[i] == OtherHits::all_columns) add_or_miss(job, beam, all_columns);
     }
   }
   all_columns.finish();
   diffuse.finish();
 }
-
-// About 50 microseconds of work, and its hits fit into a core's private cache.
-constexpr std::size_t kTilesPerTask = 64;
 
 }  // namespace
 
