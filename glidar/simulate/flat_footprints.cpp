@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate/flat_footprints.hpp>
 
-#include <glidar/sensor/lidar/beam_surfaces.hpp>
 #include <glidar/simulate/mirrors.hpp>
 #include <glidar/simulate/pulse_cast.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <variant>
@@ -18,19 +18,41 @@ namespace {
 /// by less than 1e-4 m for the widest footprint that is integrated.
 constexpr float kMaxBend = 1e-5F;
 
+/// A vector across the triangle, on its front.
+Eigen::Vector3f across(const Mesh& mesh, const Triangle& triangle) {
+  const auto corner = [&](std::size_t k) { return mesh.positions_m[triangle[k]]; };
+  return (corner(1) - corner(0)).cross(corner(2) - corner(0));
+}
+
 /// True if the shading normal is the same on the whole triangle: that of its plane.
 bool has_flat_shading(const Mesh& mesh, const Triangle& triangle) {
   if (mesh.normals.empty()) return true;
-  const auto corner = [&](std::size_t k) { return mesh.positions_m[triangle[k]]; };
-  const Eigen::Vector3f across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-  const float max_squared = kMaxBend * kMaxBend * across.squaredNorm();
+  const Eigen::Vector3f front = across(mesh, triangle);
+  const float max_squared = kMaxBend * kMaxBend * front.squaredNorm();
   for (const std::uint32_t vertex : triangle) {
     const Eigen::Vector3f& normal = mesh.normals[vertex];
-    if (!(normal.dot(across) > 0.0F) ||
-        normal.cross(across).squaredNorm() > max_squared * normal.squaredNorm())
+    if (!(normal.dot(front) > 0.0F) ||
+        normal.cross(front).squaredNorm() > max_squared * normal.squaredNorm())
       return false;
   }
   return true;
+}
+
+/// True if two triangles of a mesh are in one plane: the two halves of a rectangle.
+bool are_coplanar(const Mesh& mesh, const Triangle& one, const Triangle& other) {
+  if (!mesh.origins.empty()) return false;  // vertices may be relative to different ones
+  constexpr double kSquared = double{kMaxBend} * double{kMaxBend};
+  const Eigen::Vector3d normal = across(mesh, one).cast<double>();
+  const Eigen::Vector3d other_normal = across(mesh, other).cast<double>();
+  const double size = normal.squaredNorm();
+  if (!(normal.cross(other_normal).squaredNorm() <= kSquared * size * other_normal.squaredNorm()))
+    return false;
+  const Eigen::Vector3d from = mesh.positions_m[one[0]].cast<double>();
+  return std::all_of(other.begin(), other.end(), [&](std::uint32_t vertex) {
+    const Eigen::Vector3d to = mesh.positions_m[vertex].cast<double>() - from;
+    const double height = normal.dot(to);
+    return height * height <= kSquared * size * to.squaredNorm();
+  });
 }
 
 }  // namespace
@@ -41,35 +63,56 @@ FlatFootprints::FlatFootprints(const Simulation& s)
       up_(axes_of(*s.fired).up),
       pulse_sigma_m_(pulse_sigma_m(s.prepared.sensor.receiver)) {}
 
-/// The triangle that a footprint met before.
+/// The triangle that the first sub-ray of a footprint met before, and another of its plane.
 struct FlatFootprints::Surface {
   std::uint32_t instance = kInvalidId;
   std::uint32_t primitive = kInvalidId;
+  std::uint32_t coplanar = kInvalidId;
   FlatFootprint::Kind kind = FlatFootprint::Kind::sampled;
 };
 
-/// The kind of footprints on the triangle of a hit if their planes allow it.
-FlatFootprint::Kind FlatFootprints::kind_of_surface(std::size_t first) const {
+/// The kind of footprints on the triangle if their planes allow it.
+FlatFootprint::Kind FlatFootprints::kind_on(std::uint32_t instance, std::uint32_t triangle) const {
   using Kind = FlatFootprint::Kind;
-  const Mesh& mesh = s_.scene.meshes[s_.scene.instances[hits_.instance[first]].mesh];
-  const Material& material = material_hit(s_.scene, hits_, first);
+  const Mesh& mesh = s_.scene.meshes[s_.scene.instances[instance].mesh];
+  const Material& material = material_of(s_.scene, s_.scene.instances[instance], triangle);
   if (!std::holds_alternative<Lambert>(material.backscatter) || material.alpha_cutoff > 0.0F ||
-      material.normal_texture.used() ||
-      !has_flat_shading(mesh, mesh.triangles[hits_.primitive[first]]))
+      material.normal_texture.used() || !has_flat_shading(mesh, mesh.triangles[triangle]))
     return Kind::sampled;
   return material.diffuse_texture.used() || !mesh.colours.empty() ? Kind::coloured : Kind::plain;
+}
+
+/// True if footprints on two triangles of an instance, the first with a closed form, have one.
+bool FlatFootprints::continues(const Surface& surface, std::uint32_t triangle) const {
+  const Instance& instance = s_.scene.instances[surface.instance];
+  const Mesh& mesh = s_.scene.meshes[instance.mesh];
+  return material_slot(mesh, triangle) == material_slot(mesh, surface.primitive) &&
+         are_coplanar(mesh, mesh.triangles[surface.primitive], mesh.triangles[triangle]) &&
+         kind_on(surface.instance, triangle) == surface.kind;
 }
 
 FlatFootprint::Kind FlatFootprints::kind_of(std::size_t first, Surface& last) const {
   using Kind = FlatFootprint::Kind;
   const PulseModel& model = *s_.prepared.pulse_model;
-  if (!model.has_closed_form || !is_one_triangle(hits_, first, model.sub_rays.size()))
-    return Kind::sampled;
-  if (hits_.instance[first] == kInvalidId) return Kind::nothing;
-  if (hits_.instance[first] != last.instance || hits_.primitive[first] != last.primitive)
-    last = {hits_.instance[first], hits_.primitive[first], kind_of_surface(first)};
+  const std::size_t end = first + model.sub_rays.size();
+  const std::uint32_t instance = hits_.instance[first];
+  const std::uint32_t primitive = hits_.primitive[first];
+  if (!model.has_closed_form) return Kind::sampled;
+  for (std::size_t ray = first + 1; ray < end; ++ray) {
+    if (hits_.instance[ray] != instance) return Kind::sampled;
+  }
+  if (instance == kInvalidId) return Kind::nothing;
+  if (instance != last.instance || primitive != last.primitive)
+    last = {.instance = instance, .primitive = primitive, .kind = kind_on(instance, primitive)};
   const bool is_black = last.kind == Kind::coloured && !(hits_.diffuse[first] > 0.0F);
-  return is_black ? Kind::sampled : last.kind;
+  if (last.kind == Kind::sampled || is_black) return Kind::sampled;
+  for (std::size_t ray = first + 1; ray < end; ++ray) {
+    const std::uint32_t other = hits_.primitive[ray];
+    if (other == primitive || other == last.coplanar) continue;
+    if (!continues(last, other)) return Kind::sampled;
+    last.coplanar = other;
+  }
+  return last.kind;
 }
 
 void FlatFootprints::find(BeamRange pulses) const {

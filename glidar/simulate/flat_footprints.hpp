@@ -27,7 +27,8 @@ class FlatFootprints {
  private:
   struct Surface;
   [[nodiscard]] FlatFootprint::Kind kind_of(std::size_t first, Surface& last) const;
-  [[nodiscard]] FlatFootprint::Kind kind_of_surface(std::size_t first) const;
+  [[nodiscard]] FlatFootprint::Kind kind_on(std::uint32_t instance, std::uint32_t triangle) const;
+  [[nodiscard]] bool continues(const Surface& surface, std::uint32_t triangle) const;
   void integrate(PlaneBatch& planes, std::span<FlatFootprint* const> footprints) const;
 
   const Simulation& s_;

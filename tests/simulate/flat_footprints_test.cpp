@@ -263,6 +263,41 @@ TEST(FlatFootprints, HaveNormalsAtCornersThatAreThoseOfThePlane) {
   EXPECT_TRUE(stage.trace().is_in_closed_form);
 }
 
+/// A wall whose diagonal crosses the beam, so that the sub-rays meet both of its triangles.
+struct DiagonalStage : Stage {
+  DiagonalStage() { add_panel({-6.0, -6.0, 20.0}, {12.0, 0.0, 8.0}, {0.0, 12.0, 0.0}); }
+  Mesh& mesh() { return scene.meshes[0]; }
+};
+
+TEST(FlatFootprints, ExtendOverTrianglesOfOnePlane) {
+  DiagonalStage stage;
+  const WaveformTrace trace = stage.trace();
+  EXPECT_TRUE(trace.is_in_closed_form);
+  const Pair pair(stage);
+  const Frame closed = pair.closed.shoot();
+  const Frame sampled = pair.sampled.shoot();
+  EXPECT_NEAR(closed.range_m[0], sampled.range_m[0], kRangeTolerance_m);
+  EXPECT_NEAR(closed.intensity[0], sampled.intensity[0], kSignalTolerance * sampled.intensity[0]);
+  EXPECT_EQ(closed.return_source, sampled.return_source);
+}
+
+TEST(FlatFootprints, EndAtFoldsAndWhereTheMaterialChanges) {
+  DiagonalStage folded;
+  folded.mesh().positions_m[3].z() += 0.01F;  // a corner of the second triangle
+  EXPECT_FALSE(folded.trace().is_in_closed_form);
+  DiagonalStage painted;
+  painted.mesh().material_slots = {0, 1};
+  painted.scene.instances[0].materials = {0, 0};
+  EXPECT_FALSE(painted.trace().is_in_closed_form);
+  DiagonalStage bent;
+  bent.mesh().normals.assign(4, Eigen::Vector3f(8.0F, 0.0F, -12.0F).normalized());
+  std::swap(bent.mesh().triangles[0][1], bent.mesh().triangles[0][2]);  // towards the sensor
+  std::swap(bent.mesh().triangles[1][1], bent.mesh().triangles[1][2]);
+  EXPECT_TRUE(bent.trace().is_in_closed_form);
+  bent.mesh().normals[3].x() += 0.1F;
+  EXPECT_FALSE(bent.trace().is_in_closed_form);
+}
+
 TEST(FlatFootprints, ThatMeetNothingHaveNoReturnForEveryRank) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(12, 2, 0.6);
