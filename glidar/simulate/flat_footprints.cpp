@@ -144,7 +144,7 @@ void FlatFootprints::integrate(PlaneBatch& planes,
   for (std::size_t i = 0; i < planes.count; ++i) {
     FlatFootprint& flat = *footprints[i];
     if (planes.has_closed_form[i]) {
-      flat.echo = plane_echo(planes, i);
+      flat.moments = moments_of(planes, i);
     } else {
       flat.kind = FlatFootprint::Kind::sampled;
     }
@@ -152,33 +152,50 @@ void FlatFootprints::integrate(PlaneBatch& planes,
   planes.count = 0;
 }
 
-PulseEcho FlatFootprints::measure(const FlatFootprint& flat, std::size_t first, double signal,
-                                  WaveformBuffer& waveform) const {
-  PlaneEcho echo = flat.echo;
-  if (flat.kind == FlatFootprint::Kind::coloured) {
-    // All have the same material, so reflectances are proportional to the diffuse colours.
-    const std::vector<SubRay>& rays = s_.prepared.pulse_model->sub_rays;
-    const double per_central = 1.0 / double{hits_.diffuse[first]};
-    std::array<double, kMaxSubRays> excess;
-    for (std::size_t k = 0; k < rays.size(); ++k) {
-      excess[k] = double{hits_.diffuse[first + k]} * per_central - 1.0;
+void FlatFootprints::measure(BeamRange pulses, FlatEchoes& echoes) const {
+  measure(pulses, FlatFootprint::Kind::plain, echoes);
+  measure(pulses, FlatFootprint::Kind::coloured, echoes);
+}
+
+/// Of the pulses of one kind.
+void FlatFootprints::measure(BeamRange pulses, FlatFootprint::Kind kind, FlatEchoes& echoes) const {
+  const SubRayWorkspace& memory = s_.workspace.sub_rays;
+  const std::vector<SubRay>& rays = s_.prepared.pulse_model->sub_rays;
+  const bool is_coloured = kind == FlatFootprint::Kind::coloured;
+  PlaneBatch planes;
+  PlaneBatch::Column signal;
+  std::array<std::size_t, PlaneBatch::kMax> in_run;
+  std::array<PlaneBatch::Column, kMaxSubRays> excess;
+  const auto finish = [&] {
+    if (is_coloured) {
+      add_excess(s_.prepared.pulse_model->lidar_equation.range_exponent, rays, excess, planes);
     }
-    echo.add_excess(s_.prepared.pulse_model->lidar_equation.range_exponent, rays,
-                    {excess.data(), rays.size()});
+    PlaneEchoes found;
+    find_echoes(pulse_sigma_m_, signal, planes, found);
+    for (std::size_t i = 0; i < planes.count; ++i) {
+      echoes.range_m[in_run[i]] = found.range_m[i];
+      echoes.signal[in_run[i]] = found.signal[i];
+      echoes.peak[in_run[i]] = found.peak[i];
+      echoes.sigma_m[in_run[i]] = found.sigma_m[i];
+    }
+    planes.count = 0;
+  };
+  for (std::size_t pulse = pulses.begin; pulse < pulses.end; ++pulse) {
+    const FlatFootprint& flat = memory.flat[pulse - memory.first_pulse];
+    if (flat.kind != kind) continue;
+    const std::size_t first = first_sub_ray(s_, pulse);
+    const std::size_t i = planes.count++;
+    set_moments(flat.moments, i, planes);
+    signal[i] = memory.signals[first];
+    in_run[i] = pulse - pulses.begin;
+    // All have the same material, so reflectances are proportional to the diffuse colours.
+    const double per_central = is_coloured ? 1.0 / double{hits_.diffuse[first]} : 0.0;
+    for (std::size_t k = 0; is_coloured && k < rays.size(); ++k) {
+      excess[k][i] = double{hits_.diffuse[first + k]} * per_central - 1.0;
+    }
+    if (planes.count == PlaneBatch::kMax) finish();
   }
-  const double sum = signal * echo.moment[0];
-  const double range_m = echo.mean_range_m();
-  waveform.paths = 0;
-  waveform.add({range_m, sum, static_cast<std::uint32_t>(first), ReturnSource::surface});
-  const double pulse_m2 = pulse_sigma_m_ * pulse_sigma_m_;
-  const double width_m2 = pulse_m2 + echo.variance_m2();
-  return {.range_m = range_m,
-          .signal = sum * std::sqrt(pulse_m2 / width_m2),
-          .sigma_m = std::sqrt(width_m2),
-          .strongest = 0,
-          .begin = 0,
-          .end = 1,
-          .is_mixed = false};
+  finish();
 }
 
 }  // namespace glidar

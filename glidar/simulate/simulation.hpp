@@ -28,7 +28,7 @@ struct FlatFootprint {
     coloured,  ///< in closed form, with reflectances at the sub-rays
   };
   Kind kind = Kind::unknown;
-  PlaneEcho echo = {};  ///< of closed forms
+  PlaneMoments moments = {};  ///< of closed forms
 
   [[nodiscard]] bool is_in_closed_form() const {
     return kind == Kind::plain || kind == Kind::coloured;

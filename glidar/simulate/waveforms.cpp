@@ -160,6 +160,7 @@ struct PulseMemory {
   std::vector<std::size_t> received;  ///< sub-rays whose signals are needed
   Hits received_hits;                 ///< their hits
   std::vector<double> signals;        ///< theirs
+  FlatEchoes flat;
   ReceiverSamples samples;
   std::vector<WeatherEcho> weather;
   BeamSurfaces surfaces;
@@ -234,25 +235,34 @@ FlatFootprint& flat_footprint(const Simulation& s, std::size_t pulse) {
   return s.workspace.sub_rays.flat[pulse - s.workspace.sub_rays.first_pulse];
 }
 
-/// The echo of a pulse in closed form. Returns its contribution.
-EchoContribution integrate_echo(const Simulation& s, std::size_t pulse,
-                                const FlatFootprints& flat_footprints, WaveformBuffer& waveform) {
-  const std::size_t first = first_sub_ray(s, pulse);
-  waveform.echo[0] = flat_footprints.measure(flat_footprint(s, pulse), first,
-                                             s.workspace.sub_rays.signals[first], waveform);
+/// Takes the echo of a pulse in closed form. Returns its contribution.
+EchoContribution take_flat_echo(const Simulation& s, std::size_t pulse, PulseMemory& memory) {
+  WaveformBuffer& waveform = memory.waveform;
+  const std::size_t in_run = pulse - memory.samples.key.beam;
+  const FlatEchoes& flat = memory.flat;
+  waveform.paths = 0;
+  waveform.add({flat.range_m[in_run], flat.signal[in_run],
+                static_cast<std::uint32_t>(first_sub_ray(s, pulse)), ReturnSource::surface});
+  PulseEcho& echo = waveform.echo[0];
+  echo.range_m = flat.range_m[in_run];
+  echo.signal = flat.peak[in_run];
+  echo.sigma_m = flat.sigma_m[in_run];
+  echo.strongest = 0;
+  echo.begin = 0;
+  echo.end = 1;
+  echo.is_mixed = false;
   waveform.echoes = 1;
   return waveform.path[0];
 }
 
-void measure_pulse(const Simulation& s, std::size_t pulse, const FlatFootprints& flat_footprints,
-                   PulseMemory& memory) {
+void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) {
   WaveformBuffer& waveform = memory.waveform;
   const Receiver& receiver = s.prepared.sensor.receiver;
   RngKey key = memory.samples.key;
   key.beam = static_cast<std::uint32_t>(pulse);
   const bool is_flat = flat_footprint(s, pulse).is_in_closed_form();
-  const EchoContribution surface = is_flat ? integrate_echo(s, pulse, flat_footprints, waveform)
-                                           : find_echoes(s, pulse, key, memory);
+  const EchoContribution surface =
+      is_flat ? take_flat_echo(s, pulse, memory) : find_echoes(s, pulse, key, memory);
   if (traces(s, pulse)) trace_echoes(s, pulse, is_flat, waveform);
   const Status missing = receive_echoes(s, pulse, key, surface, memory);
   std::array<int, kMaxReturns> chosen;
@@ -350,12 +360,13 @@ void measure_waveforms(const Simulation& s, BeamRange tile) {
   for (std::size_t first = tile.begin; first < tile.end; first += kPulsesPerTask) {
     const BeamRange run{first, std::min(first + kPulsesPerTask, tile.end)};
     find_signals(s, run, flat_footprints, memory);
+    flat_footprints.measure(run, memory.flat);
     sample_receiver(s.prepared.pulse_model->lidar_equation, s.frame, first, memory.samples);
     for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) {
       const std::size_t end_of_misses = end_of_nothing(s, {pulse, run.end});
       if (end_of_misses > pulse) report_nothing(s, {pulse, end_of_misses});
       pulse = end_of_misses;
-      if (pulse < run.end) measure_pulse(s, pulse, flat_footprints, memory);
+      if (pulse < run.end) measure_pulse(s, pulse, memory);
     }
   }
 }

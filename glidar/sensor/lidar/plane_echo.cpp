@@ -26,7 +26,7 @@ constexpr double kMaxWidening = 1.0 / 16.0;
 
 /// Second and fourth moments of a beam on a plane. A sub-ray with the offset o and the slope s has
 /// the range R (1 + a) / (1 - b) sqrt(1 + s^2) with a = tilt . o / R and b = tilt . s.
-struct PlaneMoments {
+struct BeamMoments {
   double aa;
   double bb;
   double ab;
@@ -45,14 +45,14 @@ struct BeamOnPlane {
 
 /// Offsets (c exit_x, d exit_y) and slopes (-d divergence_x, c divergence_y), with independent
 /// normal c and d (sample_footprint()).
-inline PlaneMoments moments_of(const Footprint& f, const BeamOnPlane& plane) {
+inline BeamMoments moments_of(const Footprint& f, const BeamOnPlane& plane) {
   const double a_x = plane.tilt_x * f.exit_x_m / plane.range_m;
   const double a_y = plane.tilt_y * f.exit_y_m / plane.range_m;
   const double b_x = -plane.tilt_x * f.divergence_x_rad;
   const double b_y = plane.tilt_y * f.divergence_y_rad;
   const double xx = kVariance * f.divergence_x_rad * f.divergence_x_rad;
   const double yy = kVariance * f.divergence_y_rad * f.divergence_y_rad;
-  PlaneMoments m;
+  BeamMoments m;
   m.aa = kVariance * (a_x * a_x + a_y * a_y);
   m.bb = kVariance * (b_x * b_x + b_y * b_y);
   m.ab = kVariance * (a_x * b_y + a_y * b_x);
@@ -67,7 +67,7 @@ inline PlaneMoments moments_of(const Footprint& f, const BeamOnPlane& plane) {
 
 /// The mean of cos(incidence) / R^p, in units of the central ray's: of
 /// (1 - b)^(p + 1) (1 + a)^-p (1 + s^2)^-((p + 1) / 2), up to the fourth order.
-inline double mean_power(const PlaneMoments& m, double p) {
+inline double mean_power(const BeamMoments& m, double p) {
   const double n = p + 1.0;
   const double second = p * m.spread - m.ss;
   const double fourth =
@@ -129,7 +129,7 @@ GLIDAR_SIMD void integrate_over_planes(const PlanePulse& pulse, PlaneBatch& plan
   const double max_variance_m2 = kMaxWidening * pulse.pulse_sigma_m * pulse.pulse_sigma_m;
   for (std::size_t i = 0; i < planes.count; ++i) {
     const double range_m = planes.range_m[i];
-    const PlaneMoments m = moments_of(f, {range_m, planes.tilt_x[i], planes.tilt_y[i]});
+    const BeamMoments m = moments_of(f, {range_m, planes.tilt_x[i], planes.tilt_y[i]});
     const double variance_m2 = range_m * range_m * m.spread;
     planes.has_closed_form[i] = (m.aa + m.bb <= kMaxRangeVariance) & (m.ss <= kMaxSlopeVariance) &
                                 (variance_m2 <= max_variance_m2);
@@ -139,29 +139,57 @@ GLIDAR_SIMD void integrate_over_planes(const PlanePulse& pulse, PlaneBatch& plan
   }
 }
 
-PlaneEcho plane_echo(const PlaneBatch& planes, std::size_t i) {
+PlaneMoments moments_of(const PlaneBatch& planes, std::size_t i) {
   return {.range_m = planes.range_m[i],
-          .tilt = {planes.tilt_x[i], planes.tilt_y[i]},
+          .tilt_x = planes.tilt_x[i],
+          .tilt_y = planes.tilt_y[i],
           .moment = {planes.moment[0][i], planes.moment[1][i], planes.moment[2][i]}};
 }
 
-void PlaneEcho::add_excess(double exponent, std::span<const SubRay> rays,
-                           std::span<const double> excess) {
-  for (std::size_t i = 0; i < excess.size(); ++i) {
-    const double a = tilt.dot(rays[i].offset_m) / range_m;
-    const double b = tilt.dot(rays[i].slope);
-    double part = rays[i].share * excess[i] * (1.0 - (exponent + 1.0) * b - exponent * a);
-    for (double& sum : moment) {
-      sum += part;
-      part *= 1.0 + a + b;
+void set_moments(const PlaneMoments& moments, std::size_t i, PlaneBatch& planes) {
+  planes.range_m[i] = moments.range_m;
+  planes.tilt_x[i] = moments.tilt_x;
+  planes.tilt_y[i] = moments.tilt_y;
+  for (std::size_t k = 0; k < 3; ++k) planes.moment[k][i] = moments.moment[k];
+}
+
+GLIDAR_SIMD void add_excess(double exponent, std::span<const SubRay> rays,
+                            std::span<const PlaneBatch::Column> excess, PlaneBatch& planes) {
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const double share = rays[k].share;
+    const double offset_x = rays[k].offset_m.x();
+    const double offset_y = rays[k].offset_m.y();
+    const double slope_x = rays[k].slope.x();
+    const double slope_y = rays[k].slope.y();
+    const double* const of_ray = excess[k].data();
+    for (std::size_t i = 0; i < planes.count; ++i) {
+      const double x = planes.tilt_x[i];
+      const double y = planes.tilt_y[i];
+      const double a = (x * offset_x + y * offset_y) / planes.range_m[i];
+      const double b = x * slope_x + y * slope_y;
+      const double part = share * of_ray[i] * (1.0 - (exponent + 1.0) * b - exponent * a);
+      const double farther = 1.0 + a + b;
+      planes.moment[0][i] += part;
+      planes.moment[1][i] += part * farther;
+      planes.moment[2][i] += part * farther * farther;
     }
   }
 }
 
-double PlaneEcho::variance_m2() const {
-  const double mean = moment[1] / moment[0];
-  const double variance = std::max(0.0, moment[2] / moment[0] - mean * mean);
-  return range_m * range_m * variance;
+GLIDAR_SIMD void find_echoes(double pulse_sigma_m, const PlaneBatch::Column& signal,
+                             const PlaneBatch& planes, PlaneEchoes& echoes) {
+  const double pulse_m2 = pulse_sigma_m * pulse_sigma_m;
+  for (std::size_t i = 0; i < planes.count; ++i) {
+    const double range_m = planes.range_m[i];
+    const double mean = planes.moment[1][i] / planes.moment[0][i];
+    const double variance = planes.moment[2][i] / planes.moment[0][i] - mean * mean;
+    const double width_m2 = pulse_m2 + range_m * range_m * (variance > 0.0 ? variance : 0.0);
+    const double sum = signal[i] * planes.moment[0][i];
+    echoes.range_m[i] = range_m * mean;
+    echoes.signal[i] = sum;
+    echoes.peak[i] = sum * std::sqrt(pulse_m2 / width_m2);
+    echoes.sigma_m[i] = std::sqrt(width_m2);
+  }
 }
 
 }  // namespace glidar

@@ -63,22 +63,32 @@ struct PlanePulse {
 /// 1061, in second order.
 void integrate_over_planes(const PlanePulse& pulse, PlaneBatch& planes);
 
-/// The echo of a whole beam from a plane.
-struct PlaneEcho {
-  double range_m = 0.0;  ///< of the central ray
-  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();
+/// What a beam receives from a plane, see PlaneBatch.
+struct PlaneMoments {
+  double range_m = 0.0;
+  double tilt_x = 0.0;
+  double tilt_y = 0.0;
   std::array<double, 3> moment = {1.0, 1.0, 1.0};
-
-  /// Changes the reflectance at the sub-rays: `excess`, per sub-ray, is by how much it exceeds that
-  /// of the central ray, in units of it.
-  void add_excess(double exponent, std::span<const SubRay> rays, std::span<const double> excess);
-
-  [[nodiscard]] double mean_range_m() const { return range_m * (moment[1] / moment[0]); }
-  /// Variance of the ranges, weighted by signal.
-  [[nodiscard]] double variance_m2() const;
 };
 
-/// The echo of a plane of the batch.
-PlaneEcho plane_echo(const PlaneBatch& planes, std::size_t i);
+PlaneMoments moments_of(const PlaneBatch& planes, std::size_t i);
+void set_moments(const PlaneMoments& moments, std::size_t i, PlaneBatch& planes);
+
+/// Changes the reflectances at the sub-rays. `excess`, per sub-ray and plane, is by how much one
+/// exceeds that of the central ray, in units of it.
+void add_excess(double exponent, std::span<const SubRay> rays,
+                std::span<const PlaneBatch::Column> excess, PlaneBatch& planes);
+
+/// Echoes of whole beams, one number per plane.
+struct PlaneEchoes {
+  PlaneBatch::Column range_m;  ///< mean, weighted by signal
+  PlaneBatch::Column signal;   ///< sum
+  PlaneBatch::Column peak;     ///< height of the widened pulse
+  PlaneBatch::Column sigma_m;  ///< of the widened pulse
+};
+
+/// Finds echoes from the moments; `signal` of central rays that have all of the energy.
+void find_echoes(double pulse_sigma_m, const PlaneBatch::Column& signal, const PlaneBatch& planes,
+                 PlaneEchoes& echoes);
 
 }  // namespace glidar

@@ -108,10 +108,6 @@ bool has_closed_form(const Case& c) {
   return integrated(c).has_closed_form[0];
 }
 
-PlaneEcho echo_from(const Case& c) {
-  return plane_echo(integrated(c), 0);
-}
-
 Eigen::Vector2d tilt_across(const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
                             const Eigen::Vector3d& normal) {
   PlaneBatch planes;
@@ -122,11 +118,15 @@ Eigen::Vector2d tilt_across(const Eigen::Vector3d& direction, const Eigen::Vecto
   return {planes.tilt_x[0], planes.tilt_y[0]};
 }
 
+/// The echo of a central ray with the signal 1.
+Measured echo_of(const Case& c, const PlaneBatch& planes) {
+  PlaneEchoes echoes;
+  find_echoes(c.pulse_sigma_m, {1.0}, planes, echoes);
+  return {echoes.range_m[0], echoes.peak[0], echoes.sigma_m[0]};
+}
+
 Measured integrate(const Case& c) {
-  const PlaneEcho echo = echo_from(c);
-  const double width_m2 = c.pulse_sigma_m * c.pulse_sigma_m + echo.variance_m2();
-  return {echo.mean_range_m(), echo.moment[0] * c.pulse_sigma_m / std::sqrt(width_m2),
-          std::sqrt(width_m2)};
+  return echo_of(c, integrated(c));
 }
 
 /// Beams of all presets and beyond, on planes at an angle of incidence, that have a closed form.
@@ -184,9 +184,9 @@ TEST(PlaneEcho, HasGardnersWidthInSecondOrder) {
                     .exit_x_m = 0.01,
                     .exit_y_m = 0.01,
                     .rings = 1};
-  const PlaneEcho echo = echo_from({f, {20.0, {0.0, std::tan(1.0)}}});
+  const Measured echo = integrate({f, {20.0, {0.0, std::tan(1.0)}}});
   const double spread_m = std::tan(1.0) * diameter_m(f, 20.0) / 4.0;
-  EXPECT_NEAR(std::sqrt(echo.variance_m2()), spread_m, 1e-4 * spread_m);
+  EXPECT_NEAR(std::sqrt(echo.sigma_m * echo.sigma_m - 0.3 * 0.3), spread_m, 1e-4 * spread_m);
 }
 
 TEST(PlaneEcho, HasNoClosedFormWhereTheBeamGrazesOrWidensThePulse) {
@@ -228,14 +228,17 @@ TEST(PlaneEcho, WeighsReflectancesByTheSubRaysThatSampleThem) {
          .plane = {12.0, {1.5, -0.8}}};
   std::vector<SubRay> rays = sample_footprint(c.footprint);
   const std::vector<double> excess = {0.0, 0.8, -0.5, 0.1, 0.0, 2.0, -1.0};
-  PlaneEcho echo = echo_from(c);
-  echo.add_excess(c.exponent, rays, excess);
-  for (std::size_t k = 0; k < rays.size(); ++k) rays[k].share *= 1.0 + excess[k];
+  std::vector<PlaneBatch::Column> columns;
+  for (const double of_ray : excess) columns.push_back({of_ray});
   c.pulse_sigma_m = 1e3;  // without an influence of the width
+  PlaneBatch planes = integrated(c);
+  add_excess(c.exponent, rays, columns, planes);
+  const Measured echo = echo_of(c, planes);
+  for (std::size_t k = 0; k < rays.size(); ++k) rays[k].share *= 1.0 + excess[k];
   const Measured sampled = sample(c, rays);
-  EXPECT_NEAR(echo.mean_range_m(), sampled.range_m, 2e-5);
-  EXPECT_NEAR(echo.moment[0], sampled.signal, 1e-4 * sampled.signal);
-  EXPECT_GT(std::abs(echo.mean_range_m() - integrate(c).range_m), 1e-3);  // the textures matter
+  EXPECT_NEAR(echo.range_m, sampled.range_m, 2e-5);
+  EXPECT_NEAR(echo.signal, sampled.signal, 1e-4 * sampled.signal);
+  EXPECT_GT(std::abs(echo.range_m - integrate(c).range_m), 1e-3);  // the textures matter
 }
 
 }  // namespace
