@@ -16,6 +16,8 @@
 #include <glidar/output/output.hpp>
 #include <glidar/simulate/simulator.hpp>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -122,8 +124,10 @@ void write_plain(benchmark::State& state, const Street& street) {
   state.SetBytesProcessed(state.iterations() * kFrames * static_cast<std::int64_t>(bytes.size()));
 }
 
-/// A bag of the street with this compression. Returns its path.
-std::filesystem::path write_input(const Street& street, bags::Compression compression) {
+enum class Input : std::uint8_t { mcap, mcap_zstd, sqlite };
+
+/// A bag of the street in this format. Returns its path.
+std::filesystem::path write_input(const Street& street, Input input) {
   const auto plain = street.open_bag();
   Frame frame;
   for (std::uint32_t number = 0; number < kFrames; ++number) {
@@ -131,8 +135,11 @@ std::filesystem::path write_input(const Street& street, bags::Compression compre
     plain->write({.frame = frame, .beams = *street.beams});
   }
   plain->finish();
-  if (compression == bags::Compression::none) return street.bag();
-  const std::filesystem::path path = street.folder / "bag_bench_packed.mcap";
+  if (input == Input::mcap) return street.bag();
+  const bool is_sqlite = input == Input::sqlite;
+  const std::filesystem::path path =
+      street.folder / (is_sqlite ? "bag_bench.rosbag2" : "bag_bench_packed.mcap");
+  const auto compression = is_sqlite ? bags::Compression::none : bags::Compression::zstd;
   const auto from = bags::open_bag_unconfined(street.bag());
   const auto to = bags::create_bag(path, {.compression = compression});
   for (const bags::StoredTopic& topic : from->topics())
@@ -165,13 +172,13 @@ struct Reading {
   std::string title;
   void (*read)(benchmark::State&, const std::filesystem::path&, OpenBag);
   OpenBag open;
-  bags::Compression compression;
+  Input input;
 };
 
 void enter_reading(const std::shared_ptr<const Street>& street, const Reading& reading) {
   benchmark::RegisterBenchmark(reading.title.c_str(),
                                [street, reading](benchmark::State& state) {
-                                 reading.read(state, write_input(*street, reading.compression),
+                                 reading.read(state, write_input(*street, reading.input),
                                               reading.open);
                                })
       ->UseRealTime()
@@ -180,12 +187,16 @@ void enter_reading(const std::shared_ptr<const Street>& street, const Reading& r
 
 void add_reading(const std::filesystem::path& folder, std::vector<Ratio>& ratios) {
   const auto street = std::make_shared<const Street>(1, folder);
-  for (const auto compression : {bags::Compression::none, bags::Compression::zstd}) {
+  constexpr std::array<std::pair<Input, const char*>, 3> kInputs = {
+      {{Input::mcap, " of a bag"},
+       {Input::mcap_zstd, " of a zstd bag"},
+       {Input::sqlite, " of a SQLite bag"}}};
+  for (const auto& [input, title] : kInputs) {
     for (const auto read : {read_messages, read_clouds}) {
       std::string name = read == read_messages ? "messages" : "clouds";
-      name += compression == bags::Compression::none ? " of a bag" : " of a zstd bag";
-      const Reading here{name + ", in this process", read, bags::open_bag_unconfined, compression};
-      const Reading there{name + ", sandboxed", read, bags::open_bag, compression};
+      name += title;
+      const Reading here{name + ", in this process", read, bags::open_bag_unconfined, input};
+      const Reading there{name + ", sandboxed", read, bags::open_bag, input};
       enter_reading(street, here);
       enter_reading(street, there);
       constexpr double kGoal = 1.0 / 1.2;
@@ -226,6 +237,7 @@ int main(int argc, char** argv) {
   const int result = glidar::bench::run(argc, argv, ratios);
   std::filesystem::remove(folder / "bag_bench.mcap");
   std::filesystem::remove(folder / "bag_bench_packed.mcap");
+  std::filesystem::remove_all(folder / "bag_bench.rosbag2");
   std::filesystem::remove(folder / "bag_bench.plain");
   return result;
 }

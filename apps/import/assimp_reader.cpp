@@ -7,6 +7,7 @@
 #include <import/declared_frame.hpp>
 #include <import/mend_model.hpp>
 #include <import/polygons.hpp>
+#include <import/process_limits.hpp>
 #include <import/skin.hpp>
 
 #include <glidar/core/text.hpp>
@@ -319,6 +320,7 @@ class Tree {
       const std::uint32_t of = &node == scene_.mRootNode
                                    ? add_node(source_.nodes, name.C_Str(), part, model_from_node)
                                    : part;
+      source_.take_instances(1);
       source_.place({index, placed, std::string(name.C_Str()), of});
     }
   }
@@ -362,29 +364,47 @@ void copy_materials(const aiScene& scene, SourceModel& source) {
   }
 }
 
-}  // namespace
-
-SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFolder& folder,
-                             ModelFiles& files, FileLog& log,
-                             const std::function<void(double)>& progress) {
+/// As read_with_assimp(), within limits.
+SourceModel read_within(InputLimits& limits, const std::filesystem::path& model,
+                        const ModelFolder& folder, ModelFiles& files, FileLog& log,
+                        const std::function<void(double)>& progress) {
   const auto own = files.content(model.string());
+  limits.set_input(own->size());
   SourceModel source;
   const std::map<std::string, std::string> names = mend_model(model, files, source.notes);
   // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
-  importer.SetIOHandler(new ConfinedIo(folder, files, log));
+  importer.SetIOHandler(new ConfinedIo(folder, files, limits, log));
   importer.SetProgressHandler(new AssimpProgress(progress));
   // Files without surfaces have nothing to measure.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   if (importer.ReadFile(model.string(), kSteps) == nullptr) refuse(importer.GetErrorString(), log);
   // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene& scene = *importer.GetOrphanedScene();
+  source.budget.add_input(files.total_bytes());
   source.format = importer_name(importer);
   source.is_single_precision = true;
   source.declared = extract_declared_frame(scene, source.format, *own, source.notes);
   Tree(scene, copy_meshes(scene, source), names, source).place();
   copy_materials(scene, source);
   return source;
+}
+
+}  // namespace
+
+SourceModel read_with_assimp(const std::filesystem::path& model, const ModelFolder& folder,
+                             ModelFiles& files, FileLog& log,
+                             const std::function<void(double)>& progress) {
+  InputLimits limits;
+  try {
+    return read_within(limits, model, folder, files, log, progress);
+  } catch (const std::bad_alloc&) {
+    if (!limits.is_strictest()) throw;
+    throw Refusal{fmt::format("reading it needs more memory than {} MiB, which is the limit for a "
+                              "file of its size",
+                              limits.memory_bytes() >> 20U),
+                  "the file may be corrupt; otherwise save the model as PLY, OBJ or glTF"};
+  }
 }
 
 }  // namespace glidar::import

@@ -80,8 +80,8 @@ std::string shown_name(std::string name, const ModelFolder& folder) {
 
 }  // namespace
 
-ConfinedIo::ConfinedIo(ModelFolder folder, ModelFiles& files, FileLog& log)
-    : folder_(std::move(folder)), files_(files), log_(log) {}
+ConfinedIo::ConfinedIo(ModelFolder folder, ModelFiles& files, InputLimits& limits, FileLog& log)
+    : folder_(std::move(folder)), files_(files), limits_(limits), log_(log) {}
 
 ConfinedFile ConfinedIo::find(const char* path) const {
   std::string tidy = path;
@@ -117,6 +117,7 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
     add_once(log_.absent, path);
     return nullptr;
   }
+  limits_.set_input(files_.total_bytes());
   return new ReadStream(std::move(content));
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <import/model_files.hpp>
+#include <import/process_limits.hpp>
 
 #include <glidar/io/model/model_folder.hpp>
 
@@ -17,8 +18,9 @@ namespace glidar::import {
 /// copies.
 class ConfinedIo : public Assimp::IOSystem {
  public:
-  /// Assimp owns this object; files and log must outlive it.
-  ConfinedIo(ModelFolder folder, ModelFiles& files, FileLog& log);
+  /// Assimp owns this object; files, limits and log must outlive it. Every file that is opened
+  /// raises the limits.
+  ConfinedIo(ModelFolder folder, ModelFiles& files, InputLimits& limits, FileLog& log);
   bool Exists(const char* path) const override;
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* path, const char* mode) override;
@@ -32,6 +34,7 @@ class ConfinedIo : public Assimp::IOSystem {
 
   ModelFolder folder_;
   ModelFiles& files_;
+  InputLimits& limits_;
   FileLog& log_;
 };
 

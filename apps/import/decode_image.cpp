@@ -13,6 +13,7 @@
 #include <array>
 #include <climits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 namespace glidar::import {
@@ -90,12 +91,16 @@ Decoded decode_webp(std::span<const std::uint8_t> bytes, std::uint64_t budget) {
   return decoded;
 }
 
-/// Scans of a JPEG (ITU-T T.81, annex B), without those in its thumbnails and after its end.
-std::uint64_t scans_of(std::span<const std::uint8_t> jpeg) {
+bool is_jpeg(std::span<const std::uint8_t> bytes) {
+  return bytes.size() > 1 && bytes[0] == 0xFF && bytes[1] == 0xD8;
+}
+
+/// Calls `visit` with the code of each segment of a JPEG (ITU-T T.81, annex B) and its content,
+/// which may be cut off, without those in its thumbnails and after its end.
+template <class Visit>
+void for_segments(std::span<const std::uint8_t> jpeg, const Visit& visit) {
   constexpr std::uint8_t kMarker = 0xFF;
   constexpr std::uint8_t kEnd = 0xD9;
-  constexpr std::uint8_t kScan = 0xDA;
-  std::uint64_t scans = 0;
   for (std::size_t at = 2; at + 3 < jpeg.size();) {
     const std::uint8_t code = jpeg[at + 1];
     const bool is_data = jpeg[at] != kMarker || code == 0 || code == kMarker ||
@@ -105,19 +110,41 @@ std::uint64_t scans_of(std::span<const std::uint8_t> jpeg) {
       continue;
     }
     if (code == kEnd) break;
-    if (code == kScan) ++scans;
-    at += 2 + (std::size_t{jpeg[at + 2]} << 8U) + jpeg[at + 3];
+    const std::size_t size = (std::size_t{jpeg[at + 2]} << 8U) + jpeg[at + 3];
+    const auto rest = jpeg.subspan(at + 2);
+    visit(code, rest.first(std::min(size, rest.size())));
+    at += 2 + size;
   }
-  return scans;
+}
+
+/// Huffman tables with more than 256 codes, for which stb_image has no room, or that do not end
+/// with their segment (ITU-T T.81, B.2.4.2).
+bool has_broken_tables(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint8_t kTables = 0xC4;
+  constexpr std::size_t kLengths = 16;
+  bool is_broken = false;
+  for_segments(bytes, [&](std::uint8_t code, std::span<const std::uint8_t> segment) {
+    if (code != kTables) return;
+    std::size_t at = 2;
+    while (at + kLengths < segment.size()) {
+      const auto counts = segment.subspan(at + 1, kLengths);
+      const std::size_t codes = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+      is_broken = is_broken || codes > 256;
+      at += 1 + kLengths + codes;
+    }
+    is_broken = is_broken || at != segment.size();
+  });
+  return is_broken;
 }
 
 /// Each scan of a progressive JPEG costs time for all texels, however small it is.
 bool has_too_many_scans(std::span<const std::uint8_t> bytes, std::uint64_t texels) {
   constexpr std::uint64_t kAlways = 32;                         // encoders write about ten
   constexpr std::uint64_t kMostWork = std::uint64_t{1} << 29U;  // texels: about a second
-  const bool is_jpeg = bytes.size() > 1 && bytes[0] == 0xFF && bytes[1] == 0xD8;
-  return is_jpeg &&
-         scans_of(bytes) > std::max(kAlways, kMostWork / std::max<std::uint64_t>(texels, 1));
+  constexpr std::uint8_t kScan = 0xDA;
+  std::uint64_t scans = 0;
+  for_segments(bytes, [&](std::uint8_t code, auto) { scans += code == kScan ? 1 : 0; });
+  return scans > std::max(kAlways, kMostWork / std::max<std::uint64_t>(texels, 1));
 }
 
 }  // namespace
@@ -138,6 +165,7 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
     std::string refused = too_large(declared->width, declared->height, 4, budget);
     if (!refused.empty()) return no_image(std::move(refused));
   }
+  if (is_jpeg(bytes) && has_broken_tables(bytes)) return no_image("broken: its Huffman tables");
   if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
     return no_image(
         "not an image that can be read (PNG, JPEG, WebP, BMP, TGA, GIF, PSD, HDR, PNM)");
@@ -147,8 +175,9 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
   std::string refused =
       too_large(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 4, budget);
   if (!refused.empty()) return no_image(std::move(refused));
-  if (has_too_many_scans(bytes,
-                         static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height)))
+  const std::uint64_t texels_of_all =
+      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  if (is_jpeg(bytes) && has_too_many_scans(bytes, texels_of_all))
     return no_image("a JPEG with too many scans for its size");
   const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
       stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 0), stbi_image_free);

@@ -217,6 +217,7 @@ void add_meshes(FileLists lists, SourceModel& source) {
     if (mesh.triangles.empty()) return;
     mesh.material = part.material;
     source.meshes.push_back(std::move(mesh));
+    source.take_instances(1);
     source.place({source.meshes.size() - 1, Eigen::Matrix4d::Identity(), part.name, part.node});
   };
   if (is_one_list(lists)) {

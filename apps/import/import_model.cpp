@@ -60,7 +60,9 @@ std::string_view open_buffer(const std::string& uri, const ModelFolder& folder, 
     throw Refusal{"its buffer '" + uri.substr(0, kShown) + "' is on a network, which is not read",
                   "download it, and save the model with its buffers"};
   }
-  for (const std::string& name : {percent_decoded(uri), uri}) {
+  std::string forward = percent_decoded(uri);
+  std::replace(forward.begin(), forward.end(), '\\', '/');
+  for (const std::string& name : {percent_decoded(uri), uri, forward}) {
     const ConfinedFile found = confine(name, folder);
     const auto file =
         found.access == Access::granted ? files.content(found.path.string()) : nullptr;

@@ -49,6 +49,9 @@ class Mender {
       : root_(document.document_element()), notes_(notes) {
     // Explicit walks, because hostile documents are deep.
     for (Node node = root_; node; node = following(node)) strip_prefix(node);
+    if (root_.name() != std::string_view("COLLADA")) {
+      throw Refusal{"its XML has no element <COLLADA> around all others", kExport};
+    }
     drop_libraries();
     for (Node node = root_; node; node = following(node)) elements_[node.name()].push_back(node);
   }
@@ -58,6 +61,8 @@ class Mender {
     for (const char* name : {"instance_camera", "instance_light"}) {
       for (Node node : elements_[name]) node.parent().remove_child(node);
     }
+    for (const Node& node : elements_["color"]) complete_colour(node);
+    for (const Node& node : elements_["accessor"]) name_parameters(node);
     drop_textures();
     for (const char* name : {"tristrips", "trifans"}) {
       for (const Node& node : elements_[name]) unfold(node, name == std::string_view("tristrips"));
@@ -87,7 +92,7 @@ class Mender {
   static void strip_prefix(Node& node) {
     const std::string_view name = node.name();
     const std::size_t colon = name.find(':');
-    if (colon != std::string_view::npos) node.set_name(std::string(name.substr(colon + 1)).c_str());
+    if (colon < name.size() - 1) node.set_name(std::string(name.substr(colon + 1)).c_str());
   }
 
   void refuse_unreadable() {
@@ -180,6 +185,33 @@ class Mender {
       } else if (!property.first_child()) {
         property.parent().remove_child(property);
       }
+    }
+  }
+
+  /// Assimp refuses documents with colours of three numbers.
+  static void complete_colour(const Node& colour) {
+    const std::string text(trimmed(colour.child_value()));
+    std::size_t numbers = 0;
+    for (std::size_t at = 0; at < text.size(); ++numbers) {
+      at = text.find_first_not_of(kWhiteSpace,
+                                  std::min(text.find_first_of(kWhiteSpace, at), text.size()));
+    }
+    if (numbers == 3) colour.text().set((text + " 1").c_str());
+  }
+
+  /// Assimp reads parameters without names as the first one.
+  void name_parameters(const Node& accessor) {
+    std::vector<Node> parameters;
+    for (const Node& parameter : accessor.children("param")) {
+      if (*parameter.attribute("name").value() != '\0') return;
+      parameters.push_back(parameter);
+    }
+    if (parameters.size() < 2 || parameters.size() > 4) return;
+    notes_.add("parameters without names are read in their order");
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const char* const name = std::array{"X", "Y", "Z", "W"}[i];
+      parameters[i].remove_attribute("name");
+      parameters[i].append_attribute("name").set_value(name);
     }
   }
 

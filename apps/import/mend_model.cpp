@@ -113,6 +113,7 @@ bool is_picture(const std::string& name) {
 bool is_read(std::string_view name_space) {
   return name_space.find("/core/") != std::string_view::npos ||
          name_space.find("/material/") != std::string_view::npos ||
+         name_space.find("/production/") != std::string_view::npos ||  // without paths
          name_space.find("/trianglesets/") != std::string_view::npos;
 }
 
@@ -165,6 +166,78 @@ void check_instances(const pugi::xml_node& model) {
                 "place them by a scene file"};
 }
 
+/// A group of materials or colours (3MF) and an index into it.
+using Property = std::pair<std::string, std::string>;
+
+/// Of a triangle; where it has none, that of its object.
+Property property_of(const pugi::xml_node& triangle, const pugi::xml_node& object) {
+  const pugi::xml_node& group = triangle.attribute("pid") ? triangle : object;
+  const pugi::xml_attribute index = triangle.attribute("p1");
+  return {group.attribute("pid").value(), (index ? index : object.attribute("pindex")).value()};
+}
+
+using Triangles = std::vector<pugi::xml_node>;
+
+std::map<Property, Triangles> triangles_by_property(const pugi::xml_node& object, Notes& notes) {
+  std::map<Property, Triangles> found;
+  for (const pugi::xml_node& triangle : object.child("mesh").child("triangles").children()) {
+    if (std::string_view(triangle.name()) != "triangle") continue;
+    found[property_of(triangle, object)].push_back(triangle);
+    for (const char* other : {"p2", "p3"}) {
+      const pugi::xml_attribute index = triangle.attribute(other);
+      if (!index || index.value() == std::string_view(triangle.attribute("p1").value())) continue;
+      notes.add("colours that vary within triangles (3MF) are not used, but those of their p1");
+    }
+  }
+  return found;
+}
+
+/// Adds an object before another one, with some of its triangles.
+void add_object(pugi::xml_node whole, unsigned id, const Property& property,
+                const Triangles& triangles) {
+  pugi::xml_node part = whole.parent().insert_child_before("object", whole);
+  part.append_attribute("id").set_value(id);
+  pugi::xml_node mesh = part.append_child("mesh");
+  mesh.append_copy(whole.child("mesh").child("vertices"));
+  pugi::xml_node list = mesh.append_child("triangles");
+  for (const pugi::xml_node& triangle : triangles) {
+    pugi::xml_node copy = list.append_copy(triangle);
+    for (const char* name : {"pid", "p1", "p2", "p3"}) copy.remove_attribute(name);
+    if (property.first.empty()) continue;
+    copy.append_attribute("pid").set_value(property.first.c_str());
+    copy.append_attribute("p1").set_value(property.second.c_str());
+  }
+}
+
+/// Assimp gives all triangles of an object the material of the last one. Replaces objects with
+/// several materials by components, one for each.
+void split_materials(const pugi::xml_node& model, Notes& notes) {
+  constexpr std::ptrdiff_t kMostVertices = 4'000'000;  // each part has those of the object
+  std::vector<pugi::xml_node> objects;
+  std::ptrdiff_t vertices_left = kMostVertices;
+  unsigned last_id = 0;
+  for (const pugi::xml_node& resource : model.child("resources").children()) {
+    last_id = std::max(last_id, resource.attribute("id").as_uint());
+    if (std::string_view(resource.name()) == "object") objects.push_back(resource);
+  }
+  for (pugi::xml_node& object : objects) {
+    const std::map<Property, Triangles> parts = triangles_by_property(object, notes);
+    if (parts.size() < 2) continue;
+    const auto vertices = object.child("mesh").child("vertices").children();
+    vertices_left -=
+        static_cast<std::ptrdiff_t>(parts.size()) * std::distance(vertices.begin(), vertices.end());
+    if (vertices_left < 0) {
+      return notes.add("triangles of an object have too many materials (3MF): they have one");
+    }
+    pugi::xml_node components = object.append_child("components");
+    for (const auto& [property, triangles] : parts) {
+      add_object(object, ++last_id, property, triangles);
+      components.append_child("component").append_attribute("objectid").set_value(last_id);
+    }
+    object.remove_child("mesh");
+  }
+}
+
 /// The pictures that the resources of a model refer to.
 void add_pictures(const pugi::xml_node& model, std::set<std::string>& pictures) {
   for (const pugi::xml_node& resource : model.child("resources")) {
@@ -182,12 +255,13 @@ std::string mended_3mf(const ZipArchive& archive, const std::vector<std::string>
     std::string content = archive.content(name);
     if (name.ends_with(".model")) {
       const pugi::xml_document document = parsed_xml(content, "the XML of " + name);
+      split_materials(document.document_element(), notes);
       check_extensions(document.document_element(), notes);
       check_paths(document.document_element());
       check_instances(document.document_element());
       add_pictures(document.document_element(), pictures);
       add_names(document, "object", "Object_", node_names);
-      if (is_utf16(content)) content = as_utf8(document);
+      content = as_utf8(document);
     }
     kept.emplace(name, std::move(content));
   }

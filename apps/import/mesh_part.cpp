@@ -191,7 +191,9 @@ Mesh make_part(SourceMesh& mesh, const Placed& placed, const Eigen::Vector3d& or
   if (!part.normals.empty()) {
     mend_normals(part, repairs);
   } else {
-    make_normals(part, needs.crease_angle_rad);
+    // Welded ones have the same position only if they differ in something else.
+    const bool are_distinct = part.uvs[0].empty() && part.uvs[1].empty() && part.colours.empty();
+    make_normals(part, needs.crease_angle_rad, are_distinct);
   }
   const bool can_have_tangents = needs.tangents && !part.uvs[needs.normal_uv].empty();
   if (can_have_tangents && part.tangents.empty()) make_tangents(part, needs.normal_uv);

@@ -107,6 +107,7 @@ std::shared_ptr<FileContent> ModelFiles::content(const std::string& path) {
       std::make_shared<FileContent>(std::move(file), static_cast<std::size_t>(info.st_size));
   entries_.emplace(path, Entry{content, ""});
   paths_.push_back(path);
+  total_bytes_ += content->size();
   return content;
 }
 

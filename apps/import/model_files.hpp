@@ -7,6 +7,7 @@
 #include <glidar/io/model/model_folder.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -79,6 +80,8 @@ class ModelFiles {
 
   /// Canonical paths of all files that were opened, in the order of opening.
   [[nodiscard]] const std::vector<std::string>& paths() const { return paths_; }
+  /// Size of all of them together.
+  [[nodiscard]] std::uint64_t total_bytes() const { return total_bytes_; }
   /// Hexadecimal hashes of their content, in the same order.
   std::vector<std::string> hashes();
 
@@ -90,6 +93,7 @@ class ModelFiles {
 
   std::vector<std::pair<std::filesystem::path, UniqueFd>> roots_;
   std::vector<std::string> paths_;
+  std::uint64_t total_bytes_ = 0;
   std::map<std::string, Entry> entries_;
   std::map<std::string, std::string> replacements_;
 };

@@ -5,6 +5,7 @@
 #include <import/text_cursor.hpp>
 
 #include <glidar/core/text.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <fmt/format.h>
 
@@ -30,10 +31,11 @@ std::string_view next_word(std::string_view& text) {
 /// Removes and returns a number at the start of the text.
 std::optional<float> next_number(std::string_view& text) {
   std::string_view rest = text;
-  const auto value = number_in(next_word(rest));
-  if (!value || !std::isfinite(*value)) return std::nullopt;
+  const auto number = number_in(next_word(rest));
+  const auto value = static_cast<float>(number.value_or(kNaN));
+  if (!std::isfinite(value)) return std::nullopt;
   text = rest;
-  return static_cast<float>(*value);
+  return value;
 }
 
 /// The text before a comment, which begins with a word.
@@ -239,7 +241,11 @@ void MtlReader::read(std::string_view file, const std::string& name) {
   while (text.find_word()) {
     line_ = text.line();
     const std::string_view keyword = text.word();
-    if (!keyword.starts_with('#')) read_statement(keyword, text.rest());
+    if (keyword.starts_with('#')) {
+      text.skip_comment();
+    } else {
+      read_statement(keyword, text.rest());
+    }
     text.next_line();
   }
 }

@@ -440,6 +440,7 @@ void read_library(const std::string& names, const ReaderInput& input, MtlReader&
 
 SourceModel read_obj(const ReaderInput& input) {
   SourceModel source;
+  source.budget.add_input(input.content().size());
   source.format = "Wavefront Object";
   std::string storage;
   ObjReader reader(input.text(storage, true), source);

@@ -31,11 +31,12 @@ struct OffKind {
 
 OffKind kind_of(std::string_view word, std::uint64_t line) {
   OffKind kind;
-  if (!word.ends_with("OFF") && !word.ends_with("off")) return kind;
+  const bool is_small = word.ends_with("off");
+  if (!is_small && !word.ends_with("OFF")) return kind;
   const std::string_view whole = word;
   word.remove_suffix(3);
-  const auto take = [&word](std::string_view prefix) {
-    if (!word.starts_with(prefix)) return false;
+  const auto take = [&word, is_small](std::string_view prefix) {
+    if (!word.starts_with(is_small ? lower_case(prefix) : prefix)) return false;
     word.remove_prefix(prefix.size());
     return true;
   };
@@ -80,27 +81,25 @@ class OffText {
 
  private:
   OffCounts read_counts() {
-    if (!text_.find_word()) refuse_line(text_.line(), "the file ends too early");
     std::array<std::int64_t, 3> counts{};
     std::size_t found = 0;
-    for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
-      const auto count = integer_in(word);
-      if (!count || *count < 0 || found == counts.size()) {
-        refuse_line(text_.line(),
-                    "'" + shown(word) + "' instead of the counts of vertices, faces and edges");
+    // The number of edges is often missing, but not if each has a line of its own.
+    for (std::size_t needed = 2; found < needed;) {
+      if (!text_.find_word()) refuse_line(text_.line(), "the file ends too early");
+      for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
+        const auto count = integer_in(word);
+        if (!count || *count < 0 || found == counts.size()) {
+          refuse_line(text_.line(),
+                      "'" + shown(word) + "' instead of the counts of vertices, faces and edges");
+        }
+        counts[found++] = *count;
       }
-      counts[found++] = *count;
+      if (found == 1) needed = 3;
     }
-    if (found < 2) refuse_line(text_.line(), "only one of the counts of vertices and faces");
     return {static_cast<std::uint64_t>(counts[0]), static_cast<std::uint64_t>(counts[1])};
   }
 
-  /// The numbers of the next line that has some.
-  void read_line(const char* what, std::uint64_t number) {
-    if (!text_.find_word()) {
-      refuse_line(text_.line(), fmt::format("the file ends before {} {}", what, number));
-    }
-    numbers_.clear();
+  void append_line() {
     for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
       const auto value = number_in(word);
       if (!value) refuse_line(text_.line(), "'" + shown(word) + "' is not a number");
@@ -108,14 +107,30 @@ class OffText {
     }
   }
 
+  /// The numbers of the next line that has some.
+  void read_line(const char* what, std::uint64_t number) {
+    if (!text_.find_word()) {
+      refuse_line(text_.line(), fmt::format("the file ends before {} {}", what, number));
+    }
+    line_ = text_.line();
+    numbers_.clear();
+    append_line();
+  }
+
+  /// Appends the numbers of further lines if there are fewer than `needed`.
+  void read_further_lines(double needed) {
+    while (static_cast<double>(numbers_.size()) < needed && text_.find_word()) append_line();
+  }
+
   void read_vertex(std::uint64_t number) {
     read_line("vertex", number);
     const std::size_t fixed = 3 + (kind_.normals ? 3U : 0U) + (kind_.uvs ? 2U : 0U);
+    if (numbers_.size() < 3) read_further_lines(static_cast<double>(fixed));
     const std::size_t colour = numbers_.size() - std::min(fixed, numbers_.size());
     const bool is_colour = colour == 3 || colour == 4;
     const bool fits = numbers_.size() >= fixed && (is_colour || (!kind_.colours && colour == 0));
     if (!fits) {
-      refuse_line(text_.line(), fmt::format("vertex {} has {} numbers", number, numbers_.size()));
+      refuse_line(line_, fmt::format("vertex {} has {} numbers", number, numbers_.size()));
     }
     if (is_colour && !kind_.colours) {
       source_.notes.add(
@@ -163,10 +178,11 @@ class OffText {
     if (text_.find_word() && read_plain_face()) return;
     read_line("face", number);
     const double count = numbers_[0];
+    read_further_lines(count + 1.0);
     if (!(count >= 0.0) || count != std::floor(count) ||
         count + 1.0 > static_cast<double>(numbers_.size())) {
-      refuse_line(text_.line(), fmt::format("face {} has {} numbers after its count {:g}", number,
-                                            numbers_.size() - 1, count));
+      refuse_line(line_, fmt::format("face {} has {} numbers after its count {:g}", number,
+                                     numbers_.size() - 1, count));
     }
     const auto corners = static_cast<std::size_t>(count);
     corners_.clear();
@@ -174,8 +190,8 @@ class OffText {
       const double index = numbers_[i];
       if (!(index >= 0.0) || index != std::floor(index) ||
           index >= static_cast<double>(lists_.positions.size())) {
-        refuse_line(text_.line(), fmt::format("face {} names vertex {:g} of {} (from 0)", number,
-                                              index, lists_.positions.size()));
+        refuse_line(line_, fmt::format("face {} names vertex {:g} of {} (from 0)", number, index,
+                                       lists_.positions.size()));
       }
       corners_.push_back(static_cast<std::uint32_t>(index));
     }
@@ -192,7 +208,7 @@ class OffText {
     if (count == 1 || count == 2) {
       source_.notes.add("colours of faces by their number in a list are not used");
     } else if (count > 4) {
-      refuse_line(text_.line(), fmt::format("face {} has {} numbers too many", number, count - 4));
+      refuse_line(line_, fmt::format("face {} has {} numbers too many", number, count - 4));
     }
     auto& colours = lists_.faces.colours;
     if (count < 3 && colours.empty()) return;
@@ -207,7 +223,8 @@ class OffText {
   TextCursor text_;
   SourceModel& source_;
   FileLists& lists_;
-  std::vector<double> numbers_;  ///< of the current line
+  std::vector<double> numbers_;  ///< of the current vertex or face
+  std::uint64_t line_ = 0;       ///< where it begins
   std::vector<std::uint32_t> corners_;
 };
 
@@ -321,6 +338,7 @@ void finish_colours(SourceModel& source, FileLists& lists) {
 
 SourceModel read_off(const ReaderInput& input) {
   SourceModel source;
+  source.budget.add_input(input.content().size());
   source.format = "Object File Format (OFF)";
   source.materials.emplace_back();
   std::string storage;

@@ -624,6 +624,7 @@ void read_body(const ReaderInput& input, const PlyHeader& header, Values values,
 
 SourceModel read_ply(const ReaderInput& input) {
   SourceModel source;
+  source.budget.add_input(input.content().size());
   source.format = "Stanford Polygon Library (PLY)";
   std::string_view file = input.bytes();
   if (file.starts_with("\xEF\xBB\xBF")) file.remove_prefix(3);

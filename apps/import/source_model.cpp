@@ -90,17 +90,34 @@ std::vector<std::string> Notes::texts() const {
   return all;
 }
 
-void SourceModel::place(Placed instance) {
-  triangles_ += meshes.at(instance.mesh).triangles.size();
-  require_room(1);
-  placed.push_back(std::move(instance));
+namespace {
+
+[[noreturn]] void refuse_instances(std::uint64_t most, const char* what) {
+  throw Refusal{fmt::format("its tree places more than {} {}", most, what),
+                "make the model smaller, or place its parts by a scene file"};
 }
 
-void SourceModel::require_room(std::size_t instances) const {
-  if (triangles_ <= kMaxTriangles && placed.size() + instances <= kMaxRecords) return;
-  throw Refusal{fmt::format("the instances in its tree have more than {} triangles or {} parts",
-                            kMaxTriangles, kMaxRecords),
-                "make the model smaller, or place its parts by a scene file"};
+}  // namespace
+
+void SourceModel::take_instances(std::size_t count) {
+  if (budget.try_take(Budget::instances, count)) return;
+  refuse_instances(budget.limit(Budget::instances),
+                   "meshes, which is the limit for a file of its size");
+}
+
+void SourceModel::place(Placed instance) {
+  const SourceMesh& mesh = meshes.at(instance.mesh);
+  triangles_ += mesh.triangles.size();
+  if (triangles_ > kMaxTriangles) refuse_instances(kMaxTriangles, "triangles");
+  is_placed_.resize(meshes.size());
+  const bool is_copy = is_placed_[instance.mesh];
+  is_placed_[instance.mesh] = true;
+  if (is_copy && !budget.try_take(Budget::copies, mesh.triangles.size() + mesh.positions.size())) {
+    refuse_instances(budget.limit(Budget::copies),
+                     "vertices and triangles in copies of its meshes, which is the limit for a "
+                     "file of its size");
+  }
+  placed.push_back(std::move(instance));
 }
 
 void require_triangles(const SourceModel& source) {

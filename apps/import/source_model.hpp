@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/io/files/input_file.hpp>
 #include <glidar/io/model/model.hpp>
 
 #include <Eigen/Core>
@@ -147,16 +148,19 @@ struct SourceModel {
   /// Vertices of `stated` that faces use; none where `stated` has none.
   std::optional<std::uint64_t> used_vertices;
   Notes notes;
+  InputBudget budget{0};  ///< of the file and its companions; counts what small files can multiply
 
-  /// Adds an instance. Throws Refusal if the instances have too many triangles or parts: a small
-  /// file can place a mesh very often.
+  /// Counts so many further instances. Throws Refusal, before memory is used for them, if they are
+  /// too many for the size of the input.
+  void take_instances(std::size_t count);
+
+  /// Adds an instance that take_instances() has counted. Throws Refusal if the copies of meshes are
+  /// too large for the size of the input.
   void place(Placed instance);
-
-  /// Throws the same for so many further instances, before memory is used for them.
-  void require_room(std::size_t instances) const;
 
  private:
   std::uint64_t triangles_ = 0;  ///< of all instances
+  std::vector<bool> is_placed_;  ///< of each mesh: it has an instance
 };
 
 /// Throws Refusal if it has no triangles.

@@ -138,7 +138,7 @@ class AsciiStl {
   /// The words after "solid", up to the end of the line or a facet in the same line.
   std::string read_name() {
     TextCursor from = text_;
-    const std::string whole(from.rest());
+    const std::string whole = from.rest();
     std::string name;
     for (;;) {
       TextCursor ahead = text_;
@@ -316,8 +316,8 @@ bool has_size_of_binary(std::string_view file) {
 bool is_ascii(std::string_view file) {
   TextCursor text(file, false, false);
   if (!text.find_word() || lower_case(text.word()) != "solid") return false;
-  constexpr std::size_t kHead = 4096;
-  const std::string head = lower_case(file.substr(0, kHead));
+  constexpr std::size_t kSearched = 4096;
+  const std::string head = lower_case(file.substr(0, kSearched));
   const bool is_text = head.find('\0') == std::string::npos;
   return is_text && (file.size() < kData || head.find("facet") != std::string::npos ||
                      head.find("endsolid") != std::string::npos);
@@ -327,6 +327,7 @@ bool is_ascii(std::string_view file) {
 
 SourceModel read_stl(const ReaderInput& input) {
   SourceModel source;
+  source.budget.add_input(input.content().size());
   source.format = "Stereolithography (STL)";
   source.materials.emplace_back();
   std::string storage;

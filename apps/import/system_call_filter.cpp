@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <seccomp.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -32,7 +33,7 @@ constexpr std::array kHarmless = {
     SCMP_SYS(sigaltstack), SCMP_SYS(getpid), SCMP_SYS(gettid), SCMP_SYS(getuid), SCMP_SYS(geteuid),
     SCMP_SYS(getgid), SCMP_SYS(getegid), SCMP_SYS(getrlimit), SCMP_SYS(sched_yield),
     SCMP_SYS(sched_getaffinity), SCMP_SYS(restart_syscall), SCMP_SYS(rseq),
-    SCMP_SYS(set_robust_list), SCMP_SYS(exit), SCMP_SYS(exit_group),
+    SCMP_SYS(set_robust_list), SCMP_SYS(setitimer), SCMP_SYS(exit), SCMP_SYS(exit_group),
     // time, random numbers, the number of processors
     SCMP_SYS(clock_gettime), SCMP_SYS(clock_getres), SCMP_SYS(gettimeofday), SCMP_SYS(time),
     SCMP_SYS(getrandom), SCMP_SYS(sysinfo), SCMP_SYS(uname)};
@@ -101,6 +102,12 @@ void allow_own_end(Filter& filter) {
   const auto self = static_cast<std::uint64_t>(::getpid());
   filter.allow(SCMP_SYS(tgkill), equals(0, self));                // abort()
   filter.allow(SCMP_SYS(prlimit64), equals(0, 0), equals(2, 0));  // reads a limit
+  // Sets its own limits, up to those that are fixed (process_limits.hpp).
+  constexpr std::uint64_t kInt = 0xFFFF'FFFF;
+  for (const std::uint64_t resource : {RLIMIT_DATA, RLIMIT_STACK}) {
+    filter.allow(SCMP_SYS(prlimit64), equals(0, 0),
+                 scmp_arg_cmp{1, SCMP_CMP_MASKED_EQ, kInt, resource});
+  }
 }
 
 }  // namespace

@@ -200,10 +200,7 @@ void TextCursor::skip_blanks() {
   for (;;) {
     while (at_ != end_ && is_blank(*at_)) ++at_;
     if (at_ == end_) return;
-    if (comments_ && *at_ == '#') {
-      while (at_ != end_ && !is_line_end(*at_)) ++at_;
-      return;
-    }
+    if (comments_ && *at_ == '#') return skip_comment();
     const char* const next = continuation(at_);
     if (next == nullptr) return;
     at_ = next;
@@ -248,10 +245,22 @@ bool TextCursor::is_line_read() const {
   return at == end_ || is_line_end(*at);
 }
 
-std::string_view TextCursor::rest() {
-  const char* const from = at_;
+std::string TextCursor::rest() {
+  std::string text;
+  for (;;) {
+    const char* const from = at_;
+    const char* next = nullptr;
+    while (at_ != end_ && !is_line_end(*at_) && (next = continuation(at_)) == nullptr) ++at_;
+    text.append(from, at_);
+    if (next == nullptr) return std::string(trimmed(text));
+    text += ' ';
+    at_ = next;
+    ++line_;
+  }
+}
+
+void TextCursor::skip_comment() {
   while (at_ != end_ && !is_line_end(*at_)) ++at_;
-  return trimmed({from, static_cast<std::size_t>(at_ - from)});
 }
 
 bool TextCursor::next_line() {

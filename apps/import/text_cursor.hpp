@@ -47,8 +47,11 @@ class TextCursor {
   std::optional<std::uint32_t> digits();
   /// Whether only blanks follow in this line.
   [[nodiscard]] bool is_line_read() const;
-  /// The rest of this line without blanks at its ends, with its comment.
-  std::string_view rest();
+  /// The rest of this line without blanks at its ends, with its comment and the lines that continue
+  /// it.
+  std::string rest();
+  /// Goes to the end of this line, which no backslash continues.
+  void skip_comment();
   /// Goes to the next line, past what is left of this one. False at the end of the text.
   bool next_line();
   /// Goes to the next line with a word, if this one has none left. False at the end of the text.

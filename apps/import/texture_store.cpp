@@ -3,6 +3,7 @@
 #include <import/texture_store.hpp>
 
 #include <import/decode_image.hpp>
+#include <import/gltf/data_uri.hpp>
 
 #include <glidar/io/model/height_map.hpp>
 
@@ -47,13 +48,16 @@ std::int32_t TextureStore::decode(const std::string& name) {
   std::string file;
   if (const auto image = source_.images.find(name); image != source_.images.end()) {
     decoded = decode_embedded(std::move(image->second), budget_);
-  } else if (name.starts_with("data:")) {
+  } else if (gltf::is_data_uri(name)) {
     decoded = decode_data_uri(name, budget_);
   } else {
     TextureLookup lookup = search_.find(name);
     file = lookup.found;
     decoded.reason = lookup.reason;
     imported_.lookups.push_back(std::move(lookup));
+    // Material files have comments after names.
+    const std::size_t comment = name.find(" #");
+    if (file.empty() && comment != std::string::npos) return decode(name.substr(0, comment));
     if (const auto known = by_file_.find(file); known != by_file_.end()) return known->second;
     if (!file.empty() && is_too_large(file)) {
       decoded.reason = "too large: the file has more than 256 MiB";

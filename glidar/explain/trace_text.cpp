@@ -254,7 +254,7 @@ std::string origin_text(const TraceWriter& out, const WaveformTrace::LightPath& 
 void write_paths(TraceWriter& out, const WaveformTrace& pulse) {
   constexpr std::size_t kMax = 40;
   if (pulse.is_in_closed_form) {
-    out.line("paths", "1: the footprint is on one flat triangle, integrated in closed form");
+    out.line("paths", "1: the footprint is on one flat surface, integrated in closed form");
   } else {
     out.line("paths", "{}, of {} sub-rays and weather", pulse.light_paths.size(), pulse.sub_rays);
   }

@@ -7,16 +7,18 @@
 #include <glidar/core/text.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/sidecar_file.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace glidar {
-namespace {
 
 /// A file to be written.
 struct PlannedFile {
@@ -24,8 +26,11 @@ struct PlannedFile {
   std::vector<std::string> columns;
   std::string frame_name;  ///< optical, ros, gl, world or legacy
   bool deskew = false;
+  bool has_all_frames = false;  ///< and not one of them
   std::unique_ptr<FileSink> sink;
 };
+
+namespace {
 
 void add_missing(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -55,9 +60,9 @@ void check_standard_output(const FrameFileRequest& request) {
 
 void check_picture(const CloudPictureOptions& picture) {
   if (!picture.eye_m || !picture.target_m || *picture.eye_m != *picture.target_m) return;
-  throw Error({.where = "--view-eye",
+  throw Error({.where = "--view-eye (view_eye in Python)",
                .found = "it is the point that the camera looks at",
-               .allowed = "a position other than --view-target"});
+               .allowed = "a position other than that of --view-target (view_target)"});
 }
 
 void refuse_terminal(const FileFormat& format, const FileSinkOptions& options) {
@@ -85,6 +90,12 @@ std::vector<std::string> legacy_columns(const std::filesystem::path& path) {
   return columns_of(format_for(path), {"xyz", "intensity"});
 }
 
+/// Whether a path of a sequence gets all frames.
+bool has_all_frames(const FrameFileRequest& request, const std::string& path) {
+  return request.is_sequence && !request.per_frame && path != kStandardOutput &&
+         takes_runs(path, request.sink);
+}
+
 /// The path of one file.
 PlannedFile plan_file(const std::string& path, const FrameFileRequest& request,
                       const FileSinkOptions& options, const SidecarContext& context,
@@ -95,7 +106,13 @@ PlannedFile plan_file(const std::string& path, const FrameFileRequest& request,
       .columns = columns_of(format, requested_columns(request)),
       .frame_name = frame_for(format, request.frame),
       .deskew = request.deskew || format.is_survey,
+      .has_all_frames = has_all_frames(request, path),
       .sink = nullptr};
+  if (file.has_all_frames) {
+    add_missing("stamp", file.columns);
+    if (request.frame.empty()) file.frame_name = "world";
+    file.deskew = true;
+  }
   if (path == kStandardOutput) {
     refuse_terminal(format, options);
     file.sink =
@@ -185,27 +202,6 @@ void commit_all(const std::vector<PlannedFile>& files) {
     }
     written += " " + file.path.string();
   }
-}
-
-void write_files(const std::vector<PlannedFile>& files, const RigFrame& written, const Scene& scene,
-                 const Report& report) {
-  PointCloud cloud;
-  const PlannedFile* previous = nullptr;
-  for (const PlannedFile& file : files) {
-    if (report.progress) report.progress("writing " + file.path.string(), -1.0);
-    const bool is_same_cloud = previous != nullptr && previous->columns == file.columns &&
-                               previous->frame_name == file.frame_name &&
-                               previous->deskew == file.deskew;
-    if (!is_same_cloud) {
-      OutputFrame axes =
-          output_frame(file.frame_name, written.beams, written.frame.world_from_sensor);
-      axes.deskew = file.deskew;
-      make_point_cloud(written.frame, written.beams, scene, axes, file.columns, cloud);
-      previous = &file;
-    }
-    file.sink->stage(cloud, written.frame);
-  }
-  commit_all(files);
 }
 
 /// Throws Error when a coordinate reference system is given, but no output takes one.
@@ -298,8 +294,10 @@ bool has_outputs(const FrameFileRequest& request) {
 
 FrameFileRequest numbered(const FrameFileRequest& request, std::uint32_t frame) {
   FrameFileRequest result = labelled(request, fmt::format("{:06}", frame));
+  result.is_sequence = true;
   for (std::size_t i = 0; i < request.paths.size(); ++i) {
-    if (format_of(request, request.paths[i]).is_folder) result.paths[i] = request.paths[i];
+    const std::string& path = request.paths[i];
+    if (format_of(request, path).is_folder || has_all_frames(result, path)) result.paths[i] = path;
   }
   return result;
 }
@@ -330,6 +328,35 @@ std::vector<std::filesystem::path> check_frame_files(const FrameFileRequest& req
   return all;
 }
 
+/// The sidecar of the run for that of a frame: NAME.glidar.json for NAME_000007.glidar.json.
+std::filesystem::path run_sidecar_path(const std::filesystem::path& sidecar, std::uint64_t index) {
+  constexpr std::string_view kSuffix = ".glidar.json";
+  std::string name = sidecar.string();
+  name.resize(name.size() - kSuffix.size() - fmt::format("_{:06}", index).size());
+  return name + std::string(kSuffix);
+}
+
+struct FrameFiles::Run {
+  RunSidecar sidecar;
+  bool is_written = false;
+  std::vector<std::string> frames = {};  ///< entries of files that have all frames
+  std::vector<FramePoints> points = {};  ///< of the last frame
+
+  /// Adds the points of a frame in one of the files.
+  void add(FramePoints added, const SidecarContext& context, const Frame& frame,
+           const Pose& world_from_cloud) {
+    const bool is_new = std::exchange(last, frame.number) != frame.number || frames.empty();
+    if (is_new) {
+      points.clear();
+      frames.emplace_back();
+    }
+    points.push_back(std::move(added));
+    frames.back() = frame_entry(context, frame, sidecar, points, world_from_cloud);
+  }
+
+  std::uint32_t last = 0;  ///< number of the last frame
+};
+
 FrameFiles::FrameFiles(FrameFileRequest request, bool is_numbered, const OutputRig& rig,
                        Report report)
     : request_(std::move(request)),
@@ -339,10 +366,15 @@ FrameFiles::FrameFiles(FrameFileRequest request, bool is_numbered, const OutputR
       of_sensor_(request_by_sensor(request_, rig_, report_)) {
   for (std::size_t i = 0; i < rig_.sensors.size(); ++i) {
     if (!has_files(i)) continue;
-    for (const std::filesystem::path& file : check_frame_files(request_of(i, 0)))
+    for (const std::filesystem::path& file : check_frame_files(request_of(i, 0))) {
       refuse_overwrite_of_inputs(rig_.inputs, file);
+      if (is_numbered_ && file.string().ends_with("_000000.glidar.json"))
+        refuse_overwrite_of_inputs(rig_.inputs, run_sidecar_path(file, 0));
+    }
   }
 }
+
+FrameFiles::~FrameFiles() = default;
 
 FrameFileRequest FrameFiles::request_of(std::size_t sensor, std::uint64_t index) const {
   const std::string& label = rig_.sensors[sensor].label;
@@ -371,38 +403,140 @@ HitColumnMask FrameFiles::hit_columns(std::size_t sensor) const {
   return hit_columns;
 }
 
-void FrameFiles::write(const RigFrame& written) {
-  const OutputSensor& sensor = rig_.sensors[written.sensor];
-  files_.clear();
-  if (!has_files(written.sensor)) return;
-  const FrameFileRequest request = request_of(written.sensor, written.index);
+SidecarContext FrameFiles::context_of(std::size_t index, const Beams& beams) const {
+  const OutputSensor& sensor = rig_.sensors[index];
   SidecarContext context{.scene = rig_.scene,
                          .sensor = sensor.sensor,
-                         .beams = written.beams,
+                         .beams = beams,
                          .renderer = rig_.renderer,
                          .command = rig_.command,
                          .inputs = rig_.inputs};
-  if (!sensor.label.empty()) {
-    std::vector<std::string>& arguments = context.command.arguments;
-    if (!arguments.empty()) arguments.insert(arguments.end(), {"--sensor-name", sensor.label});
-  }
-  const std::vector<PlannedFile> files = plan_files(request, context, report_);
+  std::vector<std::string>& arguments = context.command.arguments;
+  if (!sensor.label.empty() && !arguments.empty())
+    arguments.insert(arguments.end(), {"--sensor-name", sensor.label});
+  return context;
+}
+
+FrameFiles::Run& FrameFiles::run_at(const std::filesystem::path& path,
+                                    const SidecarContext& context, const Frame& frame) {
+  std::unique_ptr<Run>& run = runs_[path];
+  if (!run) run = std::make_unique<Run>(Run{run_sidecar(context, frame, path)});
+  return *run;
+}
+
+void FrameFiles::write(const RigFrame& written) {
+  files_.clear();
+  if (!has_files(written.sensor)) return;
+  const SidecarContext context = context_of(written.sensor, written.beams);
+  const std::vector<PlannedFile> files =
+      plan_files(request_of(written.sensor, written.index), context, report_);
   for (const PlannedFile& file : files) {
     for (const std::filesystem::path& made : file.sink->files())
       refuse_overwrite_of_inputs(rig_.inputs, made);
   }
-  write_files(files, written, rig_.scene, report_);
-  for (const PlannedFile& file : files) files_.push_back(file.path);
+  stage(files, written, context);
+  stage_sidecars(files, written, context);
+  commit_all(files);
+  for (const PlannedFile& file : files) {
+    if (!file.has_all_frames) files_.push_back(file.path);
+  }
+  if (files_.empty()) return;
   if (count_ == 0) first_ = files_.front();
   last_ = files_.back();
   count_ += files_.size();
 }
 
+void FrameFiles::stage(const std::vector<PlannedFile>& files, const RigFrame& written,
+                       const SidecarContext& context) {
+  PointCloud cloud;
+  const PlannedFile* previous = nullptr;
+  for (const PlannedFile& file : files) {
+    if (report_.progress) report_.progress("writing " + file.path.string(), -1.0);
+    const bool is_same_cloud = previous != nullptr && previous->columns == file.columns &&
+                               previous->frame_name == file.frame_name &&
+                               previous->deskew == file.deskew;
+    if (!is_same_cloud) {
+      OutputFrame axes =
+          output_frame(file.frame_name, written.beams, written.frame.world_from_sensor);
+      axes.deskew = file.deskew;
+      make_point_cloud(written.frame, written.beams, rig_.scene, axes, file.columns, cloud);
+      previous = &file;
+    }
+    if (file.has_all_frames) {
+      append(file, cloud, written, context);
+    } else {
+      file.sink->stage(cloud, written.frame);
+    }
+  }
+}
+
+void FrameFiles::append(const PlannedFile& file, const PointCloud& cloud, const RigFrame& written,
+                        const SidecarContext& context) {
+  std::unique_ptr<RunFile>& to = run_files_[file.path];
+  if (!to) {
+    to = std::make_unique<RunFile>(file.path, request_.sink,
+                                   context_of(written.sensor, rig_.sensors[written.sensor].beams),
+                                   report_);
+  }
+  const std::uint64_t points = to->append(cloud, written.frame, written.beams);
+  if (!request_.sink.sidecar) return;
+  Run& run = run_at(sidecar_path(file.path), context, written.frame);
+  run.add({file.path.filename().string(), points}, context, written.frame, cloud.world_from_cloud);
+}
+
+void FrameFiles::stage_sidecars(const std::vector<PlannedFile>& files, const RigFrame& written,
+                                const SidecarContext& context) {
+  std::map<std::filesystem::path, std::vector<const PlannedFile*>> by_sidecar;
+  for (const PlannedFile& file : files) {
+    if (file.sink->sidecar_entry()) by_sidecar[sidecar_path(file.path)].push_back(&file);
+  }
+  for (const auto& [path, described] : by_sidecar) {
+    std::vector<SidecarEntry> entries;
+    for (const PlannedFile* file : described) entries.push_back(*file->sink->sidecar_entry());
+    FileSink& first = *described.front()->sink;
+    if (!is_numbered_) {
+      first.stage_text(path, sidecar_text(context, written.frame, entries, path));
+      continue;
+    }
+    const std::filesystem::path run_path = run_sidecar_path(path, written.index);
+    Run& run = run_at(run_path, context, written.frame);
+    if (!std::exchange(run.is_written, true))
+      first.stage_text(run_path, sidecar_text(run.sidecar, {}, {}));
+    first.stage_text(path, sidecar_text(context, written.frame, entries, run.sidecar));
+  }
+}
+
+void FrameFiles::finish() {
+  std::map<std::filesystem::path, std::vector<SidecarEntry>> entries;
+  for (const auto& [path, file] : run_files_) {
+    const SidecarEntry entry = file->finish();
+    if (request_.sink.sidecar) entries[sidecar_path(path)].push_back(entry);
+  }
+  for (const auto& [path, file] : run_files_) {
+    const auto listed = entries.find(sidecar_path(path));
+    if (listed != entries.end()) {
+      const Run& run = *runs_.at(listed->first);
+      file->stage_text(listed->first, sidecar_text(run.sidecar, listed->second, run.frames));
+      entries.erase(listed);
+    }
+    file->commit();
+    run_paths_.push_back(path);
+  }
+  run_files_.clear();
+}
+
+std::string FrameFiles::run_text() const {
+  std::string text;
+  for (const std::filesystem::path& path : run_paths_) text += " " + printable_line(path.string());
+  return text.empty() ? text : "wrote" + text + "\n";
+}
+
 std::string FrameFiles::written_text() const {
-  if (count_ == 0) return {};
-  if (count_ == 1) return "wrote " + printable_line(first_.string()) + "\n";
+  if (count_ == 0) return run_text();
+  if (count_ == 1) return "wrote " + printable_line(first_.string()) + "\n" + run_text();
   return fmt::format("wrote {} to {} ({} files)\n", printable_line(first_.string()),
-                     printable_line(last_.string()), count_);
+                     printable_line(last_.string()), count_) +
+         run_text();
 }
 
 }  // namespace glidar

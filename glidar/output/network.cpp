@@ -104,6 +104,7 @@ class PacketOutput final : public Output {
                std::unique_ptr<link::PacketSender> sender)
       : sensor_index_(sensor_index),
         sensor_(sensor),
+        hit_columns_(hit_columns_for(packet_columns(setup.options))),
         packets_(sensor, setup.options, setup.imu_samples),
         sender_(std::move(sender)) {}
 
@@ -114,7 +115,7 @@ class PacketOutput final : public Output {
   [[nodiscard]] link::PacketSender& sender() { return *sender_; }
 
   [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor) const override {
-    return sensor == sensor_index_ ? hit_columns_for(packet_columns()) : HitColumnMask{};
+    return sensor == sensor_index_ ? hit_columns_ : HitColumnMask{};
   }
   void write(const RigFrame& written) override {
     if (written.sensor != sensor_index_) return;
@@ -135,6 +136,7 @@ class PacketOutput final : public Output {
  private:
   std::size_t sensor_index_;
   Sensor sensor_;
+  HitColumnMask hit_columns_;
   SensorPackets packets_;
   std::unique_ptr<link::PacketSender> sender_;
   std::unique_ptr<control::ControlServer> server_;  ///< ends before the sender
@@ -316,7 +318,7 @@ std::unique_ptr<Output> open_packet_output(const PacketTarget& target, const Out
                                            const OutputOptions& options, double speed,
                                            link::ErrorLog& errors,
                                            const std::optional<link::Endpoint>& control) {
-  const std::size_t index = packet_sensor(rig, target.sensor_name, "--udp");
+  const std::size_t index = packet_sensor(rig, target.sensor_name, "packets by UDP");
   const Sensor& sensor = rig.sensors[index].sensor;
   const ros::PublishedPackets setup = packet_setup(rig, options, rig.sensors[index]);
   link::PacketRoute route = route_of(target, sensor);

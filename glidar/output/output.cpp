@@ -87,7 +87,7 @@ class Capture final : public Output {
         writer_(path, rig.sensors[sensor_].sensor, setup_.options, setup_.imu_samples) {}
 
   [[nodiscard]] HitColumnMask hit_columns(std::size_t sensor) const override {
-    return sensor == sensor_ ? hit_columns_for(packet_columns()) : HitColumnMask{};
+    return sensor == sensor_ ? hit_columns_for(packet_columns(setup_.options)) : HitColumnMask{};
   }
   void write(const RigFrame& written) override {
     if (written.sensor == sensor_) writer_.write(written.frame, written.beams);
@@ -262,8 +262,9 @@ std::string suffixes_of(OutputKind kind) {
 std::unique_ptr<Output> open_imu_samples(std::vector<std::string> paths, const OutputRig& rig,
                                          const Report& report) {
   if (rig.imus.empty()) {
-    throw Error({paths.front(), "there is no IMU", "a scene file with 'imus', or --imu",
-                 "add --imu BMI088, for example"});
+    throw Error({paths.front(), "there is no IMU",
+                 "a scene file with 'imus', or an IMU at the sensor",
+                 "add --imu BMI088, for example, or imus= in Python"});
   }
   if (!rig.motion) {
     throw Error({paths.front(),
@@ -271,6 +272,19 @@ std::unique_ptr<Output> open_imu_samples(std::vector<std::string> paths, const O
                  "a motion that is known at all times", "leave it out"});
   }
   return std::make_unique<ImuFiles>(std::move(paths), rig, report);
+}
+
+void check_options_used(const std::string& path, const OutputOptions& options) {
+  const bool is_file = !is_url(path) && output_kind(path) == OutputKind::frame_file;
+  const bool has_messages =
+      path.starts_with("ros2://") || (!is_url(path) && output_kind(path) == OutputKind::bag);
+  if (!options.sink.layout.empty() && !has_messages && (!is_file || !takes_layout(path))) {
+    throw Error({path, "the layout '" + options.sink.layout + "', which it cannot have",
+                 "a bag, ROS 2, or the suffix " + suffixes_with_layouts(), "leave layout out"});
+  }
+  if (options.sink.crs.empty() || (is_file && format_for(path).is_survey)) return;
+  throw Error({path, "a coordinate reference system, which it cannot have", "the suffix .las",
+               "leave crs out"});
 }
 
 std::unique_ptr<Output> open_output(const std::string& path, const OutputRig& rig,

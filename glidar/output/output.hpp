@@ -123,6 +123,7 @@ struct OutputOptions {
   std::vector<std::string> columns = {};  ///< of clouds; empty: those that suit the output
   std::string frame = {};                 ///< axes of clouds; empty: by the format, see frame_for()
   bool deskew = false;                    ///< points as fired from where the sensor was
+  bool per_frame = false;                 ///< a file for each frame also in formats of whole runs
   std::optional<OusterProfile> ouster_profile = {};  ///< of packets; empty: by the returns
   std::optional<LivoxDataType> livox_type = {};      ///< of points in packets; empty: in mm
   MessageOptions messages = {};
@@ -169,6 +170,9 @@ std::string suffixes_of(OutputKind kind);
 /// motion is not known.
 std::unique_ptr<Output> open_imu_samples(std::vector<std::string> paths, const OutputRig& rig,
                                          const Report& report = {});
+
+/// Throws Error if a layout or a coordinate reference system is given, but this output ignores it.
+void check_options_used(const std::string& path_or_url, const OutputOptions& options);
 
 /// Opens an output of the rig's frames: a file by its suffix (formats of one frame get a file
 /// NAME_000007.pcd for each), or udp://HOST[:PORT[:PORT]], where the packets of its only sensor

@@ -74,8 +74,10 @@ std::size_t packet_sensor(const OutputRig& rig, const std::string& name, const s
   }
   if (found.size() == 1) return found.front();
   if (found.size() > 1) {
-    throw Error({where, "several sensors with packets: " + names, "the packets of one sensor",
-                 "choose it with --sensor-name, or by its name: --udp NAME=ADDRESS"});
+    throw Error(
+        {where, "several sensors with packets: " + names, "the packets of one sensor",
+         "choose it: --sensor-name, or by its name: --udp NAME=ADDRESS; in Python give the output "
+         "only this sensor"});
   }
   if (name.empty() && rig.sensors.size() == 1) return 0;  // the encoder states why
   throw Error({where, name.empty() ? "no sensor with packets" : "no sensor '" + name + "'",

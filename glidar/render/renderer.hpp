@@ -56,10 +56,11 @@ struct CastRequest {
   /// Set if all beams are sub-rays of footprints: a renderer may then search those of each at once.
   /// The hits do not depend on it.
   FootprintLayout footprints = {};
-  /// Called for a footprint, by its first beam, when the ids of all its hits and all columns of the
-  /// first are known, by the thread that found them. A renderer may leave what is not needed
-  /// unspecified. Empty: all columns of all hits are needed.
-  FunctionRef<OtherHits(std::size_t)> needed_of_others = {};
+  /// Called for a run of footprints, by their beams, when the ids of all hits and all columns of
+  /// each footprint's first are known, by the thread that found them: sets what is needed of the
+  /// other hits, one per footprint. A renderer may leave what is not needed unspecified. Empty: all
+  /// columns of all hits are needed.
+  FunctionRef<void(BeamRange, std::span<OtherHits>)> needed_of_others = {};
   /// Called in runs, once for every beam, when its hits are known, by the thread that found them,
   /// so that they are still in its cache. Empty: not called.
   FunctionRef<void(BeamRange)> on_tile_done = {};

@@ -424,6 +424,11 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
     return;
   }
   set_triangles(block, exact);
+  intersect_triangles(beams, block, exact);
+}
+
+void Resolver::intersect_triangles(const BeamBlock& beams, const HitBlock& block,
+                                   ExactHits& exact) const {
   rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
   ExactHits source;
   for (std::uint32_t rest = lanes_not_on(block, block.instance[0]); rest != 0;) {
@@ -434,6 +439,26 @@ void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exa
   }
   intersect_planes(exact);
   intersect_grazing(*this, block, exact);
+}
+
+void Resolver::write_diffuse_behind(const Beams& beams, std::size_t count, HitBatch& batch,
+                                    Hits& hits) const {
+  HitBlock& block = batch.block;
+  Lanes<float> w1;
+  Lanes<float> w2;
+  set_triangles(block, batch.exact);
+  gather_corners(block, batch.exact);
+  batch.beams.has_origins = !beams.origins_m.empty();
+  for (std::size_t k = 0; k < count; ++k) {
+    for (unsigned i = 0; i < kLanes; ++i) {
+      const std::size_t beam = ++block.beam[i];
+      batch.beams.direction.set(i, beams.directions[beam]);
+      if (batch.beams.has_origins) batch.beams.origin_m.set(i, beams.origins_m[beam]);
+    }
+    intersect_triangles(batch.beams, block, batch.exact);
+    interpolate_weights(batch.exact, batch.exact.corners, w1, w2);
+    colours_.write({.diffuse = true}, block, w1, w2, hits);
+  }
 }
 
 void Resolver::write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const {

@@ -172,7 +172,13 @@ class Resolver {
   void write_batch(const Beams& beams, const HitColumnMask& hit_columns, HitBatch& batch,
                    Hits& hits) const;
 
+  /// Writes the diffuse colour of the `count` beams behind each of a block, which all hit the
+  /// triangle of that one. Requires ids of all lanes, also of those that are not in use.
+  void write_diffuse_behind(const Beams& beams, std::size_t count, HitBatch& batch,
+                            Hits& hits) const;
+
  private:
+  void intersect_triangles(const BeamBlock& beams, const HitBlock& block, ExactHits& exact) const;
   void write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const;
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;

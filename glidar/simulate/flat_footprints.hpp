@@ -2,10 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/sensor/lidar/echo.hpp>
+#include <glidar/math/distributions.hpp>
 #include <glidar/simulate/simulation.hpp>
 
+#include <span>
+
 namespace glidar {
+
+/// Echoes of the pulses of a run that are in closed form.
+struct FlatEchoes {
+  Batch<double> range_m;
+  Batch<double> signal;   ///< sum
+  Batch<double> peak;     ///< of the widened pulse
+  Batch<double> sigma_m;  ///< of it
+};
 
 /// Pulses that need no samples of the surface: they are measured by integrals over a plane. At
 /// edges pulses have sub-rays; those of a pulse that touches an edge give the same echo up to the
@@ -15,16 +25,22 @@ class FlatFootprints {
  public:
   explicit FlatFootprints(const Simulation& s);
 
-  /// How the pulse with this first sub-ray is measured. Requires the ids of all its hits, and all
-  /// columns of the first.
-  [[nodiscard]] FlatFootprint find(std::size_t first) const;
+  /// Finds how these pulses are measured. Requires the ids of all hits of their sub-rays, and all
+  /// columns of the first of each.
+  void find(BeamRange pulses) const;
 
-  /// The echo of a flat footprint and its only contribution. `signal` is that of the central ray
-  /// alone. Requires the diffuse colours of all hits if they differ.
-  [[nodiscard]] PulseEcho measure(const FlatFootprint& flat, std::size_t first, double signal,
-                                  WaveformBuffer& waveform) const;
+  /// Finds the echoes of pulses in closed form among these, at most kSampleBatch. Requires the
+  /// signals of their central rays alone, and all diffuse colours where they differ.
+  void measure(BeamRange pulses, FlatEchoes& echoes) const;
 
  private:
+  struct Surface;
+  [[nodiscard]] FlatFootprint::Kind kind_of(std::size_t first, Surface& last) const;
+  [[nodiscard]] FlatFootprint::Kind kind_on(std::uint32_t instance, std::uint32_t triangle) const;
+  [[nodiscard]] bool continues(const Surface& surface, std::uint32_t triangle) const;
+  void integrate(PlaneBatch& planes, std::span<FlatFootprint* const> footprints) const;
+  void measure(BeamRange pulses, FlatFootprint::Kind kind, FlatEchoes& echoes) const;
+
   const Simulation& s_;
   const Hits& hits_;
   Eigen::Vector3d up_;

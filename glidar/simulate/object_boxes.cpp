@@ -351,9 +351,12 @@ void count_beams(const Simulation& s, std::span<ObjectBox> boxes) {
 
 void find_boxes(const Simulation& s, BoxSelection selection, std::vector<ObjectBox>& boxes) {
   boxes.clear();
+  BoxedClasses classes = s.workspace.boxes.classes;
+  if (selection == BoxSelection::all) classes.assign(s.scene.class_names.size(), true);
+  if (classes.empty()) classes = boxed_classes(s.scene.class_names);
   for (std::uint32_t i = 0; i < s.scene.instances.size(); ++i) {
     const Instance& instance = s.scene.instances[i];
-    if (selection == BoxSelection::with_class && instance.class_id == 0) continue;
+    if (!classes[instance.class_id]) continue;
     if (!is_visible(instance, s.frame.sensor_id)) continue;
     if (!surface_box(s, instance.mesh).isEmpty()) boxes.push_back(place_box(s, i));
   }

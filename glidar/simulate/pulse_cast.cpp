@@ -47,6 +47,18 @@ FootprintLayout layout_of(const std::vector<SubRay>& rays) {
   return layout;
 }
 
+OtherHits needed_of_others(FlatFootprint::Kind kind) {
+  switch (kind) {
+    case FlatFootprint::Kind::nothing:
+    case FlatFootprint::Kind::plain:
+      return OtherHits::ids;
+    case FlatFootprint::Kind::coloured:
+      return OtherHits::diffuse;
+    default:
+      return OtherHits::all_columns;
+  }
+}
+
 /// Casts the sub-rays of a block of pulses.
 void cast_block(const Simulation& s, BeamRange block) {
   SubRayWorkspace& memory = s.workspace.sub_rays;
@@ -63,14 +75,15 @@ void cast_block(const Simulation& s, BeamRange block) {
   request.footprints = layout_of(model.sub_rays);
   const FlatFootprints flat_footprints(s);
   memory.flat.assign(block.end - block.begin, {});
-  const auto needed = [&](std::size_t first) {
-    FlatFootprint& flat = memory.flat[first / model.sub_rays.size()];
-    flat = flat_footprints.find(first);
-    if (!flat.is_in_closed_form()) return OtherHits::all_columns;
-    return flat.kind == FlatFootprint::Kind::plain ? OtherHits::ids : OtherHits::diffuse;
+  const auto needed = [&](BeamRange beams, std::span<OtherHits> of_others) {
+    const std::size_t size = model.sub_rays.size();
+    flat_footprints.find({block.begin + beams.begin / size, block.begin + beams.end / size});
+    for (std::size_t i = 0; i < of_others.size(); ++i) {
+      of_others[i] = needed_of_others(memory.flat[beams.begin / size + i].kind);
+    }
   };
   if (model.has_closed_form && !s.hit_columns.radial_velocity) {  // found for every sub-ray
-    request.needed_of_others = FunctionRef<OtherHits(std::size_t)>(needed);
+    request.needed_of_others = FunctionRef<void(BeamRange, std::span<OtherHits>)>(needed);
   }
   request.progress = subrange(s.progress, fraction(block.begin), fraction(block.end));
   cast(s, request, memory.hits);

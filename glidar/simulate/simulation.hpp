@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/box_classes.hpp>
 #include <glidar/depth_camera/stereo.hpp>
 #include <glidar/sensor/lidar/plane_echo.hpp>
 #include <glidar/simulate/direction_grid.hpp>
@@ -22,12 +23,13 @@ namespace glidar {
 struct FlatFootprint {
   enum class Kind : std::uint8_t {
     unknown,
+    nothing,   ///< all sub-rays miss
     sampled,   ///< by sub-rays
     plain,     ///< in closed form
     coloured,  ///< in closed form, with reflectances at the sub-rays
   };
   Kind kind = Kind::unknown;
-  PlaneAcrossBeam plane = {};  ///< of closed forms
+  PlaneMoments moments = {};  ///< of closed forms
 
   [[nodiscard]] bool is_in_closed_form() const {
     return kind == Kind::plain || kind == Kind::coloured;
@@ -97,6 +99,7 @@ struct InfraredWorkspace {
 
 /// What boxes of objects are found with.
 struct BoxWorkspace {
+  BoxedClasses classes;  ///< whose objects have boxes; empty: the countable ones
   std::vector<std::optional<Eigen::AlignedBox3d>> mesh_boxes;  ///< per mesh, once it is needed
   Beams nominal;                        ///< one per firing, when pulses have several returns
   Hits nominal_hits;                    ///< of the nominal beams

@@ -26,6 +26,7 @@ struct Simulator::State {
   std::optional<PreparedSensor> prepared_without_mirrors = {};
   std::unique_ptr<Renderer> own_renderer = {};  ///< empty: shared
   ReturnReplacement replace_returns = {};
+  BoxedClasses boxed_classes = {};
   std::deque<Workspace> workspaces = {};  ///< of frames that are simulated together
 };
 
@@ -123,6 +124,7 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
                               const ProgressCallback& progress, std::size_t slot) {
   State& state = *state_;
   while (state.workspaces.size() <= slot) state.workspaces.emplace_back();
+  state.workspaces[slot].boxes.classes = state.boxed_classes;
   std::vector<std::uint8_t>& visible = state.workspaces[slot].visible;
   visible.clear();
   for (std::size_t i = 0; state.restricts_visibility && i < state.scene.instances.size(); ++i) {
@@ -141,6 +143,10 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
           .progress = progress,
           .replace_returns = state.replace_returns,
           .instance_enabled = visible};
+}
+
+void Simulator::set_boxed_classes(BoxedClasses classes) {
+  state_->boxed_classes = std::move(classes);
 }
 
 void Simulator::set_return_replacement(ReturnReplacement replacement) {

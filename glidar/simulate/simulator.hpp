@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/box_classes.hpp>
 #include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/motion/motion.hpp>
@@ -53,6 +54,9 @@ class Simulator {
   /// The boxes of the objects of a frame that was simulated with this motion.
   [[nodiscard]] std::vector<ObjectBox> find_boxes(const Motion& motion, Frame& frame,
                                                   BoxSelection selection);
+
+  /// Sets the classes whose objects have boxes; by default the countable ones.
+  void set_boxed_classes(BoxedClasses classes);
 
   /// Replaces the returns of all further frames; empty: none are replaced.
   void set_return_replacement(ReturnReplacement replacement);

@@ -160,6 +160,7 @@ struct PulseMemory {
   std::vector<std::size_t> received;  ///< sub-rays whose signals are needed
   Hits received_hits;                 ///< their hits
   std::vector<double> signals;        ///< theirs
+  FlatEchoes flat;
   ReceiverSamples samples;
   std::vector<WeatherEcho> weather;
   BeamSurfaces surfaces;
@@ -234,25 +235,34 @@ FlatFootprint& flat_footprint(const Simulation& s, std::size_t pulse) {
   return s.workspace.sub_rays.flat[pulse - s.workspace.sub_rays.first_pulse];
 }
 
-/// The echo of a pulse in closed form. Returns its contribution.
-EchoContribution integrate_echo(const Simulation& s, std::size_t pulse,
-                                const FlatFootprints& flat_footprints, WaveformBuffer& waveform) {
-  const std::size_t first = first_sub_ray(s, pulse);
-  waveform.echo[0] = flat_footprints.measure(flat_footprint(s, pulse), first,
-                                             s.workspace.sub_rays.signals[first], waveform);
+/// Takes the echo of a pulse in closed form. Returns its contribution.
+EchoContribution take_flat_echo(const Simulation& s, std::size_t pulse, PulseMemory& memory) {
+  WaveformBuffer& waveform = memory.waveform;
+  const std::size_t in_run = pulse - memory.samples.key.beam;
+  const FlatEchoes& flat = memory.flat;
+  waveform.paths = 0;
+  waveform.add({flat.range_m[in_run], flat.signal[in_run],
+                static_cast<std::uint32_t>(first_sub_ray(s, pulse)), ReturnSource::surface});
+  PulseEcho& echo = waveform.echo[0];
+  echo.range_m = flat.range_m[in_run];
+  echo.signal = flat.peak[in_run];
+  echo.sigma_m = flat.sigma_m[in_run];
+  echo.strongest = 0;
+  echo.begin = 0;
+  echo.end = 1;
+  echo.is_mixed = false;
   waveform.echoes = 1;
   return waveform.path[0];
 }
 
-void measure_pulse(const Simulation& s, std::size_t pulse, const FlatFootprints& flat_footprints,
-                   PulseMemory& memory) {
+void measure_pulse(const Simulation& s, std::size_t pulse, PulseMemory& memory) {
   WaveformBuffer& waveform = memory.waveform;
   const Receiver& receiver = s.prepared.sensor.receiver;
   RngKey key = memory.samples.key;
   key.beam = static_cast<std::uint32_t>(pulse);
   const bool is_flat = flat_footprint(s, pulse).is_in_closed_form();
-  const EchoContribution surface = is_flat ? integrate_echo(s, pulse, flat_footprints, waveform)
-                                           : find_echoes(s, pulse, key, memory);
+  const EchoContribution surface =
+      is_flat ? take_flat_echo(s, pulse, memory) : find_echoes(s, pulse, key, memory);
   if (traces(s, pulse)) trace_echoes(s, pulse, is_flat, waveform);
   const Status missing = receive_echoes(s, pulse, key, surface, memory);
   std::array<int, kMaxReturns> chosen;
@@ -279,6 +289,32 @@ void measure_pulse(const Simulation& s, std::size_t pulse, const FlatFootprints&
   }
 }
 
+/// The end of the pulses from the first on that meet nothing.
+std::size_t end_of_nothing(const Simulation& s, BeamRange pulses) {
+  std::size_t end = pulses.begin;
+  while (end < pulses.end && flat_footprint(s, end).kind == FlatFootprint::Kind::nothing &&
+         !traces(s, end)) {
+    ++end;
+  }
+  return end;
+}
+
+/// Writes pulses without any echo.
+void report_nothing(const Simulation& s, BeamRange pulses) {
+  Frame& frame = s.frame;
+  for (std::size_t r = 0; r < s.prepared.sensor.receiver.returns.size(); ++r) {
+    const std::size_t first = r * s.fired->firings();
+    write_misses(s.hit_columns, first + pulses.begin, pulses.end - pulses.begin,
+                 frame.ground_truth);
+    for (std::size_t pulse = pulses.begin; pulse < pulses.end; ++pulse) {
+      const bool has_beam = !std::isnan(s.fired->directions[pulse].x());
+      const Status missing = r == 0 ? Status::miss : Status::no_return_of_rank;
+      invalidate_return(frame, first + pulse, has_beam ? missing : Status::invalid_pixel);
+      if (s.hit_columns.radial_velocity) frame.true_radial_velocity_m_s[first + pulse] = kNaN;
+    }
+  }
+}
+
 /// The signal of each sub-ray of a run of pulses alone, of pulses in closed form that of the
 /// central one, and their radial velocities if they are wanted.
 void find_signals(const Simulation& s, BeamRange range, const FlatFootprints& flat_footprints,
@@ -289,11 +325,13 @@ void find_signals(const Simulation& s, BeamRange range, const FlatFootprints& fl
     find_radial_velocities(s.motion, memory.beams, s.frame.stamp_ns, memory.hits, sub_rays,
                            memory.velocities_m_s);
   }
+  if (flat_footprint(s, range.begin).kind == FlatFootprint::Kind::unknown)
+    flat_footprints.find(range);
   of_run.received.clear();
   for (std::size_t pulse = range.begin; pulse < range.end; ++pulse) {
+    const FlatFootprint& flat = flat_footprint(s, pulse);
+    if (flat.kind == FlatFootprint::Kind::nothing) continue;
     const std::size_t first = first_sub_ray(s, pulse);
-    FlatFootprint& flat = flat_footprint(s, pulse);
-    if (flat.kind == FlatFootprint::Kind::unknown) flat = flat_footprints.find(first);
     const std::size_t end = flat.is_in_closed_form() ? first + 1 : first_sub_ray(s, pulse + 1);
     for (std::size_t ray = first; ray < end; ++ray) of_run.received.push_back(ray);
   }
@@ -322,9 +360,13 @@ void measure_waveforms(const Simulation& s, BeamRange tile) {
   for (std::size_t first = tile.begin; first < tile.end; first += kPulsesPerTask) {
     const BeamRange run{first, std::min(first + kPulsesPerTask, tile.end)};
     find_signals(s, run, flat_footprints, memory);
+    flat_footprints.measure(run, memory.flat);
     sample_receiver(s.prepared.pulse_model->lidar_equation, s.frame, first, memory.samples);
     for (std::size_t pulse = run.begin; pulse < run.end; ++pulse) {
-      measure_pulse(s, pulse, flat_footprints, memory);
+      const std::size_t end_of_misses = end_of_nothing(s, {pulse, run.end});
+      if (end_of_misses > pulse) report_nothing(s, {pulse, end_of_misses});
+      pulse = end_of_misses;
+      if (pulse < run.end) measure_pulse(s, pulse, memory);
     }
   }
 }

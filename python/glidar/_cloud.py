@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +14,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import MAX_UINT32, FloatArray, floats, shape_text, text_of, whole
+from ._file_options import file_options, set_cloud
+from ._inputs import MAX_UINT32, FloatArray, floats, log, path_of, shape_text, text_of, whole
 from ._state import key_of, part, restoring, make_state
 
 Array = npt.NDArray[Any]
@@ -114,6 +116,29 @@ class Cloud(Mapping[str, Array]):
     def world_from_cloud(self) -> FloatArray:
         """Pose of the cloud's coordinate frame in the world, (4, 4), m."""
         return self._core.world_from_cloud
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        pcd: str = "binary",
+        ply_ascii: bool = False,
+        crs: str | os.PathLike[str] = "",
+    ) -> None:
+        """Writes the arrays as they are now, without a sidecar, to a file of a cloud: .pcd, .ply, .npz, .csv, .las, .bin
+        or .exr, with the columns of the cloud.
+
+        Args:
+            pcd, ply_ascii, crs: as for ``Frame.save``.
+
+        Raises:
+            Error: another suffix, a missing folder, or a cloud without the columns of the format. An existing file
+            stays unchanged.
+        """
+        options = file_options(pcd, ply_ascii, 1000.0)
+        set_cloud(options, None, False, False, crs, False)
+        columns = {name: np.ascontiguousarray(self._core.column(index)) for name, index in self._indices.items()}
+        _core.save_cloud(path_of(path, "path"), columns, self._core, options, log)
 
     def to_open3d(self) -> Any:
         """The hits as an open3d.geometry.PointCloud, with normals if the cloud has them."""

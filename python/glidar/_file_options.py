@@ -42,10 +42,12 @@ def set_cloud(
     deskew: bool,
     crs: str | os.PathLike[str],
     sidecar: bool,
+    per_frame: bool = False,
 ) -> None:
     """Sets the axes, points and further files of a cloud."""
     options.frame = frame or ""
     options.deskew = deskew
+    options.per_frame = per_frame
     options.set_crs(os.fspath(crs))
     options.set_drop_invalid(drop_invalid)
     options.set_sidecar(sidecar)

@@ -17,7 +17,7 @@ from ._cloud import Cloud
 from ._depth_images import DepthImages
 from ._errors import Error
 from ._fisher_information import FisherInformation, fisher_information_of
-from ._inputs import FloatArray, column_list, log, path_of
+from ._inputs import FloatArray, column_list, log, path_of, text_list
 from ._object_box import ObjectBox, boxes_of
 from ._origin import Origin
 from ._file_options import file_options, set_cloud, set_columns
@@ -95,6 +95,20 @@ class Frame(DepthImages, Immutable):
     def range_m(self) -> FloatArray:
         """Measured distance from the beam's origin, m; NaN unless hit. The column ``range`` adds the range offset."""
         return self._measured("range_m")
+
+    @property
+    def depth_m(self) -> FloatArray:
+        """Measured distance of a camera along its boresight, m; NaN unless hit.
+
+        Raises:
+            Error: the sensor is a LiDAR, or a camera that also looks back.
+        """
+        if not self._core.has_depths:
+            found = "the sensor has no image plane, along whose normal depths are measured"
+            raise Error("depth_m", found, "a camera that looks ahead", "use range_m, or cloud(['depth'])")
+        depths: FloatArray = self.cloud(["depth"])["depth"]
+        depths.flags.writeable = False
+        return depths
 
     @property
     def intensity(self) -> npt.NDArray[np.float32]:
@@ -238,7 +252,7 @@ class Frame(DepthImages, Immutable):
             ply_ascii: whether PLY files are text.
             depth_units_per_m: scale of 16-bit depth images; 1000 stores millimetres.
             crs: coordinate reference system of .las: "EPSG:CODE" of a UTM zone, well-known text, or a file with it.
-            sidecar: whether to write PATH.json beside a cloud or image.
+            sidecar: whether to write NAME.glidar.json beside a cloud or image NAME.pcd.
             colour_by: of .bev.png and .view.png: "height", "range", "intensity", "ring", "class", "instance" or
                 "radial_velocity".
             picture_size: width and height of .bev.png and .view.png, pixels.
@@ -270,15 +284,25 @@ class Frame(DepthImages, Immutable):
         core = self._with_scene()
         output.write(self._with_renderer() if _core.lacks_boxes(core) else core, log)
 
-    def boxes(self, *, frame: str = "sensor", unlabelled: bool = False) -> list[ObjectBox]:
-        """3D bounding boxes of the objects that have a class, when the frame starts, in the order of ``Scene.objects``,
-        with the number of points and the occlusion (docs/boxes.md). The first call casts beams into each object alone.
-        ``unlabelled``: objects without a class have boxes too. ``frame`` as for ``cloud``.
+    def boxes(
+        self, *, frame: str = "sensor", classes: Iterable[str] | None = None, unlabelled: bool = False
+    ) -> list[ObjectBox]:
+        """3D bounding boxes of objects when the frame starts, in the order of ``Scene.objects``, with the number of
+        points and the occlusion (docs/boxes.md). The first call casts beams into each object alone.
+
+        Args:
+            frame: coordinate frame, as for ``cloud``.
+            classes: names of the classes whose objects have boxes; None: ``Scene.box_classes``, by default the
+                countable ones, so not those of roads, buildings and terrain.
+            unlabelled: whether all objects have boxes, also those without a class.
 
         Raises:
-            Error: an unknown coordinate frame.
+            Error: an unknown coordinate frame or class.
         """
-        return boxes_of(self._with_renderer(), frame, unlabelled)
+        names = [] if classes is None else text_list(classes, "classes")
+        if classes is not None and not names and not unlabelled:
+            return []
+        return boxes_of(self._with_renderer(), frame, unlabelled, names)
 
     def bird_eye(
         self, *, colour_by: str = "height", size: tuple[int, int] = (1400, 1000), frame: str = "sensor"

@@ -117,6 +117,15 @@ def text_of(value: object, where: str) -> str:
     raise Error(where, shown(value), "a string")
 
 
+def text_list(value: object, where: str) -> list[str]:
+    """A list of strings, or one string."""
+    if isinstance(value, str):
+        return [text_of(value, where)]
+    if not isinstance(value, Iterable):
+        raise Error(where, shown(value), "a list of strings")
+    return [text_of(one, where) for one in value]
+
+
 def path_of(value: object, where: str) -> str:
     """A name or a path, as a string."""
     if not isinstance(value, (str, bytes, os.PathLike)):

@@ -61,7 +61,7 @@ class ObjectBox(SameContent):
         return corners
 
 
-def boxes_of(core: _core.Frame, frame: str, all_objects: bool) -> list[ObjectBox]:
+def boxes_of(core: _core.Frame, frame: str, all_objects: bool, classes: list[str]) -> list[ObjectBox]:
     """Converts the boxes of the extension."""
     frame_from_sensor = _core.cloud_from_sensor(core, frame)
     return [
@@ -78,5 +78,5 @@ def boxes_of(core: _core.Frame, frame: str, all_objects: bool) -> list[ObjectBox
             visible_beams=box.visible_beams,
             occlusion=box.occlusion,
         )
-        for box in _core.boxes(core, all_objects)
+        for box in _core.boxes(core, all_objects, classes)
     ]

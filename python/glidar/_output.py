@@ -93,6 +93,7 @@ def open_output(
     depth_units_per_m: float = 1000.0,
     crs: str | os.PathLike[str] = "",
     sidecar: bool = True,
+    per_frame: bool = False,
     colour_by: str = "height",
     picture_size: tuple[int, int] = (1400, 1000),
     view_eye: npt.ArrayLike | None = None,
@@ -104,7 +105,8 @@ def open_output(
     """Opens an output of frames, with the bytes of ``glidar render -o PATH`` of the same frames and options.
 
     The suffix selects the format; ``output_formats()`` lists them. Bags, packet captures, OSI traces and KITTI folders
-    take all frames; formats of one frame get a file for each, NAME_000007.pcd for NAME.pcd. ``udp://ADDRESS[:PORT]``
+    take all frames, and so do .pcd, .ply, .csv and .las, whose points have the columns ``stamp`` and ``frame`` and by
+    default the world's axes; formats of one frame get a file for each, NAME_000007.npz for NAME.npz. ``udp://ADDRESS[:PORT]``
     sends the packets of a sensor, ``ros2://[NAMESPACE]`` publishes topics of ROS 2, both as fast as frames are written.
 
     Args:
@@ -120,6 +122,7 @@ def open_output(
         columns, layout, frame, drop_invalid, deskew, pcd, ply_ascii, depth_units_per_m, crs, sidecar, colour_by,
             picture_size, view_eye, view_target: as for ``Frame.save``. In a bag, without columns and layout: those
             that suit the sensor.
+        per_frame: whether .pcd, .ply, .csv and .las get a file for each frame, in the sensor's axes, too.
         driver: the messages of a maker's driver in bags and ROS 2, such as "ouster" (docs/drivers.md).
         ouster_profile: packets of Ouster sensors: "LEGACY" or another profile; "": by the number of returns.
         livox_data_type: packets of Livox sensors: 1, 2 or 3; 0: as 1.
@@ -130,7 +133,7 @@ def open_output(
     target = path_of(path_or_url, "path_or_url")
     options = file_options(pcd, ply_ascii, depth_units_per_m)
     set_columns(options, columns, layout)
-    set_cloud(options, frame, drop_invalid, deskew, crs, sidecar)
+    set_cloud(options, frame, drop_invalid, deskew, crs, sidecar, per_frame)
     set_picture(options, colour_by, picture_size, view_eye, view_target)
     options.set_driver(text_of(driver, "driver"))
     options.set_ouster_profile(text_of(ouster_profile, "ouster_profile"))

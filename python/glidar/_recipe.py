@@ -24,6 +24,7 @@ _BUILTIN = "builtin:"
 
 #: A step: its name and its arguments.
 Step = tuple[str, dict[str, Any]]
+_STEPS = ("model", "models", "mesh", "copy", "copies", "drop", "set", "materials", "box_classes")
 
 
 class _Register:
@@ -118,6 +119,12 @@ class Recipe:
         return Recipe(core, [("scene_file", {"path": path, "folder": _working_folder(), "options": options})])
 
     @staticmethod
+    def of_content(content: str, path: str) -> Recipe:
+        """The recipe of a scene file with this content."""
+        core = _core.load_scene_content(path, content, log)
+        return Recipe(core, [("scene", {"text": content, "folder": os.path.dirname(os.path.abspath(path))})])
+
+    @staticmethod
     def of_text(text: str, folder: str = "") -> Recipe:
         """The recipe of the keys of a scene file; paths are relative to the folder, or to the working folder."""
         core = _core.parse_scene(text, log, folder)
@@ -208,12 +215,17 @@ class Recipe:
         arguments = {"index": index, "text": text, "folder": folder or _working_folder()}
         self._steps.append(("materials", arguments))
 
+    def set_box_classes(self, names: list[str]) -> None:
+        """Sets the classes whose objects have boxes."""
+        self._editable().set_box_classes(names)
+        self._steps.append(("box_classes", {"names": names}))
+
     def key(self) -> object:
         """A hashable value that is equal for scenes with bit-identical measurements."""
         sensors = [(name, core.values(), core.beam_table(), pose) for name, core, pose in self.core.rig()]
         imus = [(name, core.document(), pose) for name, core, pose in self.core.imus()]
         parts = [_core.scene_digest(self.core), _core.placing_state(self.core), sensors]
-        return key_of([*parts, imus, self.core.gravity_m_s2])
+        return key_of([*parts, imus, self.core.gravity_m_s2, self.core.box_classes])
 
     def digest(self) -> str:
         """A hash of the key."""
@@ -261,7 +273,7 @@ class Recipe:
         return recipe
 
     def _replay(self, name: str, arguments: dict[str, Any]) -> None:
-        one_of(name, "pickled Scene, step", ("model", "models", "mesh", "copy", "copies", "drop", "set", "materials"))
+        one_of(name, "pickled Scene, step", _STEPS)
         if name == "model":
             self.add_model(_resolved_path(arguments), part(arguments, "options", dict))
         elif name == "models":
@@ -276,6 +288,8 @@ class Recipe:
             self.add_instances(of, poses, part(arguments, "names", list), part(arguments, "ids", list))
         elif name == "drop":
             self.drop_last()
+        elif name == "box_classes":
+            self.set_box_classes(part(arguments, "names", list))
         elif name == "set":
             self.set_object(self._checked_index(arguments["index"]), part(arguments, "changes", dict))
         else:

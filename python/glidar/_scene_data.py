@@ -4,12 +4,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray
+from ._inputs import FloatArray, text_list
 from ._recipe import Recipe
 from ._sensor import Sensor
 from ._state import has_same_fields
@@ -52,6 +53,16 @@ class SceneData:
     def class_names(self) -> list[str]:
         """Names of classes. The column `class` of clouds contains indices into this list."""
         return self._core.class_names
+
+    @property
+    def box_classes(self) -> list[str]:
+        """Names of the classes whose objects have boxes in outputs, or ["all"]; empty: the countable ones, so not
+        those of roads, buildings and terrain (docs/boxes.md). Can be set; "all" is allowed."""
+        return self._core.box_classes
+
+    @box_classes.setter
+    def box_classes(self, names: str | Iterable[str]) -> None:
+        self._recipe.set_box_classes(text_list(names, "box_classes"))
 
     @property
     def sensor(self) -> Sensor | None:

@@ -25,5 +25,6 @@ void bind_stereo(nb::module_& module);
 void bind_tof(nb::module_& module);
 void bind_structured_light(nb::module_& module);
 void bind_tools(nb::module_& module);
+void bind_yaml(nb::module_& module);
 
 }  // namespace glidar::python

@@ -4,6 +4,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/core/output_frame.hpp>
 #include <glidar/explain/trace_text.hpp>
+#include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_layout.hpp>
 #include <glidar/io/pictures/beam_picture.hpp>
@@ -107,9 +108,15 @@ std::vector<Matrix4> object_poses(const Measured& measured) {
   return poses;
 }
 
-/// A cloud whose memory its arrays share.
+/// A cloud whose memory its arrays share, and what it was made from.
 struct CloudHandle {
   PointCloud cloud;
+  std::shared_ptr<const Scene> scene;
+  std::vector<std::string> inputs;  ///< files that no output may replace
+  std::shared_ptr<SensorHandle> sensor;
+  std::shared_ptr<const Beams> beams;
+  Pose world_from_sensor = Pose::Identity();
+  std::int64_t stamp_ns = 0;
 };
 
 PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns,
@@ -126,7 +133,13 @@ CloudHandle cloud_of(const Measured& measured, const std::vector<std::string>& c
                      const std::string& frame, bool deskew, bool drop_invalid) {
   const nb::gil_scoped_release release;
   check_columns(measured.sensor->sensor(), columns);
-  CloudHandle handle{make_cloud(measured, columns, frame, deskew)};
+  CloudHandle handle{.cloud = make_cloud(measured, columns, frame, deskew),
+                     .scene = measured.scene().scene,
+                     .inputs = measured.scene().files,
+                     .sensor = measured.sensor,
+                     .beams = measured.beams,
+                     .world_from_sensor = measured.frame.world_from_sensor,
+                     .stamp_ns = measured.frame.stamp_ns};
   if (drop_invalid) {
     PointCloud hits;
     remove_invalid_points(handle.cloud, hits);
@@ -142,6 +155,73 @@ nb::object cloud_column(nb::handle self, std::size_t index) {
   if (column.components.size() > 1) shape.push_back(column.components.size());
   return std::visit([&](auto& values) { return nb::cast(array_at(values.data(), shape, self)); },
                     column.values);
+}
+
+using AnyArray = nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu>;
+
+/// Sets the values if the array is of this type.
+template <class T>
+bool take_values(const AnyArray& array, Column& column) {
+  if (array.dtype() != nb::dtype<T>()) return false;
+  const auto* data = static_cast<const T*>(array.data());
+  column.values = std::vector<T>(data, data + array.size());
+  return true;
+}
+
+/// A column of a cloud from Python, with the components of a frame's.
+Column column_of(const std::string& name, const AnyArray& array) {
+  PointCloud empty;
+  make_point_cloud({}, {}, {}, {}, std::span(&name, 1), empty);  // throws for an unknown name
+  Column column{name, empty.columns.front().components, {}};
+  const bool is_known =
+      take_values<double>(array, column) || take_values<float>(array, column) ||
+      take_values<std::uint8_t>(array, column) || take_values<std::uint16_t>(array, column) ||
+      take_values<std::uint32_t>(array, column) || take_values<std::int64_t>(array, column);
+  if (!is_known) throw Error({"cloud", "a column " + name + " of another type", "its own type"});
+  return column;
+}
+
+/// Writes a cloud with the columns, which may have been changed since `from` was made; None: the
+/// cloud was unpickled.
+void save_cloud(const std::filesystem::path& path, PointCloud cloud, const CloudHandle& from,
+                const OutputOptions& options, const Report& report) {
+  const FileFormat& format = format_for(path);
+  if (!format.takes_more && format.suffix != ".bin") {
+    throw Error({path.string(), "not a file of a cloud", suffixes_with_columns() + " .bin",
+                 "write images of a frame with Frame.save"});
+  }
+  refuse_overwrite_of_inputs(from.inputs, path);
+  check_options_used(path.string(), options);
+  const Scene nothing;
+  const Sensor unknown;
+  const Beams none;
+  Frame frame;
+  frame.world_from_sensor = from.world_from_sensor;
+  frame.stamp_ns = from.stamp_ns;
+  make_file_sink(path, options.sink,
+                 {.scene = from.scene ? *from.scene : nothing,
+                  .sensor = from.sensor ? from.sensor->sensor() : unknown,
+                  .beams = from.beams ? *from.beams : none,
+                  .renderer = {}},
+                 report)
+      ->write(cloud, frame);
+}
+
+void save_columns(const std::filesystem::path& path, const nb::dict& columns, nb::handle core,
+                  const OutputOptions& options, const nb::object& log) {
+  const bool is_made_here = nb::isinstance<CloudHandle>(core);
+  const CloudHandle unknown;
+  const CloudHandle& from = is_made_here ? nb::cast<const CloudHandle&>(core) : unknown;
+  PointCloud cloud{nb::cast<std::uint32_t>(core.attr("rows")),
+                   nb::cast<std::uint32_t>(core.attr("cols")),
+                   nb::cast<std::string>(core.attr("frame_id")),
+                   Pose(nb::cast<Eigen::Matrix4d>(core.attr("world_from_cloud"))),
+                   {}};
+  for (const auto& [name, array] : columns)
+    cloud.columns.push_back(column_of(nb::cast<std::string>(name), nb::cast<AnyArray>(array)));
+  unlocked([&](Watch& watch) {
+    save_cloud(path, std::move(cloud), from, options, report_to(log, watch));
+  });
 }
 
 std::vector<std::string> column_names_of(const CloudHandle& handle) {
@@ -162,6 +242,7 @@ void save_to(Measured& m, const std::filesystem::path& path, const OutputOptions
   const std::vector<std::string>& more = m.sensor->sensor().files;
   inputs.insert(inputs.end(), more.begin(), more.end());
   refuse_overwrite_of_inputs(inputs, path);
+  check_options_used(path.string(), options);
   const FileFormat& format = format_for(path);
   std::vector<std::string> columns = format.columns;
   if (format.takes_more) {
@@ -218,6 +299,7 @@ void bind_save_options(nb::module_& module) {
       .def_rw("columns", &OutputOptions::columns)
       .def_rw("frame", &OutputOptions::frame)
       .def_rw("deskew", &OutputOptions::deskew)
+      .def_rw("per_frame", &OutputOptions::per_frame)
       .def(
           "set_pcd",
           [](OutputOptions& self, int encoding) {
@@ -267,6 +349,17 @@ void bind_cloud(nb::module_& module) {
       .def_prop_ro("columns", column_names_of)
       .def("column", cloud_column, nb::arg("index"),
            nb::sig("def column(self, index: int) -> numpy.ndarray"));
+  module.def("save_cloud", save_columns, nb::arg("path"), nb::arg("columns"), nb::arg("core"),
+             nb::arg("options"), nb::arg("log"),
+             nb::sig("def save_cloud(path: str, columns: dict[str, numpy.ndarray], core: object, "
+                     "options: OutputOptions, log: object) -> None"));
+}
+
+/// Whether the pixels of a camera have depths.
+bool has_depths(const Measured& measured) {
+  const Sensor& sensor = measured.sensor->sensor();
+  return std::holds_alternative<Pinhole>(sensor.optics) &&
+         !images_have_range(sensor, *measured.beams);
 }
 
 std::vector<std::string> known_colours() {
@@ -382,6 +475,7 @@ void bind_frame(nb::module_& module) {
       .def("ground_truth", true_column, nb::arg("name"),
            nb::sig("def ground_truth(self, name: str) -> numpy.ndarray | None"))
       .def_prop_ro("returns", [](const Measured& self) { return self.beams->returns; })
+      .def_prop_ro("has_depths", has_depths)
       .def_prop_ro("range_offset_m",
                    [](const Measured& self) { return self.beams->range_offset_m; })
       .def("picture", beam_picture, nb::arg("number_of_return"))
@@ -396,21 +490,26 @@ void bind_frame(nb::module_& module) {
 
 namespace {
 
-std::vector<ObjectBox> find_boxes(Measured& measured, BoxSelection selection) {
+std::vector<ObjectBox> find_boxes(Measured& measured, const BoxedClasses& classes) {
   PreparedScene& prepared = measured.rendered();
   Simulator simulator(*prepared.scene, measured.sensor, *prepared.renderer);
-  return simulator.find_boxes(*measured.motion, measured.frame, selection);
+  simulator.set_boxed_classes(classes);
+  return simulator.find_boxes(*measured.motion, measured.frame, BoxSelection::with_class);
 }
 
-/// The boxes of the objects with a class, or of all.
-std::vector<ObjectBox> boxes_of(Measured& measured, bool all) {
+/// The boxes of all objects, or of those of the classes; no classes: those of the scene.
+std::vector<ObjectBox> boxes_of(Measured& measured, bool all,
+                                const std::vector<std::string>& names) {
   return unlocked([&](Watch&) {
-    if (!all) {
+    if (!all && names.empty()) {
       ensure_boxes(measured);
       return measured.frame.boxes;
     }
+    const Scene& scene = *measured.scene().scene;
+    BoxedClasses classes(scene.class_names.size(), true);
+    if (!all) classes = boxed_classes(scene.class_names, names, "classes");
     const std::lock_guard lock(measured.rendered().mutex);
-    return find_boxes(measured, BoxSelection::all);
+    return find_boxes(measured, classes);
   });
 }
 
@@ -434,7 +533,7 @@ bool lacks_boxes(const Measured& measured) {
 void ensure_boxes(Measured& measured) {
   const std::lock_guard lock(measured.rendered().mutex);
   if (measured.has_boxes) return;
-  measured.frame.boxes = find_boxes(measured, BoxSelection::with_class);
+  measured.frame.boxes = find_boxes(measured, measured.rendered().boxed_classes);
   measured.has_boxes = true;
 }
 
@@ -449,7 +548,7 @@ void bind_boxes(nb::module_& module) {
       .def_ro("beams", &ObjectBox::beams)
       .def_ro("visible_beams", &ObjectBox::visible_beams)
       .def_prop_ro("occlusion", [](const ObjectBox& self) { return occlusion(self); });
-  module.def("boxes", boxes_of, nb::arg("frame"), nb::arg("all"));
+  module.def("boxes", boxes_of, nb::arg("frame"), nb::arg("all"), nb::arg("names"));
   module.def("cloud_from_sensor", cloud_from_sensor, nb::arg("frame"), nb::arg("name"));
   module.def(
       "object_name",

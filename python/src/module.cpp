@@ -23,4 +23,5 @@ NB_MODULE(_core, module) {
   glidar::python::bind_tof(module);
   glidar::python::bind_structured_light(module);
   glidar::python::bind_tools(module);
+  glidar::python::bind_yaml(module);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/box_classes.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/sensor/imu.hpp>
@@ -48,6 +49,7 @@ struct PreparedScene {
   std::string kind;  ///< of the renderer
   std::shared_ptr<const Scene> scene;
   std::vector<std::string> files;      ///< all files that it was read from
+  BoxedClasses boxed_classes;          ///< whose objects have boxes
   std::unique_ptr<Renderer> renderer;  ///< none: see unrendered()
   MeasurementMutex mutex;
 };
@@ -70,6 +72,7 @@ struct SceneHandle {
   std::optional<Trajectory> rig_motion;
   std::vector<RigImu> imus;
   Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();
+  std::vector<std::string> box_classes;  ///< see SceneFile
   std::vector<std::string> files;  ///< the scene file and the files that it names, except models
   std::map<std::pair<std::string, unsigned>, std::shared_ptr<PreparedScene>> prepared;
 

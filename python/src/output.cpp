@@ -123,6 +123,7 @@ class OutputHandle {
   }
 
   [[nodiscard]] std::unique_ptr<Opened> open(const Measured& measured) {
+    check_options_used(path_, options_);
     (void)measured.scene();  // restores it when the frame was unpickled
     auto opened = std::make_unique<Opened>();
     opened->sensors = sensors_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "objects.hpp"
 
+#include <glidar/core/box_classes.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/field_visitor.hpp>
 #include <glidar/io/config/length_unit.hpp>
@@ -297,6 +298,7 @@ SceneHandle handle_of(SceneFile file) {
                               std::make_shared<SensorHandle>(std::move(one.sensor)),
                               one.rig_from_sensor});
   }
+  handle.box_classes = std::move(file.box_classes);
   handle.world_from_rig = file.world_from_rig;
   handle.looks_at = file.looks_at;
   handle.rig_motion = std::move(file.rig_motion);
@@ -310,6 +312,12 @@ SceneHandle load(const std::filesystem::path& path, const nb::dict& given, const
   const ModelOptions options = model_options(given);
   return handle_of(unlocked(
       [&](Watch& watch) { return load_scene_file(path, options, report_to(log, watch)); }));
+}
+
+SceneHandle load_content(const std::filesystem::path& path, const std::string& content,
+                         const nb::object& log) {
+  return handle_of(unlocked(
+      [&](Watch& watch) { return load_scene_content(path, content, {}, report_to(log, watch)); }));
 }
 
 SceneHandle parse(const std::string& text, const nb::object& log,
@@ -494,6 +502,12 @@ std::uint32_t class_number(Scene& scene, const std::string& name) {
   return number;
 }
 
+void set_box_classes(SceneHandle& handle, std::vector<std::string> names) {
+  boxed_classes(handle.scene->class_names, names, "box_classes");  // for its errors
+  handle.prepared.clear();
+  handle.box_classes = std::move(names);
+}
+
 using Scale = std::array<double, 3>;
 
 /// Sets the given attributes of an object; changes nothing when it throws.
@@ -645,6 +659,7 @@ std::shared_ptr<PreparedScene> unrendered(const SceneHandle& handle, const std::
   made->kind = kind;
   made->scene = handle.scene;
   made->files = files_read(handle);
+  made->boxed_classes = boxed_classes(made->scene->class_names, handle.box_classes);
   return made;
 }
 
@@ -682,6 +697,7 @@ void bind_scene(nb::module_& module) {
            nb::arg("ids"))
       .def("set_object", set_object, nb::arg("index"), nb::arg("changes"),
            nb::sig("def set_object(self, index: int, changes: dict[str, typing.Any]) -> None"))
+      .def("set_box_classes", set_box_classes, nb::arg("names"))
       .def("mesh", mesh_of, nb::arg("index"),
            nb::sig("def mesh(self, index: int) -> dict[str, numpy.ndarray | None]"))
       .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"),
@@ -692,6 +708,7 @@ void bind_scene(nb::module_& module) {
            nb::sig("def object(self, index: int) -> dict[str, typing.Any]"))
       .def("bounds", bounds_of)
       .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })
+      .def_prop_ro("box_classes", [](const SceneHandle& self) { return self.box_classes; })
       .def_prop_ro("files", files_read)
       .def("drop_last", drop_last)
       .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
@@ -708,6 +725,10 @@ void bind_scene(nb::module_& module) {
   module.def("load_scene", load, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
              nb::sig("def load_scene(path: str, options: dict[str, typing.Any], "
                      "log: object | None) -> Scene"));
+  module.def("load_scene_content", load_content, nb::arg("path"), nb::arg("content"),
+             nb::arg("log").none(),
+             nb::sig("def load_scene_content(path: str, content: str, log: object | None) -> "
+                     "Scene"));
   bind_scene_state(module);
 }
 

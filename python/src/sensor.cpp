@@ -61,6 +61,11 @@ Shared load(const std::string& name_or_path, const std::string& mode) {
   return make(load_sensor_file(find_sensor_file(name_or_path, mode)));
 }
 
+Shared load_content(const std::filesystem::path& path, const std::string& content,
+                    const std::string& variant, const std::string& mode) {
+  return make(load_sensor_content({path, variant, mode}, content));
+}
+
 /// A table of beams from Python: `shape` (rows, cols), `period_ns`, and arrays of one row per
 /// beam, of which only `directions` is required.
 RayTable table_of(const nb::dict& arrays) {
@@ -224,6 +229,10 @@ void bind_sensor(nb::module_& module) {
       .def("changed", changed, nb::arg("options"))
       .def("ground_truth", made_ground_truth);
   module.def("load_sensor", load, nb::arg("name_or_path"), nb::arg("mode") = "");
+  module.def("load_sensor_content", load_content, nb::arg("path"), nb::arg("content"),
+             nb::arg("variant"), nb::arg("mode"),
+             nb::sig("def load_sensor_content(path: str, content: str, variant: str, mode: str) "
+                     "-> Sensor"));
   module.def(
       "parse_sensor", parse, nb::arg("text"), nb::arg("table").none() = nb::none(),
       nb::arg("files") = std::vector<std::string>(),

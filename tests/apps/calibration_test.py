@@ -116,7 +116,7 @@ class Cameras(Calibrated):
         self.assertIn("camchain.yaml: cam1: not used: T_cn_cnm1", done.stderr)
         self.assertEqual(self.arrays("a.npz")["xyz"].shape, (240, 320, 3))
         self.assertEqual(self.arrays("b.npz")["xyz"].shape, (50, 66, 3))
-        with open(os.path.join(self.folder, "b.npy.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "b.glidar.json"), encoding="utf-8") as file:
             info = json.load(file)["sensor"]["camera_info"]
         self.assertEqual(info["distortion_model"], "omni")
         self.assertEqual(info["d"], [1.2, -0.2, 0.05, 0.001, -0.002])
@@ -129,7 +129,7 @@ class Cameras(Calibrated):
                    "distortion_coefficients: {rows: 1, cols: 5, data: [-0.2, 0.1, 0.001, -0.002, 0.01]}\n")  # fmt: skip
         self.write("s.yaml", "optics: {type: pinhole, calibration_file: left.yaml}\n")
         self.succeed("render", *ROOM, "--sensor", "s.yaml", "-o", "a.npy")
-        with open(os.path.join(self.folder, "a.npy.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "a.glidar.json"), encoding="utf-8") as file:
             info = json.load(file)["sensor"]["camera_info"]
         self.assertEqual((info["distortion_model"], info["d"]), ("plumb_bob", [-0.2, 0.1, 0.001, -0.002, 0.01]))
         self.assertEqual(info["k"], [60, 0.5, 31, 0, 61, 23, 0, 0, 1])
@@ -153,9 +153,9 @@ class Cameras(Calibrated):
         self.assertLess(self.arrays("a.npz")["depth"].min(), -5.0)
         np.testing.assert_array_equal(np.load(os.path.join(self.folder, "a.npy")), ranges.astype(np.float32))
         np.testing.assert_array_equal(np.array(self.grey_rows("a.depth.png")), np.round(ranges * 1000))
+        files = {one["file"]: one for one in json.loads(self.bytes_of("a.glidar.json"))["files"]}
         for name in ("a.npy", "a.depth.png", "a.depth.tiff"):
-            with open(os.path.join(self.folder, name + ".json"), encoding="utf-8") as file:
-                self.assertTrue(json.load(file)["cloud"]["image"]["pixels"].startswith("range along the beam "), name)
+            self.assertTrue(files[name]["image"]["pixels"].startswith("range along the beam "), name)
 
 
 if __name__ == "__main__":

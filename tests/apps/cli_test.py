@@ -103,7 +103,7 @@ class Words(CliTest):
     def test_joined_short_options_are_recorded_as_the_same_command(self):
         for words in (("-qo", "a.pcd"), ("-qj", "2", "-o", "a.pcd"), ("-qqj2", "-oa.pcd"), ("-o", "a.pcd")):
             self.succeed("render", "builtin:box", *words)
-            command = json.loads(self.bytes_of("a.pcd.json"))["command"]["arguments"]
+            command = json.loads(self.bytes_of("a.glidar.json"))["command"]["arguments"]
             self.assertEqual(command, ["render", "builtin:box", "-o", "a.pcd"], words)
             self.succeed("explain", "a.pcd", "--index", "3")
 
@@ -149,8 +149,10 @@ class Render(CliTest):
     def test_arrays_of_a_lidar_are_its_ranges(self):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "-o", "a.npy", "-o", "a.range.npy", "-o", "a.range.png")
         self.assertEqual(self.bytes_of("a.npy"), self.bytes_of("a.range.npy"))
-        for name in ("a.npy.json", "a.range.npy.json", "a.range.png.json"):
-            self.assertTrue(json.loads(self.bytes_of(name))["cloud"]["image"]["pixels"].startswith("range along the beam"), name)
+        files = json.loads(self.bytes_of("a.glidar.json"))["files"]
+        self.assertEqual([one["file"] for one in files], ["a.npy", "a.range.npy", "a.range.png"])
+        for one in files:
+            self.assertTrue(one["image"]["pixels"].startswith("range along the beam"), one)
 
     def test_summary_and_files(self):
         done = self.succeed("render", "builtin:box", "-w", "40", "--height", "30",
@@ -158,7 +160,7 @@ class Render(CliTest):
         self.assertRegex(done.stdout, r"30 x 40 beams, \d+ hits \(\d+\.\d %\), range [\d.]+ to [\d.]+ m")
         self.assertIn("wrote a.pcd b.ply c.png", done.stdout)
         self.assertEqual(done.stderr, "")
-        self.assertEqual(self.files(), ["a.pcd", "a.pcd.json", "b.ply", "b.ply.json", "c.png"])
+        self.assertEqual(self.files(), ["a.glidar.json", "a.pcd", "b.glidar.json", "b.ply", "c.png"])
 
     def test_quiet_and_no_sidecar(self):
         done = self.succeed("render", "builtin:box", "-o", "a.pcd", "--quiet", "--no-sidecar")
@@ -211,7 +213,7 @@ class Render(CliTest):
         command = ["glidar", "render", "builtin:box", "--quiet", "-o", "same.pcd"]
         runs = [subprocess.Popen(command, cwd=self.folder, env=self.environment) for _ in range(4)]
         self.assertEqual([run.wait(timeout=MAX_WAIT_S) for run in runs], [0] * len(runs))
-        self.assertEqual(self.files(), ["same.pcd", "same.pcd.json"])
+        self.assertEqual(self.files(), ["same.glidar.json", "same.pcd"])
         together = self.bytes_of("same.pcd")
         self.succeed(*command[1:])
         self.assertEqual(self.bytes_of("same.pcd"), together)
@@ -267,7 +269,7 @@ class Render(CliTest):
         for frame, name in (("optical", "optical"), ("ros", "camera_frame"), ("gl", "gl"),
                             ("world", "world"), ("legacy", "legacy")):
             self.succeed("render", "builtin:box", "--frame", frame, "-o", "a.pcd")
-            with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
+            with open(os.path.join(self.folder, "a.glidar.json"), encoding="utf-8") as file:
                 self.assertIn(name, json.dumps(json.load(file)))
 
     def test_world_cloud_is_on_the_model(self):
@@ -318,14 +320,14 @@ class Motion(CliTest):
     def test_a_run_starts_with_its_trajectory(self):
         self.write("path.tum", "0 0 0 -7 0 0 0 1\n1 0 0 -6 0 0 0 1\n")
         self.succeed("render", "builtin:box", "--trajectory", "path.tum", "-o", "x.pcd")
-        with open(os.path.join(self.folder, "x.pcd.json"), encoding="utf-8") as file:
-            pose = json.load(file)["sensor"]["world_from_sensor"]
+        with open(os.path.join(self.folder, "x.glidar.json"), encoding="utf-8") as file:
+            pose = json.load(file)["world_from_sensor"]
         self.assertEqual(pose["position_m"], [0, 0, -7])
         late = self.write("late.tum", "5 0 0 -6 0 0 0 1\n")
         self.succeed("render", "builtin:box", "--trajectory", late, "-o", "late.pcd")
-        with open(os.path.join(self.folder, "late.pcd.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "late.glidar.json"), encoding="utf-8") as file:
             written = json.load(file)
-        self.assertEqual((written["stamp_ns"], written["sensor"]["world_from_sensor"]["position_m"]), (5 * 10**9, [0, 0, -6]))
+        self.assertEqual((written["stamp_ns"], written["world_from_sensor"]["position_m"]), (5 * 10**9, [0, 0, -6]))
         self.assertIn("its first or last pose is used", self.warned("builtin:box", "--trajectory", late, "--duration", "1"))
         self.assertIn("both are given; give one of them", self.refused(
             "render", "builtin:box", "--trajectory", "path.tum", "--camera-z", "5", "-o", "y.pcd"))

@@ -67,6 +67,11 @@ TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
       {"ply", {"ascii", "little", "big", "strips", "faces"}},
       {"stl", {"ascii", "binary", "colours"}},
       {"off", {"plain", "all", "binary"}},
+      {"mtl", {"all", "odd"}},
+      {"image",
+       {"bmp", "gif", "hdr", "jpeg", "palette", "pnm", "png", "psd", "tga", "webp", "webp_alpha"}},
+      {"collada", {"plain", "decorated"}},
+      {"package", {"three_mf", "zae"}},
   };
   for (const testing::FileDecoder& decoder : testing::file_decoders()) {
     std::size_t files = 0;

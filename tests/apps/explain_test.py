@@ -47,21 +47,21 @@ class Explain(CliTest):
 
     def test_a_damaged_sidecar_is_explained_in_plain_words(self):
         self.succeed("render", "builtin:box", "--width", "8", "--height", "6", "-o", "a.pcd")
-        good = self.bytes_of("a.pcd.json").decode()
+        good = self.bytes_of("a.glidar.json").decode()
         for text, words in ((good[:100], "a damaged file: its text ends too early, at line "),
                             (good.replace('"frame_hash"', '"hash"'), "the key 'frame_hash' is missing")):
-            self.write("a.pcd.json", text)
+            self.write("a.glidar.json", text)
             error = self.refused("explain", "a.pcd", "--index", "0")
-            self.assertIn("a.pcd.json: ", error)
+            self.assertIn("a.glidar.json: ", error)
             self.assertIn(words, error)
             self.assertIn("write the cloud again", error)
             self.assertNotIn("exception", error)
 
     def test_errors_quote_at_most_8_kib_of_a_sidecar(self):
         self.succeed("render", "builtin:box", "--width", "8", "--height", "6", "-o", "a.pcd")
-        sidecar = json.loads(self.bytes_of("a.pcd.json"))
+        sidecar = json.loads(self.bytes_of("a.glidar.json"))
         sidecar["command"]["arguments"][1] = "x" * 131071
-        self.write("a.pcd.json", json.dumps(sidecar))
+        self.write("a.glidar.json", json.dumps(sidecar))
         error = self.refused("explain", "a.pcd", "--index", "0")
         self.assertTrue(error.startswith("glidar: error: xxx"), error[:30])
         self.assertLess(len(error), 8300)
@@ -137,10 +137,11 @@ optics: {type: spinning, elevation_deg: [0], columns_per_turn: 60, beam_origin_m
         self.write("box.obj", box_of(2))
         os.mkdir(os.path.join(self.folder, "out"))
         self.succeed("render", "box.obj", "--sensor-rate", "0,1,0", "--camera-z", "9", "--duration", "0.1",
-                     "--threads", "1", "--quiet", "-o", "out/b.csv", "--columns", "xyz,range,intensity,status")
-        with open(os.path.join(self.folder, "out", "b_000002.csv.json"), encoding="utf-8") as file:
+                     "--threads", "1", "--quiet", "--per-frame", "-o", "out/b.csv", "--columns", "xyz,range,intensity,status")
+        with open(os.path.join(self.folder, "out", "b_000002.glidar.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["frame"], 2)
+        with open(os.path.join(self.folder, "out", "b.glidar.json"), encoding="utf-8") as file:
             reported = json.load(file)
-        self.assertEqual(reported["frame"], 2)
         self.assertEqual(reported["command"]["folder"], "..")
         self.assertNotIn("--threads", reported["command"]["arguments"])
         self.assertNotIn("--quiet", reported["command"]["arguments"])
@@ -171,15 +172,15 @@ optics: {type: spinning, elevation_deg: [0], columns_per_turn: 60, beam_origin_m
         self.assertIn("the models have changed", explain("b.pcd", "--index", "0"))
         os.remove(os.path.join(self.folder, "box.obj"))
         self.assertIn("box.obj", explain("b.pcd", "--index", "0"))
-        with open(os.path.join(self.folder, "b.pcd.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "b.glidar.json"), encoding="utf-8") as file:
             reported = json.load(file)
         for key, value in (("frame", 2 ** 40), ("frame", 1.5), ("command", {"arguments": [], "folder": 3}),
                            ("command", {"arguments": ["render", "--help"], "folder": "."}),
                            ("command", {"arguments": ["verify"], "folder": "."}),
                            ("command", {"arguments": reported["command"]["arguments"], "folder": "nowhere"})):
-            self.write("b.pcd.json", json.dumps(dict(reported, **{key: value})))
-            self.assertIn("b.pcd.json", explain("b.pcd", "--index", "0"))
-        self.write("b.pcd.json", "{}")
+            self.write("b.glidar.json", json.dumps(dict(reported, **{key: value})))
+            self.assertIn("b.glidar.json", explain("b.pcd", "--index", "0"))
+        self.write("b.glidar.json", "{}")
         self.assertIn("not a sidecar", explain("b.pcd", "--index", "0"))
 
     def test_a_changed_sensor_file_is_noticed(self):

@@ -52,7 +52,7 @@ class GpuRenderer(CliTest):
         paper = self.render("paper.csv", "--renderer", "opengl", "--quantized-framebuffer").splitlines()
         self.assertAlmostEqual(len(paper), len(exact), delta=5)
         self.assertNotEqual(paper, exact)
-        with open(os.path.join(self.folder, "paper.csv.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "paper.glidar.json"), encoding="utf-8") as file:
             self.assertIn("opengl, quantized framebuffer", json.dumps(json.load(file)))
 
     @unittest.skipIf(np is None, "no NumPy; ./dev test installs it")

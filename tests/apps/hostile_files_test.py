@@ -79,7 +79,7 @@ class Text(CliTest):
         self.write("r.jsonl", f'{{"recording":{deep}}}\n')
         self.assertIn("r.jsonl:1: JSON nested too deeply", self.refused("replay", "r.jsonl"))
         self.write("a.pcd", "")
-        self.write("a.pcd.json", f'{{"glidar":"x","command":null,"frame":{deep}}}')
+        self.write("a.glidar.json", f'{{"glidar":"x","command":null,"frame":{deep}}}')
         self.assertIn("nested too deeply", self.refused("explain", "a.pcd", "--index", "0"))
         self.write("ou.json", f'{{"beam_altitude_angles":{deep}}}')
         self.write("s.yaml", "optics: {type: ouster, file: ou.json}\n")
@@ -150,7 +150,7 @@ class Text(CliTest):
                    f"  storage_identifier: {quoted}\n  relative_file_paths: [{quoted}]\n")
         self.write("r.jsonl", f'{{"recording": {quoted}}}\n')
         self.write("a.pcd", "")
-        self.write("a.pcd.json", f'{{{quoted}: {quoted}}}')
+        self.write("a.glidar.json", f'{{{quoted}: {quoted}}}')
         out = ("-w", "4", "--height", "4", "-o", "x.pcd")
         self.run_harmless("render", "m.obj", "--no-cache", *out)
         self.run_harmless("info", "m.obj")
@@ -205,12 +205,12 @@ class Guard(CliTest):
         self.assertEqual(self.bytes_of(name).decode(), text)
 
     def test_sidecars(self):
-        self.write("scene.yaml", "models: [{model: box.obj}]\nsensor: q.pcd.json\n")
-        self.kept("q.pcd.json", CAMERA, "render", "scene.yaml", "-o", "q.pcd")
-        self.write("two.yaml", "models: [{model: box.obj}]\nsensor: q_000001.pcd.json\n")
-        self.kept("q_000000.pcd.json", CAMERA, "render", "box.obj", "--sensor", "q_000000.pcd.json", "--duration", "0.05",
-                  "-o", "q.pcd")
-        self.kept("q_000000.pcd.json", CAMERA, "stream", "box.obj", "--sensor", "q_000000.pcd.json", "--frames", "1",
+        self.write("scene.yaml", "models: [{model: box.obj}]\nsensor: q.glidar.json\n")
+        self.kept("q.glidar.json", CAMERA, "render", "scene.yaml", "-o", "q.pcd")
+        self.write("two.yaml", "models: [{model: box.obj}]\nsensor: q_000001.glidar.json\n")
+        self.kept("q_000000.glidar.json", CAMERA, "render", "box.obj", "--sensor", "q_000000.glidar.json", "--duration", "0.05",
+                  "--per-frame", "-o", "q.pcd")
+        self.kept("q_000000.glidar.json", CAMERA, "stream", "box.obj", "--sensor", "q_000000.glidar.json", "--frames", "1",
                   "-o", "q.pcd")
         self.succeed("render", "scene.yaml", "-o", "q.pcd", "--no-sidecar")
 
@@ -224,8 +224,8 @@ class Guard(CliTest):
 
     def test_files_of_the_sensors_of_a_rig(self):
         self.write("rig.yaml", "models: [{model: box.obj}]\nrig_pose: {position: [0, 0, 5]}\n"
-                               "sensors: [{name: a, sensor: q_a.pcd.json}, {name: b, sensor: q_a.pcd.json}]\n")
-        self.kept("q_a.pcd.json", CAMERA, "render", "rig.yaml", "-o", "q.pcd")
+                               "sensors: [{name: a, sensor: q_a.glidar.json}, {name: b, sensor: q_a.glidar.json}]\n")
+        self.kept("q_a.glidar.json", CAMERA, "render", "rig.yaml", "-o", "q.pcd")
 
     def test_pictures_statistics_and_recordings(self):
         os.symlink("mine.yaml", os.path.join(self.folder, "mine.png"))
@@ -238,9 +238,9 @@ class Guard(CliTest):
             self.kept("mine.yaml", CAMERA, "stream", "box.obj", "--sensor", "mine.yaml", "--frames", "1", "-o", "x.pcd",
                       option, "mine.yaml")
             done = self.run_program("stream", "box.obj", "--sensor", "mine.yaml", "--frames", "1", "-o", "x.pcd", option,
-                                    "x_000000.pcd.json")
+                                    "x_000000.glidar.json")
             self.assertEqual(done.returncode, 2)
-            self.assertIn("x_000000.pcd.json: is an input file", done.stderr)
+            self.assertIn("x_000000.glidar.json: is an input file", done.stderr)
             self.assertFalse(os.path.exists(os.path.join(self.folder, "x_000000.pcd")))
 
 

@@ -95,7 +95,7 @@ class HostileNames(CliTest):
         for kind, name in NAMES.items():
             with self.subTest(kind):
                 self.write_scene(name)
-                text = self.render("pcd")["x.pcd.json"].decode("ascii")
+                text = self.render("pcd")["x.glidar.json"].decode("ascii")
                 self.assertIn(json.dumps(name), text)
 
     def test_names_of_rig_sensors_that_are_no_file_names_are_refused(self):

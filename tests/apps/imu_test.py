@@ -30,8 +30,8 @@ class Imus(CliTest):
         self.write("scene.yaml", SCENE)
         text = self.succeed("render", "scene.yaml", "--duration", "0.2", "-o", "run.pcd", "-o", "run.imu.csv").stdout
         self.assertIn("wrote run_front.imu.csv", text)
-        self.assertTrue(os.path.exists(os.path.join(self.folder, "run_000001.pcd")) or
-                        os.path.exists(os.path.join(self.folder, "run_lidar_000001.pcd")))
+        self.assertTrue(os.path.exists(os.path.join(self.folder, "run.pcd")) or
+                        os.path.exists(os.path.join(self.folder, "run_lidar.pcd")))
         rows = self.rows("run_ideal.imu.csv")
         self.assertEqual([row["t_ns"] for row in rows], [k * 1e7 for k in range(21)])  # to the end of frame 1
         for row in rows:

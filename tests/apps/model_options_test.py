@@ -21,7 +21,7 @@ class ModelOptions(CliTest):
         self.assertIn("0.0254 m, declared by the file", self.succeed("info", "a.amf").stdout)
         done = self.succeed("render", "a.amf", "-o", "x.pcd")
         self.assertNotIn("--u", done.stderr)  # no hint: the file declares both
-        with open(os.path.join(self.folder, "x.pcd.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "x.glidar.json"), encoding="utf-8") as file:
             instance = json.load(file)["instances"][0]
         self.assertEqual((instance["metres_per_unit"], instance["up"]), (0.0254, "z"))
         report = json.loads(self.succeed("info", "a.amf", "--unit", "m", "--json").stdout)

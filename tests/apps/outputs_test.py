@@ -60,7 +60,7 @@ class LasFiles(CliTest):
     def test_they_have_the_columns_that_the_format_needs_beside_the_requested_ones(self):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "3,0,0", "-o", "a.las", "-o", "a.csv",
                      "--columns", "xyz,ring")  # fmt: skip
-        columns = {column["name"] for column in json.loads(self.bytes_of("a.las.json"))["cloud"]["columns"]}
+        columns = {column["name"] for column in json.loads(self.bytes_of("a.glidar.json"))["files"][0]["columns"]}
         self.assertEqual(columns, {"xyz", "ring", "range", "row", "col", "class"})
         self.assertEqual(self.bytes_of("a.csv").splitlines()[0], b"x,y,z,ring")
 
@@ -138,7 +138,7 @@ class Failures(CliTest):
 class Images(CliTest):
     def test_a_model_given_directly_has_an_id_that_fits_an_image_of_instances(self):
         self.succeed("render", "builtin:box", "-o", "x.instance.png", "-o", "x.pcd")
-        with open(os.path.join(self.folder, "x.instance.png.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "x.glidar.json"), encoding="utf-8") as file:
             self.assertEqual([one["id"] for one in json.load(file)["instances"]], [1])
 
 
@@ -173,7 +173,7 @@ class StandardOutput(CliTest):
 
     def test_files_are_written_together_with_it(self):
         done = self.succeed("render", "builtin:box", "-o", "-", "--format", "csv", "-o", "a.pcd", "--quiet")
-        self.assertEqual(self.files(), ["a.pcd", "a.pcd.json"])
+        self.assertEqual(self.files(), ["a.glidar.json", "a.pcd"])
         self.assertEqual(done.stderr, "")
 
     def test_it_is_given_once_and_with_its_format(self):
@@ -195,7 +195,7 @@ class StandardOutput(CliTest):
             self.assertEqual(program.stderr.read(), b"")
             program.stderr.close()
             self.assertEqual(program.wait(300), 141 if ignored else -signal.SIGPIPE)
-            self.assertEqual(self.files(), ["a.csv", "a.csv.json"])
+            self.assertEqual(self.files(), ["a.csv", "a.glidar.json"])
 
     def test_a_terminal_gets_text_only(self):
         ours, theirs = pty.openpty()

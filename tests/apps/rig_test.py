@@ -46,7 +46,7 @@ class RigTest(StreamTest):
 
 class Files(RigTest):
     def test_each_sensor_writes_its_own_at_its_own_rate(self):
-        self.succeed("render", "rig.yaml", "--duration", "0.1", "-o", "s.pcd", "--no-sidecar")
+        self.succeed("render", "rig.yaml", "--duration", "0.1", "--per-frame", "-o", "s.pcd", "--no-sidecar")
         self.assertEqual(self.files(), ["box.obj", "rig.yaml", "s_camera_000000.pcd", "s_camera_000001.pcd",
                                         "s_camera_2_000000.pcd", "s_camera_2_000001.pcd", "s_lidar_000000.pcd"])
 
@@ -65,7 +65,7 @@ class Files(RigTest):
 
     def test_a_sensor_moves_with_the_rig(self):
         self.succeed("render", "rig.yaml", "--duration", "0.1", "-o", "s.npz")
-        reported = json.loads(self.bytes_of("s_camera_000001.npz.json"))["sensor"]
+        reported = json.loads(self.bytes_of("s_camera_000001.glidar.json"))
         turned = np.deg2rad(2) * 0.05  # a screw motion of 0.5 m/s along x: an arc
         radius = 0.5 / np.deg2rad(2)
         rig = np.array([radius * np.sin(turned), radius * (1 - np.cos(turned)), 0])
@@ -93,7 +93,7 @@ class Files(RigTest):
         self.succeed("render", "rig.yaml", "--sensor", "VLP-16", "-o", "new.pcd", "--no-sidecar")
         self.assertEqual(self.bytes_of("new.pcd"), self.bytes_of("one.pcd"))
         self.succeed("render", "rig.yaml", "--sensor", "VLP-16", "--sensor-name", "camera", "-o", "other.pcd")
-        placed = json.loads(self.bytes_of("other.pcd.json"))["sensor"]["world_from_sensor"]["position_m"]
+        placed = json.loads(self.bytes_of("other.glidar.json"))["world_from_sensor"]["position_m"]
         np.testing.assert_allclose(placed, [0.1, 0, 0], atol=1e-12)
 
     def test_invalid_combinations_are_refused(self):

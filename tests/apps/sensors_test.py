@@ -57,7 +57,7 @@ class Sensors(CliTest):
 
     def test_a_cloud_in_a_mode_records_it_and_is_replayed_and_explained(self):
         self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "os1-32", "--mode", "512x20", "-o", "a.pcd")
-        with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "a.glidar.json"), encoding="utf-8") as file:
             sidecar = json.load(file)
         self.assertEqual((sidecar["sensor"]["variant"], sidecar["sensor"]["mode"]), ("OS1-32", "512x20"))
         self.assertEqual((sidecar["sensor"]["rate_hz"], sidecar["sensor"]["cols"]), (20, 512))
@@ -120,7 +120,7 @@ class Sensors(CliTest):
         done = self.succeed("render", "walls.yaml", "--sensor", "vlp-16", "--eye", "0,0,0",
                             "--columns", "xyz,range,ring,time", "-o", "room.npz")
         self.assertIn("16 x 1809 beams, 28944 hits (100.0 %)", done.stdout)
-        with open(os.path.join(self.folder, "room.npz.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "room.glidar.json"), encoding="utf-8") as file:
             sensor = json.load(file)["sensor"]
         self.assertEqual(sensor["optics"]["type"], "spinning")
         self.assertEqual(sensor["frame_id"], "lidar_frame")
@@ -135,7 +135,7 @@ class Sensors(CliTest):
             with open(os.path.join(self.folder, "room.csv"), encoding="utf-8") as file:
                 next(file)
                 walls.append([max(abs(float(x)) for x in line.split(",")[:3]) for line in file])
-            with open(os.path.join(self.folder, "room.csv.json"), encoding="utf-8") as file:
+            with open(os.path.join(self.folder, "room.glidar.json"), encoding="utf-8") as file:
                 sensor = json.load(file)["sensor"]
             self.assertEqual(bool(sensor["noise"]), not ideal)
             self.assertEqual(sensor["lidar_equation"] is None, bool(ideal))
@@ -184,7 +184,7 @@ class Sensors(CliTest):
         room = ("render", "walls.yaml", "--eye", "0,0,0", "--sensor", "VLP-16", "--returns")
         done = self.succeed(*room, "strongest,last", "-o", "a.pcd")
         self.assertIn("16 x 1809 beams, 2 returns, 28944 hits (50.0 %)", done.stdout)  # a wall returns one echo
-        with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
+        with open(os.path.join(self.folder, "a.glidar.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file)["sensor"]["receiver"]["returns"], ["strongest", "last"])
         self.assertIn("16 x 1809 beams, 3 returns, ", self.succeed(*room, "3", "-o", "a.pcd").stdout)
         for wrong, reported in (("lst", "'lst'; allowed: 1 to 16 of first, second, third, last, strongest, "),

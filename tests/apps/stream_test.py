@@ -138,14 +138,14 @@ class Clouds(StreamTest):
     def test_are_written_as_numbered_files_like_those_of_render(self):
         arguments = (self.box, *SMALL, "--object-rate", "0,1,0", "--columns", "xyz,intensity")
         self.succeed("stream", *arguments, "--rate", "max", "--frames", "3", "-o", "a.csv")
-        self.succeed("render", *arguments, "--rate", "30", "--duration", "0.1", "-o", "b.csv")
+        self.succeed("render", *arguments, "--rate", "30", "--duration", "0.1", "--per-frame", "-o", "b.csv")
         for k in range(3):
             self.assertEqual(self.bytes_of(f"a_00000{k}.csv"), self.bytes_of(f"b_00000{k}.csv"))
 
     def test_of_scanners_join_like_those_of_render(self):
         arguments = ("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--columns", "xyz,time,ring")
         self.succeed("stream", *arguments, "--rate", "max", "--duration", "0.3", "-o", "a.csv")
-        self.succeed("render", *arguments, "--duration", "0.3", "-o", "b.csv")
+        self.succeed("render", *arguments, "--duration", "0.3", "--per-frame", "-o", "b.csv")
         for k in range(3):
             self.assertEqual(self.bytes_of(f"a_00000{k}.csv"), self.bytes_of(f"b_00000{k}.csv"))
         self.assertFalse(os.path.exists(os.path.join(self.folder, "a_000003.csv")))

@@ -32,14 +32,14 @@ class Times(CliTest):
     def first(self, name):
         """Stamp and x of the sensor of the first beam, and the stamp of its frame."""
         row = min(self.rows(name), key=lambda row: int(row["stamp"]))
-        frame_ns = json.loads(Path(self.folder, name + ".json").read_text())["stamp_ns"]
+        frame_ns = json.loads(Path(self.folder, name.partition(".")[0] + ".glidar.json").read_text())["stamp_ns"]
         self.assertEqual(int(row["stamp"]), frame_ns + int(row["time"]))
         return int(row["stamp"]) - int(row["time"]), float(row["sensor_pose_x"]), frame_ns
 
     def test_all_files_have_the_time_of_a_trajectory_with_dates(self):
         self.write("drive.tum", drive(RECORDED))
         outputs = ("f.csv", "f.las", "f.ply", "d.kitti", "i.imu.csv", "p.pcap", "b.mcap")
-        arguments = (*ROOM, "--trajectory", "drive.tum", "--imu", "BMI088", "--duration", "0.2", *STAMPS)
+        arguments = (*ROOM, "--trajectory", "drive.tum", "--imu", "BMI088", "--duration", "0.2", "--per-frame", *STAMPS)
         for folder in ("one", "two"):
             Path(self.folder, folder).mkdir()
             self.succeed(*arguments, *(part for name in outputs for part in ("-o", f"{folder}/{name}")))
@@ -121,7 +121,7 @@ class Times(CliTest):
     def test_a_segment_has_its_poses_and_times(self):
         self.write("drive.tum", drive(RECORDED))
         for start in (("--from", "1700000001.123456789"), ("--from", "+1"), ("--start-time", "1700000001.123456789")):
-            self.succeed(*ROOM, *STAMPS, "--trajectory", "drive.tum", *start, "--to", "+1.3", "-o", "a.csv")
+            self.succeed(*ROOM, *STAMPS, "--trajectory", "drive.tum", *start, "--to", "+1.3", "--per-frame", "-o", "a.csv")
             self.assertEqual([name for name in self.files() if name.endswith(".csv")],
                              [f"a_00000{k}.csv" for k in range(3)])
             stamp_ns, x, _ = self.first("a_000000.csv")

@@ -56,7 +56,7 @@ void read_scene(const fs::path& file) {
 
 /// The file is a cloud's sidecar.
 void read_sidecar_of_cloud(const fs::path& file) {
-  read_sidecar(fs::path(file).replace_extension());
+  read_sidecar(fs::path(file).replace_filename("cloud.pcd"));
 }
 
 void read_recording(const fs::path& file) {
@@ -212,7 +212,7 @@ void read_calibration(const fs::path& file) {
   apply_calibration(file, camera);
 }
 
-constexpr std::array<FileDecoder, 30> kDecoders = {{
+constexpr std::array<FileDecoder, 34> kDecoders = {{
     {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
     {"imu", "imu.yaml", [](const fs::path& file) { load_imu_file(file); }},
     {"scene", "scene.yaml", read_scene},
@@ -223,7 +223,7 @@ constexpr std::array<FileDecoder, 30> kDecoders = {{
     {"trajectory", "poses.txt", [](const fs::path& file) { load_trajectory_file(file); }},
     {"png", "texture.png", [](const fs::path& file) { read_png_texture_unconfined(file); }},
     {"grey_png", "image.png", [](const fs::path& file) { load_grey_image_unconfined(file); }},
-    {"sidecar", "cloud.pcd.json", read_sidecar_of_cloud},
+    {"sidecar", "cloud.glidar.json", read_sidecar_of_cloud},
     {"recording", "stream.jsonl", read_recording},
     {"mesh_blob", "a.model", read_block},
     {"pose_text", "pose.txt", read_pose_text},
@@ -243,6 +243,10 @@ constexpr std::array<FileDecoder, 30> kDecoders = {{
     {"ply", "a.ply", read_model_file},
     {"stl", "a.stl", read_model_file},
     {"off", "a.off", read_model_file},
+    {"mtl", "a.mtl", read_mtl_file},
+    {"image", "a.image", read_image_file},
+    {"collada", "a.dae", read_mended_file},
+    {"package", "a.3mf", read_mended_file},
 }};
 
 /// A folder in memory, where there is one, that lasts as long as the process.

@@ -33,7 +33,7 @@ struct PacketSensor {
   OusterProfile profile = OusterProfile::rng19_rfl8_sig16_nir16;
 };
 
-constexpr std::array<PacketSensor, 19> kPacketSensors = {{
+constexpr std::array<PacketSensor, 21> kPacketSensors = {{
     {"VLP-16", false, 16, 55'296.0, 1206},
     {"VLP-16", true, 16, 55'296.0, 1206},
     {"HDL-32E", false, 32, 46'080.0, 1206},
@@ -53,6 +53,8 @@ constexpr std::array<PacketSensor, 19> kPacketSensors = {{
     {"Ouster OS1-16", false, 16, 0.0, 3392, OusterProfile::legacy},
     {"Ouster OS1-16", false, 16, 0.0, 1280, OusterProfile::rng15_rfl8_nir8},
     {"Livox Avia", false, 6, 0.0, 1380},
+    {"Ouster OS1-16", false, 16, 0.0, 4352, OusterProfile::rng19_rfl8_sig16_nir16_rgb16},
+    {"Ouster OS1-16", true, 16, 0.0, 5376, OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual},
 }};
 
 bool is_named(const PacketSensor& from, std::string_view maker) {

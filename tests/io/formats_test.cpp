@@ -225,7 +225,7 @@ TEST(TransformFile, NeedsAnObject) {
 nlohmann::json sidecar_of(const CloudFixture& made, const std::string& name = "a.pcd") {
   const testing::TestFolder folder;
   write_cloud(made, folder / name);
-  return nlohmann::json::parse(file_bytes(folder / (name + ".json")));
+  return nlohmann::json::parse(file_bytes(sidecar_path(folder / name)));
 }
 
 TEST(Sidecar, ContainsSensorPosesSeedModelAndCounts) {
@@ -244,14 +244,13 @@ TEST(Sidecar, ContainsSensorPosesSeedModelAndCounts) {
   EXPECT_EQ(reported.at("sensor").at("optics").at("distortion").at("model"), "radial_tangential");
   EXPECT_EQ(reported.at("sensor").at("optics").at("distortion").at("k6"), -2.0);
   EXPECT_TRUE(reported.at("sensor").at("limits").at("far_m").is_null());
-  EXPECT_EQ(reported.at("sensor").at("world_from_sensor").at("position_m"),
-            nlohmann::json({1.0, 2.0, 3.0}));
-  EXPECT_EQ(reported.at("sensor").at("world_from_sensor").at("orientation").at("y"), -0.5);
-  EXPECT_EQ(reported.at("sensor").at("world_from_sensor").at("matrix").at(0),
+  EXPECT_EQ(reported.at("world_from_sensor").at("position_m"), nlohmann::json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(reported.at("world_from_sensor").at("orientation").at("y"), -0.5);
+  EXPECT_EQ(reported.at("world_from_sensor").at("matrix").at(0),
             nlohmann::json({0.0, -1.0, 0.0, 1.0}));
-  EXPECT_EQ(reported.at("cloud").at("frame_id"), "map");
+  EXPECT_EQ(reported.at("files").at(0).at("frame_id"), "map");
   EXPECT_EQ(
-      reported.at("cloud").at("columns").at(0),
+      reported.at("files").at(0).at("columns").at(0),
       nlohmann::json::parse(R"({"name": "xyz", "type": "f32", "components": ["x", "y", "z"]})"));
   EXPECT_EQ(reported.at("instances").at(0).at("model_hash"), "0123abcd");
   EXPECT_EQ(reported.at("instances").at(0).at("scale"), 2.5);
@@ -262,7 +261,7 @@ TEST(Sidecar, ContainsSensorPosesSeedModelAndCounts) {
 
 // readers_test.py compares the columns of every sidecar with the header of the file beside it.
 TEST(Sidecar, ListsOnlyColumnsOfTheFile) {
-  EXPECT_EQ(sidecar_of(make_fixture(), "a.bin").at("cloud").at("columns"),
+  EXPECT_EQ(sidecar_of(make_fixture(), "a.bin").at("files").at(0).at("columns"),
             nlohmann::json::parse(R"([
     {"name": "xyz", "type": "f32", "components": ["x", "y", "z"]},
     {"name": "intensity", "type": "f32", "components": ["intensity"]}])"));
@@ -271,7 +270,7 @@ TEST(Sidecar, ListsOnlyColumnsOfTheFile) {
 TEST(Sidecar, ListsNamesAndTypesAsStoredInTheFile) {
   const auto column = [](const char* file, std::size_t i) {
     const nlohmann::json reported =
-        sidecar_of(make_fixture(), file).at("cloud").at("columns").at(i);
+        sidecar_of(make_fixture(), file).at("files").at(0).at("columns").at(i);
     return reported.at("type").get<std::string>() + " " + reported.at("components").dump();
   };
   EXPECT_EQ(column("a.pcd", 2), R"(f32 ["depth"])");
@@ -287,7 +286,7 @@ TEST(Sidecar, ContainsOnlyValidJson) {
   made.sensor.light.ambient = std::nan("");
   const testing::TestFolder folder;
   write_cloud(made, folder / "a.npz");
-  const std::string text = file_bytes(folder / "a.npz.json");
+  const std::string text = file_bytes(folder / "a.glidar.json");
   EXPECT_TRUE(nlohmann::json::accept(text));
   EXPECT_THAT(text, Not(ContainsRegex("[^a-z_\"](nan|inf)")));  // "camera_info" may stay
 }

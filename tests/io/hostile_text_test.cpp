@@ -46,10 +46,13 @@ TEST(HostileJson, DepthAndNumberOfValuesHaveLimits) {
 
 TEST(HostileJson, NestedSidecarsAreRejected) {
   const testing::TestFolder folder;
-  folder.write("a.pcd.json", R"({"glidar":"x","command":null,"frame":)" + nested(kDeep) + "}");
+  folder.write("a.glidar.json", R"({"glidar":"x","command":null,"frame":)" + nested(kDeep) + "}");
   EXPECT_THAT(error_text([&] { read_sidecar(folder / "a.pcd"); }), HasSubstr("nested too deeply"));
-  folder.write("b.pcd.json",
-               R"({"glidar":"x","command":null,"frame":")" + std::string(100'000, 'x') + "\"}");
+  folder.write(
+      "b.glidar.json",
+      R"({"glidar":"x","command":null,"instances":[],"files":[{"file":"b.pcd","rows":1,"cols":1}],)"
+      R"("frame":")" +
+          std::string(100'000, 'x') + "\"}");
   const std::string error = error_text([&] { read_sidecar(folder / "b.pcd"); });
   EXPECT_THAT(error, HasSubstr("is not a count"));
   EXPECT_LT(error.size(), 600U);
@@ -65,8 +68,8 @@ TEST(HostileJson, NestedSensorMetadataIsRejected) {
 TEST(HostileSidecar, FoldersAndArgumentsHaveNoControlCharacters) {
   const testing::TestFolder folder;
   const auto error_of = [&](const std::string& folder_text, const std::string& argument) {
-    folder.write("a.pcd.json", R"({"glidar":"x","command":{"arguments":["render",")" + argument +
-                                   R"("],"folder":")" + folder_text + R"("},"frame":0})");
+    folder.write("a.glidar.json", R"({"glidar":"x","command":{"arguments":["render",")" + argument +
+                                      R"("],"folder":")" + folder_text + R"("},"frame":0})");
     return error_text([&] { read_sidecar(folder / "a.pcd"); });
   };
   for (const char* text : {"", "a\\u0000b", "a\\nb", "\\u001b[2J"})

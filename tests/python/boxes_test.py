@@ -89,7 +89,7 @@ def test_coordinate_frames_and_velocity(frame):
 def test_sidecars_have_the_boxes_in_the_frame_of_the_cloud(frame, tmp_path):
     for axes in ("sensor", "world"):
         frame.save(tmp_path / "a.pcd", frame=axes)
-        listed = json.loads((tmp_path / "a.pcd.json").read_text())["boxes"]
+        listed = json.loads((tmp_path / "a.glidar.json").read_text())["boxes"]
         for one, box in zip(listed, frame.boxes(frame=axes), strict=True):
             assert (one["name"], one["id"], one["class"]) == (box.name, box.id, box.class_name)
             assert (one["points"], one["beams"], one["visible_beams"]) == (box.points, box.beams, box.visible_beams)
@@ -104,7 +104,7 @@ def test_the_program_writes_the_same_boxes(frame, scene, tmp_path, program):
     (tmp_path / "scene.yaml").write_text(SCENE)
     program("render", "scene.yaml", "--sensor", "OS1-32", "--ground-truth", "--eye", "0,0,0.4", "-o", "a.ply", folder=tmp_path)
     frame.save(tmp_path / "b.ply")
-    ours, theirs = (json.loads((tmp_path / name).read_text())["boxes"] for name in ("b.ply.json", "a.ply.json"))
+    ours, theirs = (json.loads((tmp_path / name).read_text())["boxes"] for name in ("b.glidar.json", "a.glidar.json"))
     assert ours == theirs and len(ours) == 3
 
 
@@ -114,7 +114,7 @@ def test_scenes_without_classes_have_no_boxes(tmp_path):
     (box,) = plain.boxes(unlabelled=True)
     assert box.class_name == "unlabelled" and box.occlusion == 0.0
     plain.save(tmp_path / "a.pcd")
-    assert json.loads((tmp_path / "a.pcd.json").read_text())["boxes"] == []
+    assert json.loads((tmp_path / "a.glidar.json").read_text())["boxes"] == []
 
 
 def test_an_unpickled_frame_has_the_same_boxes(frame, tmp_path):
@@ -163,3 +163,61 @@ def test_scenes_without_classes_have_no_topic_of_boxes(tmp_path, program):
     program("render", "builtin:box", "--sensor", "VLP-16", "--eye", "3,0,0", "-o", "run.mcap", folder=tmp_path)
     with rosbags.AnyReader([tmp_path / "run.mcap"]) as reader:
         assert "/lidar/points" in reader.topics and "/lidar/boxes" not in reader.topics
+
+
+TOWN = """models:
+  - {model: 'builtin:box:size=4,2,1.5', name: front, class: car, pose: {position: [8, 1, 0]}}
+  - {model: 'builtin:box:size=9,9,6', name: home, class: house, pose: {position: [20, -8, 0]}}
+  - {model: 'builtin:box:size=120,6,0.1', name: lane, class: road, pose: {position: [0, 0, -1]}}
+"""
+
+
+def listed_classes(sidecar):
+    return [box["class"] for box in json.loads(sidecar.read_text())["boxes"]]
+
+
+def test_only_countable_classes_have_boxes_unless_others_are_named(tmp_path, program):
+    (tmp_path / "town.yaml").write_text(TOWN)
+    (tmp_path / "named.yaml").write_text(TOWN + "box_classes: [car, road]\n")
+    common = ("--sensor", "VLP-16", "--eye", "0,0,0.4")
+    for file, options, classes in (
+        ("town.yaml", (), ["car"]),
+        ("town.yaml", ("--box-classes", "house,road"), ["house", "road"]),
+        ("town.yaml", ("--box-classes", "all"), ["car", "house", "road"]),
+        ("named.yaml", (), ["car", "road"]),
+        ("named.yaml", ("--box-classes", "house"), ["house"]),
+    ):
+        program("render", file, *common, *options, "-o", "a.pcd", folder=tmp_path)
+        assert listed_classes(tmp_path / "a.glidar.json") == classes
+    town = glidar.Scene(tmp_path / "town.yaml")
+    frame = glidar.simulate(town, glidar.load_sensor("VLP-16"), pose=glidar.pose([0, 0, 0.4]))
+    assert [box.class_name for box in frame.boxes()] == ["car"]
+    assert [box.class_name for box in frame.boxes(classes=["house"])] == ["house"]
+    assert [box.class_name for box in frame.boxes(classes="all")] == ["car", "house", "road"]
+    assert frame.boxes(classes=[]) == []
+    with pytest.raises(glidar.Error, match="did you mean 'house'"):
+        frame.boxes(classes=["hous"])
+
+
+def test_box_classes_of_a_scene_are_kept_and_compared():
+    town = glidar.Scene.from_dict({"models": [
+        {"model": "builtin:box", "class": "car"}, {"model": "builtin:box", "class": "house", "pose": {"position": [5, 0, 0]}}]})
+    other = pickle.loads(pickle.dumps(town))
+    town.box_classes = ["house"]
+    assert town.box_classes == ["house"] and town != other
+    assert pickle.loads(pickle.dumps(town)) == town
+    frame = glidar.simulate(town, glidar.camera(16, 12, fov_deg=40.0))
+    assert [box.class_name for box in frame.boxes()] == ["house"]
+    with pytest.raises(glidar.Error, match="box_classes"):
+        town.box_classes = ["boat"]
+    with pytest.raises(glidar.Error, match="box_classes"):
+        glidar.Scene.from_dict({"models": [{"model": "builtin:box", "class": "car"}], "box_classes": ["cart"]})
+
+
+def test_bags_have_boxes_of_countable_classes_only(tmp_path, program):
+    rosbags = pytest.importorskip("rosbags.highlevel")
+    (tmp_path / "town.yaml").write_text(TOWN)
+    program("render", "town.yaml", "--sensor", "VLP-16", "--eye", "0,0,0.4", "-o", "run.mcap", folder=tmp_path)
+    with rosbags.AnyReader([tmp_path / "run.mcap"]) as reader:
+        found = [reader.deserialize(data, topic.msgtype) for topic, _, data in reader.messages() if topic.topic == "/lidar/boxes"]
+    assert [cube.ns for message in found for cube in message.markers] == ["car"]

@@ -60,8 +60,8 @@ def check_channels(images, cloud, columns):
 def test_channels_contain_the_columns_of_the_cloud(frame, tmp_path):
     frame.save(tmp_path / "a.exr", columns="all")
     images, header = read(tmp_path / "a.exr")
-    sidecar = json.loads((tmp_path / "a.exr.json").read_text())
-    columns = sidecar["cloud"]["columns"]
+    sidecar = json.loads((tmp_path / "a.glidar.json").read_text())
+    columns = sidecar["files"][0]["columns"]
     cloud = frame.cloud("all")
     check_channels(images, cloud, columns)
     # OpenEXR has no 64-bit integers
@@ -70,7 +70,7 @@ def test_channels_contain_the_columns_of_the_cloud(frame, tmp_path):
     assert miss.any() and not miss.all()
     assert np.isnan(images["Z"][miss]).all() and (images["instance"][miss] == 0xFFFFFFFF).all()
     assert set(np.unique(images["instance"][~miss])) == {2, 300}
-    assert header["comments"] == sidecar["cloud"]["image"]["pixels"]
+    assert header["comments"] == sidecar["files"][0]["image"]["pixels"]
     assert header["compression"] == OpenEXR.ZIP_COMPRESSION
     assert header["software"].startswith("glidar ")
 
@@ -81,7 +81,7 @@ def test_depth_is_always_a_channel_and_other_columns_are_selected(frame, tmp_pat
     assert set(images) == {"Z", "N.X", "N.Y", "N.Z", "instance"}
     frame.save(tmp_path / "b.exr")
     defaults = {"xyz", "intensity", "range", "normal", "instance", "class", "depth"}
-    columns = json.loads((tmp_path / "b.exr.json").read_text())["cloud"]["columns"]
+    columns = json.loads((tmp_path / "b.glidar.json").read_text())["files"][0]["columns"]
     assert {column["name"] for column in columns} == defaults
     check_channels(read(tmp_path / "b.exr")[0], frame.cloud(sorted(defaults)), columns)
 

@@ -33,7 +33,7 @@ def frame_of(camera):
 
 def saved(frame, path, **options):
     frame.save(path, **options)
-    return json.loads((path.parent / (path.name + ".json")).read_text())
+    return json.loads((path.parent / (path.name.partition(".")[0] + ".glidar.json")).read_text())
 
 
 @pytest.mark.parametrize("centre", [0.0, 0.5])
@@ -50,7 +50,7 @@ def test_open3d_reconstructs_the_points_of_a_depth_image(tmp_path, centre):
     intrinsics = o3d.camera.PinholeCameraIntrinsic(info["width"], info["height"], k)
     image = o3d.io.read_image(str(tmp_path / "a.depth.png"))
     cloud = o3d.geometry.PointCloud.create_from_depth_image(
-        image, intrinsics, depth_scale=sidecar["cloud"]["image"]["units_per_m"], depth_trunc=1e3
+        image, intrinsics, depth_scale=sidecar["files"][0]["image"]["units_per_m"], depth_trunc=1e3
     )
     wanted = frame.cloud(["xyz"], drop_invalid=True)["xyz"].reshape(-1, 3)
     found = np.asarray(cloud.points)

@@ -31,6 +31,7 @@ sensors:
      pose: {position: [0.3, -0.3, 1.6], euler_deg: {roll: -90, yaw: -90}}}
 rig_pose: {position: [0, 0, 0]}
 rig_motion: {twist: {velocity_m_s: [2, 0, 0], rate_deg_s: [0, 0, -30]}}
+box_classes: [all]
 """
 FRAMES = 3
 

@@ -154,6 +154,7 @@ def test_bbox_covers_the_pixels_of_an_object_rendered_alone(tmp_path, name):
 
 def test_boxes_of_the_street_contain_their_pixels_and_the_pavement_is_plausible(tmp_path):
     scene = glidar.Scene(EXAMPLES / "street.yaml")
+    scene.box_classes = "all"
     boxes, pixels = saved_camera_frame(scene, glidar.camera(320, 200, fov_deg=80.0), tmp_path, (0.0, -0.9, 1.9))
     instances = np.unique(pixels[pixels > 0])
     assert len(boxes) >= len(instances) > 10

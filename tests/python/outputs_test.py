@@ -63,7 +63,7 @@ def contents(folder):
         if path.is_dir():
             continue
         data = path.read_bytes()
-        if path.name.endswith((".pcd.json", ".las.json", ".npz.json")):
+        if path.name.endswith(".glidar.json"):
             text = json.loads(data)
             text.pop("command", None)
             data = json.dumps(text)
@@ -99,11 +99,32 @@ def test_a_frame_is_saved_as_a_recording(frames, tmp_path):
 
 
 def test_close_names_what_was_written(frames, tmp_path):
-    output = glidar.open_output(tmp_path / "scan.pcd", sidecar=False)
+    output = glidar.open_output(tmp_path / "scan.pcd", sidecar=False, per_frame=True)
     for frame in frames[::2]:
         output.write(frame)
     assert output.close() == [f"wrote {tmp_path}/scan_000000.pcd to {tmp_path}/scan_000001.pcd (2 files)"]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["scan_000000.pcd", "scan_000001.pcd"]
+
+
+def test_one_cloud_has_all_frames_unless_requested_otherwise(frames, tmp_path):
+    write(tmp_path / "scan.ply", frames[::2])
+    header = (tmp_path / "scan.ply").read_bytes().split(b"end_header")[0]
+    beams = sum(frame.rows * frame.cols for frame in frames[::2])
+    assert f"element vertex {beams}\n".encode() in header and b"property uint frame\n" in header
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["scan.glidar.json", "scan.ply"]
+    described = json.loads((tmp_path / "scan.glidar.json").read_text())
+    assert [one["points"]["scan.ply"] for one in described["frames"]] == [frame.rows * frame.cols for frame in frames[::2]]
+    assert len({one["stamp_ns"] for one in described["frames"]}) == len(frames[::2])
+
+
+@pytest.mark.parametrize("name, given", [("a.npy", {"layout": "velodyne"}), ("a.pcap", {"layout": "velodyne"}),
+                                         ("a.pcd", {"crs": "EPSG:32632"}), ("a.mcap", {"crs": "EPSG:32632"})])
+def test_options_that_an_output_ignores_are_errors(frames, tmp_path, name, given):
+    with pytest.raises(glidar.Error, match=f"leave {next(iter(given))} out"):
+        frames[0].save(tmp_path / name, **given)
+    output = glidar.open_output(tmp_path / name, **given)
+    with pytest.raises(glidar.Error, match=f"leave {next(iter(given))} out"):
+        output.write(frames[0])
 
 
 def test_options_change_the_packets(scene, tmp_path):

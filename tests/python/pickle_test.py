@@ -267,7 +267,7 @@ def test_an_unpickled_frame_needs_its_renderer_only_for_explain(asteroid, camera
         with pytest.raises(glidar.Error, match="no graphics device"):
             back.explain(1000)
     assert (tmp_path / "one.pcd").read_bytes() == (tmp_path / "two.pcd").read_bytes()
-    sidecars = [(tmp_path / f"{name}.pcd.json").read_text().replace(f"{name}.pcd", "") for name in ("one", "two")]
+    sidecars = [(tmp_path / f"{name}.glidar.json").read_text().replace(f"{name}.pcd", "") for name in ("one", "two")]
     assert sidecars[0] == sidecars[1]
     assert str(back.explain(1000)) == expected[1]
     assert back.cloud("all") == expected[0]

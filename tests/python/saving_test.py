@@ -59,7 +59,7 @@ def test_file_is_byte_identical_to_that_of_the_command_line(name, scene_file, tm
     frame = glidar.simulate(glidar.Scene(scene_file), seed=77, columns="all")
     frame.save(ours / name, **arguments)
     assert (ours / name).read_bytes() == (theirs / name).read_bytes()
-    sidecars = [folder / f"{name}.json" for folder in (ours, theirs)]
+    sidecars = [folder / f"{name.partition('.')[0]}.glidar.json" for folder in (ours, theirs)]
     assert sidecars[0].exists() == sidecars[1].exists()
     if sidecars[0].exists():
         mine, theirs = (json.loads(path.read_text()) for path in sidecars)

@@ -118,7 +118,7 @@ def test_camera_is_identical_to_that_of_the_command_line(tmp_path, program):
     program(
         "render", "builtin:box", "--width", 40, "--height", 30, "--fx", 50, "--cx", 18, "--cy", 14, "-o", tmp_path / "a.pcd"
     )
-    described = json.loads((tmp_path / "a.pcd.json").read_text())["sensor"]
+    described = json.loads((tmp_path / "a.glidar.json").read_text())["sensor"]
     ours = glidar.camera(40, 30, fx=50, cx=18, cy=14).describe()
     assert {key: value for key, value in described.items() if key != "world_from_sensor"} == ours
 

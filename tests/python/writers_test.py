@@ -38,22 +38,22 @@ def test_concurrent_writers_leave_a_matching_cloud_and_sidecar(tmp_path):
             writer.stdin.flush()
         for writer in writers:
             assert writer.stdout.readline() == "saved\n"
-        seed = json.loads((tmp_path / "a.csv.json").read_text())["seed"]
+        seed = json.loads((tmp_path / "a.glidar.json").read_text())["seed"]
         mixed += (tmp_path / "a.csv").read_bytes() != by_seed[seed]
     for writer in writers:
         writer.stdin.close()
         assert writer.wait() == 0
     assert mixed == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.csv.json"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.glidar.json"]
 
 
 def test_sidecars_do_not_overwrite_inputs(tmp_path):
     import pytest
 
-    sensor = tmp_path / "q.pcd.json"
+    sensor = tmp_path / "q.glidar.json"
     sensor.write_text("optics: {type: pinhole, width: 8, height: 6, fov_deg: 40}\n")
     frame = glidar.simulate(glidar.load_scene("builtin:sphere"), glidar.load_sensor(sensor))
-    with pytest.raises(glidar.Error, match="q.pcd.json: is an input file"):
+    with pytest.raises(glidar.Error, match="q.glidar.json: is an input file"):
         frame.save(tmp_path / "q.pcd")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["q.pcd.json"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["q.glidar.json"]
     frame.save(tmp_path / "q.pcd", sidecar=False)

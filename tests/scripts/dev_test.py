@@ -238,7 +238,7 @@ class Dev(unittest.TestCase):
                                   stdin=subprocess.DEVNULL, stdout=end, stderr=end) as process:
                 os.close(end)
                 shown = b""
-                while b"building (release): 3/4 steps after " not in shown:
+                while b"building (release): step 3 of 4" not in shown:
                     shown += screen.read(1000)
                 (self.folder / "seen").touch()
                 try:

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Footprints on one flat triangle are integrated, all others sampled, and both agree.
+// Footprints on one plane are integrated, all others sampled, and both agree.
 #include <glidar/core/error.hpp>
+#include <glidar/sensor/lidar/return_names.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <simulate/panels.hpp>
 
@@ -92,14 +93,32 @@ TEST(FlatFootprints, AreOnePathWithAllOfTheEnergy) {
   EXPECT_NEAR(trace.echoes[0].range_m, 20.0, 1e-3);
 }
 
+/// Chequered in 5 mm squares; triangles have texture coordinates in metres.
+void add_texture(Stage& stage) {
+  Texture texture{
+      .name = "squares", .width = 2, .height = 2, .channels = 1, .texels = {40, 230, 200, 90}};
+  stage.scene.textures.push_back(texture);
+  for (Mesh& mesh : stage.scene.meshes) {
+    for (const Eigen::Vector3f& p : mesh.positions_m) {
+      mesh.uvs[0].emplace_back(100.0F * p.head<2>());
+    }
+  }
+  for (Material& material : stage.scene.materials) material.diffuse_texture.texture = 0;
+}
+
 TEST(FlatFootprints, MeetTheSamplesWithoutAStepAtAnEdge) {
   // A beam that crosses the outer edge of a wall, and the edge where it meets another wall.
   constexpr int kSteps = 1000;
   constexpr double kWidth_rad = 0.016;
-  for (const bool is_corner : {false, true}) {
+  enum class Edge { outer, corner, textured };
+  for (const Edge edge : {Edge::outer, Edge::corner, Edge::textured}) {
     Stage stage;
     stage.add_turned(20.0, 0.6, -30.0, 0.0);
-    if (is_corner) stage.add_turned(20.0, -0.4, 0.0, 30.0);
+    if (edge == Edge::corner) stage.add_turned(20.0, -0.4, 0.0, 30.0);
+    if (edge == Edge::textured) add_texture(stage);
+    // On textures: the contrast times the second order of the beam's width.
+    const double range_tolerance_m = edge == Edge::textured ? 1e-4 : kRangeTolerance_m;
+    const double signal_tolerance = edge == Edge::textured ? 1e-4 : kSignalTolerance;
     const Pair pair(stage);
     const Sensor& sensor = stage.sensor;
     const auto renderer = make_renderer(pair.closed.scene, {.threads = 2});
@@ -120,27 +139,14 @@ TEST(FlatFootprints, MeetTheSamplesWithoutAStepAtAnEdge) {
       (is_closed ? in_closed_form : in_samples) += 1;
       ASSERT_EQ(frame.status, expected.status) << i;
       if (expected.status[0] != Status::hit) continue;
-      ASSERT_NEAR(frame.range_m[0], expected.range_m[0], kRangeTolerance_m) << i;
+      ASSERT_NEAR(frame.range_m[0], expected.range_m[0], range_tolerance_m) << i;
       ASSERT_NEAR(frame.intensity[0], expected.intensity[0],
-                  kSignalTolerance * expected.intensity[0])
+                  signal_tolerance * expected.intensity[0])
           << i;
     }
-    EXPECT_GT(in_closed_form, 200) << is_corner;
-    EXPECT_GT(in_samples, 150) << is_corner;
+    EXPECT_GT(in_closed_form, 200) << static_cast<int>(edge);
+    EXPECT_GT(in_samples, 150) << static_cast<int>(edge);
   }
-}
-
-/// Chequered in 5 mm squares; triangles have texture coordinates in metres.
-void add_texture(Stage& stage) {
-  Texture texture{
-      .name = "squares", .width = 2, .height = 2, .channels = 1, .texels = {40, 230, 200, 90}};
-  stage.scene.textures.push_back(texture);
-  for (Mesh& mesh : stage.scene.meshes) {
-    for (const Eigen::Vector3f& p : mesh.positions_m) {
-      mesh.uvs[0].emplace_back(100.0F * p.head<2>());
-    }
-  }
-  for (Material& material : stage.scene.materials) material.diffuse_texture.texture = 0;
 }
 
 TEST(FlatFootprints, HaveTheReflectanceThatSubRaysSample) {
@@ -260,6 +266,62 @@ TEST(FlatFootprints, HaveNormalsAtCornersThatAreThoseOfThePlane) {
   const Eigen::Vector3f front = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
   mesh.normals.assign(mesh.positions_m.size(), front);
   EXPECT_TRUE(stage.trace().is_in_closed_form);
+}
+
+/// A wall whose diagonal crosses the beam, so that the sub-rays meet both of its triangles.
+struct DiagonalStage : Stage {
+  DiagonalStage() { add_panel({-6.0, -6.0, 20.0}, {12.0, 0.0, 8.0}, {0.0, 12.0, 0.0}); }
+  Mesh& mesh() { return scene.meshes[0]; }
+};
+
+TEST(FlatFootprints, ExtendOverTrianglesOfOnePlane) {
+  DiagonalStage stage;
+  const WaveformTrace trace = stage.trace();
+  EXPECT_TRUE(trace.is_in_closed_form);
+  const Pair pair(stage);
+  const Frame closed = pair.closed.shoot();
+  const Frame sampled = pair.sampled.shoot();
+  EXPECT_NEAR(closed.range_m[0], sampled.range_m[0], kRangeTolerance_m);
+  EXPECT_NEAR(closed.intensity[0], sampled.intensity[0], kSignalTolerance * sampled.intensity[0]);
+  EXPECT_EQ(closed.return_source, sampled.return_source);
+}
+
+TEST(FlatFootprints, EndAtFoldsAndWhereTheMaterialChanges) {
+  DiagonalStage folded;
+  folded.mesh().positions_m[3].z() += 0.01F;  // a corner of the second triangle
+  EXPECT_FALSE(folded.trace().is_in_closed_form);
+  DiagonalStage painted;
+  painted.mesh().material_slots = {0, 1};
+  painted.scene.instances[0].materials = {0, 0};
+  EXPECT_FALSE(painted.trace().is_in_closed_form);
+  DiagonalStage bent;
+  bent.mesh().normals.assign(4, Eigen::Vector3f(8.0F, 0.0F, -12.0F).normalized());
+  std::swap(bent.mesh().triangles[0][1], bent.mesh().triangles[0][2]);  // towards the sensor
+  std::swap(bent.mesh().triangles[1][1], bent.mesh().triangles[1][2]);
+  EXPECT_TRUE(bent.trace().is_in_closed_form);
+  bent.mesh().normals[3].x() += 0.1F;
+  EXPECT_FALSE(bent.trace().is_in_closed_form);
+}
+
+TEST(FlatFootprints, ThatMeetNothingHaveNoReturnForEveryRank) {
+  Stage stage;
+  stage.sensor.optics = pinhole_from_fov(12, 2, 0.6);
+  stage.sensor.receiver.returns = nearest_returns(2);
+  stage.add_wall(10.0, -50.0, 0.0);  // the left half
+  const Frame frame = stage.shoot();
+  const std::size_t firings = frame.status.size() / 2;
+  std::size_t misses = 0;
+  for (std::size_t i = 0; i < frame.status.size(); ++i) {
+    if (frame.ground_truth.instance[i] != kInvalidId) continue;
+    ++misses;
+    EXPECT_EQ(frame.status[i], i < firings ? Status::miss : Status::no_return_of_rank) << i;
+    EXPECT_TRUE(std::isnan(frame.range_m[i])) << i;
+    EXPECT_TRUE(std::isnan(frame.ground_truth.range_m[i])) << i;
+    EXPECT_EQ(frame.intensity[i], 0.0F) << i;
+    EXPECT_EQ(frame.return_source[i], ReturnSource::none) << i;
+  }
+  EXPECT_GT(misses, 10U);
+  EXPECT_LT(misses, frame.status.size());
 }
 
 class FlatFootprintsBy : public ::testing::TestWithParam<std::string> {

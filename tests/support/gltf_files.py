@@ -89,8 +89,9 @@ class Reader:
 
     def buffer(self, index):
         uri = self.json["buffers"][index].get("uri")
-        if uri is None:
-            return self.chunk
+        return self.chunk if uri is None else self.bytes_of(uri)
+
+    def bytes_of(self, uri):
         if uri.startswith("data:"):
             return base64.b64decode(uri.split(",", 1)[1] + "==")
         return (self.folder / unquote_to_bytes(uri).decode()).read_bytes()

@@ -222,6 +222,7 @@ void check_recordings(const DecodeFlags& flags) {
 int run_decode(DecodeFlags flags) {
   Console console(flags.quiet);
   flags.output.sink.sidecar = false;  // there is no measurement to describe
+  flags.output.per_frame = true;      // and no motion that joins the frames
   std::unique_ptr<bags::BagReader> bag;
   if (bags::is_bag_path(flags.input)) bag = bags::open_bag(flags.input);
   const bool are_clouds = bag != nullptr && has_clouds(flags, *bag);

@@ -18,12 +18,13 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 namespace glidar::app {
 namespace {
 
 constexpr const char* kExplainExamples =
-    R"(Repeats the measurement of a cloud by its sidecar (CLOUD.json) and prints the trace of one point:
+    R"(Repeats the measurement of a cloud by its sidecar (NAME.glidar.json) and prints the trace of one point:
 the beam, the surface, the received signal, echoes, every noise step with its random numbers, and
 the reported values.
 Examples:
@@ -53,6 +54,7 @@ RenderFlags flags_of(const Sidecar& sidecar) {
   }
   RenderFlags flags;
   add_render_options(command, flags);
+  add_per_frame_option(command, flags.output);
   parse_recorded(arguments, "render", sidecar.path.string(), command);
   return flags;
 }
@@ -68,39 +70,67 @@ void check_models(const Sidecar& sidecar, const Scene& scene) {
                "the models at the time of writing", "render the cloud again"});
 }
 
-/// The entry of the frame that the flags select.
-std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Frame& frame,
-                     const Beams& beams) {
+/// The frame of the point, and the index of the point in it.
+struct PointPlace {
+  const SidecarFrame& frame;
+  std::size_t index = 0;
+};
+
+PointPlace place_of(const ExplainFlags& flags, const Sidecar& sidecar) {
+  const std::vector<SidecarFrame>& frames = sidecar.frames;
   if (flags.row) {
-    const auto pulses_rows = static_cast<std::int64_t>(beams.rows / beams.returns);
-    const std::int64_t return_number = flags.return_number.value_or(0);
-    if (*flags.row >= pulses_rows || *flags.col >= beams.cols || return_number >= beams.returns) {
-      throw Error({"--row, --col, --return",
-                   fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
-                   fmt::format("{} rows, {} columns, {} returns, each from 0", pulses_rows,
-                               beams.cols, beams.returns)});
-    }
-    const std::int64_t row = return_number * pulses_rows + *flags.row;
-    return static_cast<std::size_t>(row * beams.cols + *flags.col);
+    if (frames.size() == 1) return {frames.front()};
+    throw Error({"--row and --col", fmt::format("a cloud of {} frames", frames.size()), "--index",
+                 "select the point by its place in the file"});
   }
-  const auto index = static_cast<std::size_t>(*flags.index);
-  if (index >= sidecar.points) {
-    throw Error({"--index", std::to_string(index),
-                 fmt::format("below {}, the number of points in the cloud", sidecar.points)});
+  auto index = static_cast<std::size_t>(*flags.index);
+  std::size_t all = 0;
+  for (const SidecarFrame& frame : frames) {
+    if (index < all + frame.points) return {frame, index - all};
+    all += frame.points;
   }
-  if (sidecar.points == beams.size()) return index;
-  std::vector<std::uint32_t> hits = las_order(frame, beams);  // the cloud has only hits
-  if (!sidecar.path.string().ends_with(".las.json")) std::ranges::sort(hits);
-  if (index < hits.size()) return hits[index];
+  throw Error({"--index", std::to_string(index),
+               fmt::format("below {}, the number of points in the cloud", all)});
+}
+
+/// The entry of a row, column and return.
+std::size_t selected_entry(const ExplainFlags& flags, const Beams& beams) {
+  const auto pulses_rows = static_cast<std::int64_t>(beams.rows / beams.returns);
+  const std::int64_t return_number = flags.return_number.value_or(0);
+  if (*flags.row >= pulses_rows || *flags.col >= beams.cols || return_number >= beams.returns) {
+    throw Error({"--row, --col, --return",
+                 fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
+                 fmt::format("{} rows, {} columns, {} returns, each from 0", pulses_rows,
+                             beams.cols, beams.returns)});
+  }
+  const std::int64_t row = return_number * pulses_rows + *flags.row;
+  return static_cast<std::size_t>(row * beams.cols + *flags.col);
+}
+
+/// The entry of the frame that the flags select.
+std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const PointPlace& place,
+                     const Frame& frame, const Beams& beams) {
+  if (flags.row) return selected_entry(flags, beams);
+  const std::size_t points = place.frame.points;
+  std::vector<std::uint32_t> entries = las_order(frame, beams);  // the cloud has only hits
+  if (points == beams.size()) {
+    entries.resize(points);
+    std::iota(entries.begin(), entries.end(), 0U);
+  } else if (format_for(flags.cloud).suffix != ".las") {
+    std::ranges::sort(entries);
+  }
+  if (sidecar.has_all_frames && format_for(flags.cloud).suffix != ".las" && !beams.times_ns.empty())
+    std::ranges::stable_sort(entries, {}, [&](std::uint32_t i) { return beams.times_ns[i]; });
+  if (place.index < entries.size()) return entries[place.index];
   throw Error({sidecar.path.string(),
-               fmt::format("a cloud of {} points from {} beams with {} hits", sidecar.points,
-                           beams.size(), hits.size()),
+               fmt::format("a cloud of {} points from {} beams with {} hits", points, beams.size(),
+                           entries.size()),
                "all beams, or all hits", "write the cloud again"});
 }
 
 /// Throws Error when the repeated frame is not that of the cloud.
-void check_frame(const Sidecar& sidecar, const Frame& frame) {
-  if (frame_hash(frame) == sidecar.frame_hash) return;
+void check_frame(const Sidecar& sidecar, const SidecarFrame& recorded, const Frame& frame) {
+  if (frame_hash(frame) == recorded.hash) return;
   throw Error({sidecar.path.string(), "the repeated measurement differs from the recorded one",
                "the same models, scene and sensor files, and the same program",
                "write the cloud again"});
@@ -118,6 +148,7 @@ int run_explain(const ExplainFlags& flags) {
   check(flags);
   Console console;
   const Sidecar sidecar = read_sidecar(flags.cloud);
+  const PointPlace place = place_of(flags, sidecar);
   const RenderFlags render = flags_of(sidecar);
   compare_version(sidecar.version, sidecar.path.string(), console);
   enter_folder(sidecar.command, sidecar.path.string());
@@ -127,10 +158,10 @@ int run_explain(const ExplainFlags& flags) {
   check_models(sidecar, prepared.scene);
   Frame frame;
   const ActiveSensor& active = only_sensor(prepared);
-  set_frame_header(render, prepared, active, sidecar.frame, frame);
+  set_frame_header(render, prepared, active, place.frame.number, frame);
   const auto pick = [&](const Frame& repeated) {
-    check_frame(sidecar, repeated);
-    return entry_of(flags, sidecar, repeated, *active.simulator->beams(repeated.number));
+    check_frame(sidecar, place.frame, repeated);
+    return entry_of(flags, sidecar, place, repeated, *active.simulator->beams(repeated.number));
   };
   PointTrace trace;
   {

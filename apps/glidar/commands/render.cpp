@@ -83,11 +83,13 @@ std::FILE* result_stream(const RenderFlags& flags) {
 }
 
 /// The output beside which the Fisher information of a frame is: its first file, else the first
-/// recording.
+/// file or recording of all frames.
 std::filesystem::path fisher_neighbour(const RenderFlags& flags, const ActiveSensor& active,
                                        const std::vector<std::filesystem::path>& files) {
   if (!files.empty()) return files.front();
-  std::filesystem::path path = flags.output.recording_paths.front();
+  const OutputFlags& outputs = flags.output;
+  std::filesystem::path path =
+      (outputs.paths.empty() ? outputs.recording_paths : outputs.paths).front();
   if (!path.has_filename()) path = path.parent_path();
   const std::string label = label_of(flags, active);
   const std::string stem = path.stem().string() + (label.empty() ? "" : "_" + label);
@@ -166,9 +168,18 @@ void measure_and_write(Job& job, const SensorFrame& which, Console& console,
 void measure_all(Job& job, Console& console) {
   std::vector<MeasuredFrame> frames(job.prepared.sensors.size());  // sensors have their own sizes
   FrameOrder order(job.prepared.sensors);
+  const auto is_written = [&](std::size_t sensor) {
+    return job.files.has_files(sensor) || !job.recordings.empty();
+  };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    count += is_written(i) ? job.prepared.sensors[i].frames : 0;
+  std::optional<ProgressScope> progress;
+  if (count > 1) progress.emplace(console, "frame", count);
   while (const std::optional<SensorFrame> which = order.next()) {
-    const bool is_written = job.files.has_files(which->sensor_index) || !job.recordings.empty();
-    if (is_written) measure_and_write(job, *which, console, frames[which->sensor_index]);
+    if (!is_written(which->sensor_index)) continue;
+    if (progress) progress->next();
+    measure_and_write(job, *which, console, frames[which->sensor_index]);
   }
 }
 
@@ -194,6 +205,8 @@ void run(const RenderFlags& flags, const PreparedScene& prepared, const CommandR
           open_recordings(flags.output, rig), open_imu_outputs(flags.output, rig, console)};
   try {
     measure_all(job, console);
+    job.files.finish();
+    if (std::FILE* to = result_stream(flags)) print_lines(to, job.files.run_text());
     for (const auto& recording : job.recordings) finish(job, *recording);
     if (job.imu) finish(job, *job.imu);
   } catch (const Error& error) {
@@ -242,6 +255,7 @@ Command add_render(CLI::App& program, const std::vector<std::string>& arguments)
   const auto flags = std::make_shared<RenderFlags>();
   command.footer(output_names_text() + kRenderExamples);
   add_render_options(command, *flags);
+  add_per_frame_option(command, flags->output);
   return [flags, arguments] { return run_render(*flags, arguments); };
 }
 

@@ -125,9 +125,22 @@ void add_output_options(CLI::App& command, OutputFlags& flags) {
             one_of(stream_formats()));
   add_cloud_options(group, flags);
   add_picture_options(group, flags.sink.picture);
-  group.add_flag("--no-sidecar", "Write no FILE.json beside clouds", flags.sink.sidecar, false);
+  group.add_flag("--no-sidecar", "Write no NAME.glidar.json beside files", flags.sink.sidecar,
+                 false);
   add_message_options(command, flags.messages);
   forbid_together(command, {"--layout", "--as"}, {"--columns"});
+}
+
+void add_box_classes_option(CLI::App& command, OutputFlags& flags) {
+  OptionGroup(command, kOutputHeading)
+      .add("--box-classes", "LIST", "Classes whose objects have boxes, or all [countable ones]",
+           flags.box_classes, parse_list);
+}
+
+void add_per_frame_option(CLI::App& command, OutputFlags& flags) {
+  OptionGroup(command, kOutputHeading)
+      .add_flag("--per-frame", "A file for each frame: .pcd .ply .csv .las [one for all frames]",
+                flags.per_frame);
 }
 
 void add_legacy_output_option(CLI::App& command, OutputFlags& flags) {

@@ -17,11 +17,18 @@ struct OutputFlags : FrameFileRequest {
 
   std::vector<std::string> imu_paths;        ///< of IMU samples
   std::vector<std::string> recording_paths;  ///< bags, OSI traces, packet captures, KITTI
+  std::vector<std::string> box_classes;      ///< see SceneFile; empty: those of the scene
 };
 
 inline constexpr const char* kOutputHeading = "Output (names are explained below)";
 
 void add_output_options(CLI::App& command, OutputFlags& flags);
+
+/// --box-classes, of commands that measure.
+void add_box_classes_option(CLI::App& command, OutputFlags& flags);
+
+/// --per-frame, of commands that end by themselves.
+void add_per_frame_option(CLI::App& command, OutputFlags& flags);
 
 /// --legacy-output, under the heading of the original GLIDAR's options.
 void add_legacy_output_option(CLI::App& command, OutputFlags& flags);

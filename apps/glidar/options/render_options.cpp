@@ -81,6 +81,7 @@ void add_render_options(CLI::App& command, RenderFlags& flags) {
       ->required()
       ->type_name("");
   add_output_options(command, flags.output);
+  add_box_classes_option(command, flags.output);
   add_fisher_options(command, flags.fisher);
   add_sensor_options(command, flags.sensor);
   OptionGroup(command, "Sensor")

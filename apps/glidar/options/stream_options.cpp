@@ -230,6 +230,7 @@ void check_ports(const StreamFlags& flags) {
 
 void add_stream_options(CLI::App& command, StreamFlags& flags) {
   add_render_options(command, flags.render);
+  flags.render.output.per_frame = true;  // other programs read the files of a live stream
   hide_standard_output(command);
   add_timing_options(command, flags);
   add_publishing_options(command, flags);
@@ -243,6 +244,8 @@ void add_stream_options(CLI::App& command, StreamFlags& flags) {
 
 void add_replay_options(CLI::App& command, StreamFlags& flags) {
   add_output_options(command, flags.render.output);
+  add_box_classes_option(command, flags.render.output);
+  flags.render.output.per_frame = true;
   add_legacy_output_option(command, flags.render.output);
   hide_standard_output(command);
   const OptionGroup timing(command, kTimingHeading);

@@ -58,6 +58,16 @@ std::string progress_line(std::string_view task, double fraction_done, double el
   return (std::string(task.substr(0, room)) + tail).substr(0, columns);
 }
 
+std::string progress_text(std::string_view task, double fraction_done, double elapsed_s) {
+  if (fraction_done < 0.0)
+    return fmt::format("{}, {} so far", task, duration_text(std::floor(elapsed_s)));
+  const double fraction = std::min(fraction_done, 1.0);
+  std::string text = fmt::format("{}, {:.0f} %", task, std::floor(100.0 * fraction));
+  if (fraction > 0.0)
+    text += fmt::format(", {} left", duration_text(elapsed_s * (1.0 - fraction) / fraction));
+  return text;
+}
+
 namespace {
 
 constexpr auto kProgressDelay = std::chrono::seconds(2);
@@ -79,7 +89,10 @@ std::size_t terminal_columns() {
 
 }  // namespace
 
-Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1 && !quiet) {}
+Console::Console(bool quiet, Clock::duration line_interval)
+    : quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) == 1 && !quiet),
+      line_interval_(line_interval) {}
 
 Console::~Console() {
   end();
@@ -144,22 +157,53 @@ Report Console::report() {
                              double fraction_done) { set_progress(task, fraction_done); }};
 }
 
-void Console::begin(std::string_view task) {
+void Console::begin(std::string_view task, std::size_t count) {
   const std::lock_guard lock(mutex_);
-  task_ = task;
   fraction_ = -1.0;
-  work_started_ = task_started_ = Clock::now();
+  task_ = task;
+  task_started_ = Clock::now();
+  if (count_ == 0) work_started_ = last_line_ = task_started_;
+  if (count > 0) {
+    counted_ = task;
+    count_ = count;
+    number_ = 0;
+  }
   if (listener_.progress) listener_.progress(task_, fraction_);
 }
 
-void Console::redraw() {
+void Console::next() {
+  const std::lock_guard lock(mutex_);
+  ++number_;
+  fraction_ = -1.0;
+}
+
+void Console::show() {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (now - work_started_ < kProgressDelay) return;
-  const double elapsed_s = std::chrono::duration<double>(now - task_started_).count();
+  const auto seconds_since = [now](Clock::time_point start) {
+    return std::chrono::duration<double>(now - start).count();
+  };
+  if (terminal_ && now - work_started_ >= kProgressDelay)
+    redraw(seconds_since(count_ > 0 ? work_started_ : task_started_));
+  if (terminal_ || now - last_line_ < line_interval_) return;
+  last_line_ = now;
+  const auto [task, fraction] = shown();
+  print(stderr, "glidar: {}\n",
+        progress_text(task, fraction, seconds_since(count_ > 0 ? work_started_ : task_started_)));
+}
+
+std::pair<std::string, double> Console::shown() const {
+  if (count_ == 0) return {task_, fraction_};
+  const std::size_t number = std::clamp<std::size_t>(number_, 1, count_);
+  const double done = static_cast<double>(number - 1) + std::clamp(fraction_, 0.0, 1.0);
+  return {fmt::format("{} {} of {}", counted_, number, count_), done / static_cast<double>(count_)};
+}
+
+void Console::redraw(double elapsed_s) {
+  const auto [task, fraction] = shown();
   // returns to the line's start and erases it
   draw("\r\033[K" +
-       progress_line(printable_line(task_), fraction_, elapsed_s, terminal_columns() - 1));
+       progress_line(printable_line(task), fraction, elapsed_s, terminal_columns() - 1));
   drawn_ = true;
 }
 
@@ -190,24 +234,30 @@ SilencedLibraries::~SilencedLibraries() {
   close(stderr_);
 }
 
-ProgressScope::ProgressScope(Console& console, std::string_view task) : console_(console) {
-  console_.begin(task);
-  if (!console_.terminal_) return;
+ProgressScope::ProgressScope(Console& console, std::string_view task, std::size_t count)
+    : console_(console), is_counted_(count > 0) {
+  const bool is_within = console_.count_ > 0;
+  console_.begin(task, count);
+  if (console_.quiet_ || is_within) return;
   ticker_ = std::thread([this] {
     std::unique_lock lock(mutex_);
-    while (!changed_.wait_for(lock, kRedraw, [this] { return done_; })) console_.redraw();
+    while (!changed_.wait_for(lock, kRedraw, [this] { return done_; })) console_.show();
   });
 }
 
 ProgressScope::~ProgressScope() {
-  if (!ticker_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    done_ = true;
+  if (ticker_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      done_ = true;
+    }
+    changed_.notify_one();
+    ticker_.join();
+    console_.end();
   }
-  changed_.notify_one();
-  ticker_.join();
-  console_.end();
+  if (!is_counted_) return;
+  const std::lock_guard lock(console_.mutex_);
+  console_.count_ = 0;
 }
 
 }  // namespace glidar::app

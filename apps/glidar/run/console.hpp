@@ -72,11 +72,17 @@ void print_json(const Json& json) {
 std::string progress_line(std::string_view task, double fraction_done, double elapsed_s,
                           std::size_t columns);
 
+/// The same as a line of text: "frame 12 of 200, 5 %, 3 min 10 s left".
+std::string progress_text(std::string_view task, double fraction_done, double elapsed_s);
+
 /// The terminal: results go to standard output, everything else to standard error. Keeps messages
 /// and the progress display apart. Thread-safe.
 class Console {
  public:
-  explicit Console(bool quiet = false);
+  using Clock = std::chrono::steady_clock;
+
+  /// Without a terminal, progress is a line in each interval.
+  explicit Console(bool quiet = false, Clock::duration line_interval = std::chrono::seconds(10));
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
   ~Console();
@@ -102,10 +108,14 @@ class Console {
 
  private:
   friend class ProgressScope;
-  using Clock = std::chrono::steady_clock;
 
-  void begin(std::string_view task);
-  void redraw();
+  /// A counted task replaces those within it in the display.
+  void begin(std::string_view task, std::size_t count);
+  void next();
+  void show();
+  /// The task to show and the fraction that is done.
+  [[nodiscard]] std::pair<std::string, double> shown() const;
+  void redraw(double elapsed_s);
   void end();
   void erase();
 
@@ -116,6 +126,11 @@ class Console {
   bool drawn_ = false;
   std::string task_;
   double fraction_ = -1.0;
+  std::string counted_;     ///< "frame" of "frame 12 of 200"
+  std::size_t count_ = 0;   ///< of the counted task; 0: there is none
+  std::size_t number_ = 0;  ///< of its current part, from 1
+  Clock::duration line_interval_;
+  Clock::time_point last_line_;
   Clock::time_point work_started_;
   Clock::time_point task_started_;
 };
@@ -134,16 +149,23 @@ class SilencedLibraries {
   int stderr_ = -1;  ///< a copy of its descriptor; negative: not silenced
 };
 
-/// RAII: shows the progress of this work on a terminal after two seconds. One at a time.
+/// RAII: shows the progress of this work on a terminal after two seconds, elsewhere in a line every
+/// ten seconds. One at a time, and others within a counted one.
 class ProgressScope {
  public:
-  ProgressScope(Console& console, std::string_view task);
+  ProgressScope(Console& console, std::string_view task) : ProgressScope(console, task, 0) {}
+  /// Work with several parts, each of which begins with next(): "frame 12 of 200" for the task
+  /// "frame".
+  ProgressScope(Console& console, std::string_view task, std::size_t count);
   ProgressScope(const ProgressScope&) = delete;
   ProgressScope& operator=(const ProgressScope&) = delete;
   ~ProgressScope();
 
+  void next() { console_.next(); }
+
  private:
   Console& console_;
+  bool is_counted_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool done_ = false;

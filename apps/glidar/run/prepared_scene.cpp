@@ -335,6 +335,9 @@ void prepare_scene(const RenderFlags& flags, const std::function<void()>& on_loa
   set_imus(flags, loaded, prepared);
   if (on_loaded) on_loaded();
   prepared.scene = std::move(loaded.scene);
+  const std::vector<std::string>& given = flags.output.box_classes;
+  prepared.boxed_classes = boxed_classes(
+      prepared.scene.class_names, given.empty() ? loaded.box_classes : given, "--box-classes");
   apply_surface_option(flags, prepared.sensors.front().sensor, prepared.scene);
   pose_model(flags.pose, prepared.scene);
   double far_m = 0.0;
@@ -388,8 +391,10 @@ void set_frame_header(const RenderFlags& flags, const PreparedScene& prepared,
 
 std::shared_ptr<Simulator> make_simulator(const PreparedScene& prepared,
                                           const std::shared_ptr<const BeamCache>& beam_cache) {
-  return make_simulator(prepared.scene, beam_cache, *prepared.renderer,
-                        prepared.woods2016_camera.get());
+  std::shared_ptr<Simulator> simulator = make_simulator(
+      prepared.scene, beam_cache, *prepared.renderer, prepared.woods2016_camera.get());
+  simulator->set_boxed_classes(prepared.boxed_classes);
+  return simulator;
 }
 
 std::shared_ptr<Simulator> make_simulator(const Scene& scene,

@@ -42,6 +42,7 @@ struct PreparedScene {
   std::unique_ptr<Woods2016Camera> woods2016_camera;  ///< for --quantized-framebuffer; else none
   std::vector<RigImu> imus;                           ///< on the rig
   Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();
+  BoxedClasses boxed_classes;      ///< whose objects have boxes
   std::vector<std::string> files;  ///< all files that were read
 };
 

@@ -223,6 +223,7 @@ Accessor open_accessor(const Document& document, Buffers& buffers, const Value& 
   } else if (accessor.count > kMostZeros) {
     value.refuse(fmt::format("{} elements without data", accessor.count));
   }
+  buffers.take(Budget::numbers, accessor.count * accessor.components, accessor.path);
   const Value sparse = value["sparse"];
   if (sparse) accessor.sparse = read_sparse(sparse, accessor, buffers);
   return accessor;

@@ -11,6 +11,17 @@
 
 namespace glidar::import::gltf {
 
+void Buffers::take(Budget what, std::uint64_t amount, const std::string& path) {
+  if (budget_.try_take(what, amount)) return;
+  refuse(path, budget_.excess(what), "the file is damaged or malicious");
+}
+
+std::string_view Buffers::file_content(const std::string& uri) {
+  const std::string_view content = open_(uri);
+  if (opened_.insert(uri).second) budget_.add_input(content.size());
+  return content;
+}
+
 std::string_view Buffers::data_of(const Value& buffer, std::size_t number) {
   const Value uri = buffer["uri"];
   if (!uri) {
@@ -18,7 +29,7 @@ std::string_view Buffers::data_of(const Value& buffer, std::size_t number) {
     buffer.refuse("it has no data: neither a URI nor a binary chunk");
   }
   const std::string text = uri.text();
-  if (!text.starts_with("data:")) return open_(text);
+  if (!is_data_uri(text)) return file_content(text);
   const auto [known, is_new] = from_uris_.try_emplace(number);
   if (is_new) {
     auto content = data_uri_content(text);
@@ -59,7 +70,10 @@ View Buffers::view(const Value& index) {
   if (!extension) return {part(view.required("buffer"), view), stride};
   const auto [known, is_new] = decompressed_.try_emplace(view.path());
   if (is_new) {
-    known->second = decode_meshopt(extension, part(extension.required("buffer"), extension));
+    const std::string_view compressed = part(extension.required("buffer"), extension);
+    const MeshoptLayout layout = meshopt_layout(extension, compressed.size());
+    take(Budget::held_bytes, layout.count * layout.stride, extension.path());
+    known->second = decode_meshopt(extension, layout, compressed);
     const Value length = view.required("byteLength");
     if (length.count() != known->second.size()) {
       length.refuse(fmt::format("{} bytes, its compressed data has {}", length.count(),

@@ -4,9 +4,12 @@
 
 #include <import/gltf/document.hpp>
 
+#include <glidar/io/files/input_file.hpp>
+
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -23,19 +26,27 @@ struct View {
 /// The buffers of a document: its own chunk, data URIs, files; decompressed views.
 class Buffers {
  public:
-  /// The document must outlive it.
-  Buffers(const Document& document, OpenFile open) : document_(document), open_(std::move(open)) {}
+  /// Document and budget must outlive it.
+  Buffers(const Document& document, OpenFile open, InputBudget& budget)
+      : document_(document), open_(std::move(open)), budget_(budget) {}
 
   /// The buffer view that `index` names. The bytes last as long as this object.
   View view(const Value& index);
 
+  /// Counts what is made of the document, before memory is used for it: a small document can name
+  /// the same bytes very often. Throws Refusal with the path of what is too much for its size.
+  void take(Budget what, std::uint64_t amount, const std::string& path);
+
  private:
+  std::string_view file_content(const std::string& uri);
   std::string_view whole(const Value& index);
   std::string_view data_of(const Value& buffer, std::size_t number);
   std::string_view part(const Value& index, const Value& object);
 
   const Document& document_;
   OpenFile open_;
+  InputBudget& budget_;
+  std::set<std::string> opened_;  ///< URIs of files
   std::map<std::size_t, std::string> from_uris_;
   std::map<std::string, std::string> decompressed_;  ///< of the view with this path
 };

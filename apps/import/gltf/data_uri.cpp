@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/gltf/data_uri.hpp>
 
+#include <glidar/core/text.hpp>
 #include <glidar/io/model/texture_search.hpp>
 
 #include <array>
@@ -50,12 +51,16 @@ std::optional<std::string> from_base64(std::string_view text) {
 
 }  // namespace
 
+bool is_data_uri(std::string_view uri) {
+  return lower_case(uri.substr(0, 5)) == "data:";
+}
+
 std::optional<std::string> data_uri_content(std::string_view uri) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) return std::nullopt;
   const std::string_view head = uri.substr(0, comma);
   const std::string_view body = uri.substr(comma + 1);
-  if (head.ends_with(";base64")) {
+  if (lower_case(head).ends_with(";base64")) {
     const bool is_escaped = body.find('%') != std::string_view::npos;  // "%3D" for "="
     return is_escaped ? from_base64(percent_decoded(std::string(body))) : from_base64(body);
   }

@@ -6,6 +6,7 @@
 #include <draco/mesh/mesh.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -55,6 +56,7 @@ DracoMesh decode_draco(Document& document, Buffers& buffers, const Value& primit
   const View view = buffers.view(extension.required("bufferView"));
   const std::unique_ptr<draco::Mesh> mesh = decompressed(extension, view.bytes);
   DracoMesh result;
+  buffers.take(Budget::numbers, std::uint64_t{mesh->num_faces()} * 3, extension.path());
   for (const auto& [name, id] : extension.required("attributes").members()) {
     const auto unique = static_cast<std::uint32_t>(id.count());
     const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(unique);
@@ -64,6 +66,9 @@ DracoMesh decode_draco(Document& document, Buffers& buffers, const Value& primit
     const Value value = document.target("accessors", index);
     Accessor accessor = describe_accessor(value);
     note_size(document, value, mesh->num_points());
+    buffers.take(Budget::numbers,
+                 std::max<std::uint64_t>(accessor.count, mesh->num_points()) * accessor.components,
+                 extension.path());
     std::string& bytes = result.bytes[name] = with_type(accessor.type, [&](auto zero) {
       return rows_of<decltype(zero)>(*mesh, *attribute, accessor.components);
     });

@@ -95,6 +95,9 @@ class Reader {
     const Value glossiness = source.extension("KHR_materials_pbrSpecularGlossiness");
     if (glossiness) {
       read_glossiness(glossiness, to);
+      if (source["pbrMetallicRoughness"]) {
+        note("KHR_materials_pbrSpecularGlossiness replaces pbrMetallicRoughness");
+      }
     } else {
       read_metallic(source, to);
     }
@@ -249,13 +252,14 @@ class Reader {
     const Value view = image["bufferView"];
     if (uri && view) image.refuse("it has both a URI and a buffer view");
     const std::string text = view ? "" : uri.text();
-    if (!view && !text.starts_with("data:")) return text;
+    if (!view && !is_data_uri(text)) return text;
     const std::string name =
         image["name"].text_or("").empty() ? image.path() : embedded_name(image);
     if (model_.images.contains(name)) return name;
     EmbeddedImage& to = model_.images[name];
     if (view) {
       const View bytes = buffers_.view(view);
+      buffers_.take(Budget::held_bytes, bytes.bytes.size(), image.path());
       to.bytes.assign(bytes.bytes.begin(), bytes.bytes.end());
     } else {
       const auto content = data_uri_content(text);

@@ -15,11 +15,6 @@
 namespace glidar::import::gltf {
 namespace {
 
-struct Layout {
-  std::size_t count = 0;   ///< elements
-  std::size_t stride = 0;  ///< bytes of each
-};
-
 /// Reads and writes elements of a buffer in place, whatever its alignment.
 template <class T, std::size_t N>
 class Elements {
@@ -50,7 +45,7 @@ T quantized(double value) {
 
 /// Unit vectors in an octahedral map; the third component is the number that means 1.
 template <class T>
-void unfold_octahedra(std::string& bytes, const Layout& layout) {
+void unfold_octahedra(std::string& bytes, const MeshoptLayout& layout) {
   Elements<T, 4> elements(bytes, layout.stride);
   for (std::size_t i = 0; i < layout.count; ++i) {
     std::array<T, 4> v = elements.get(i);
@@ -70,7 +65,7 @@ void unfold_octahedra(std::string& bytes, const Layout& layout) {
 }
 
 /// Unit quaternions without their largest component, whose index is in the last number.
-void complete_quaternions(std::string& bytes, const Layout& layout) {
+void complete_quaternions(std::string& bytes, const MeshoptLayout& layout) {
   Elements<std::int16_t, 4> elements(bytes, layout.stride);
   const double range = std::sqrt(0.5);
   for (std::size_t i = 0; i < layout.count; ++i) {
@@ -103,7 +98,7 @@ void raise_exponents(std::string& bytes) {
   }
 }
 
-void apply_filter(const Value& filter, const Layout& layout, std::string& bytes) {
+void apply_filter(const Value& filter, const MeshoptLayout& layout, std::string& bytes) {
   const std::string name = filter.text_or("NONE");
   if (name == "NONE") return;
   if (name == "OCTAHEDRAL" && layout.stride == 4) {
@@ -130,42 +125,43 @@ std::size_t most_elements(const std::string& mode, std::size_t stride, std::size
   return mode == "TRIANGLES" ? size * 3 : size;
 }
 
-Layout layout_of(const Value& extension, const std::string& mode, std::size_t size) {
+}  // namespace
+
+MeshoptLayout meshopt_layout(const Value& extension, std::size_t compressed_bytes) {
+  const Value mode = extension.required("mode");
   const Value count = extension.required("count");
   const Value stride = extension.required("byteStride");
-  const Layout layout{count.count(), stride.count()};
+  const MeshoptLayout layout{mode.text(), count.count(), stride.count()};
   constexpr std::size_t kLargestStride = 256;
-  const bool is_index = mode != "ATTRIBUTES";
+  const bool is_index = layout.mode == "TRIANGLES" || layout.mode == "INDICES";
+  if (!is_index && layout.mode != "ATTRIBUTES") {
+    mode.refuse(in_quotes(layout.mode) + " (allowed: ATTRIBUTES, TRIANGLES, INDICES)");
+  }
   const bool fits =
       is_index ? layout.stride == 2 || layout.stride == 4
                : layout.stride > 0 && layout.stride % 4 == 0 && layout.stride <= kLargestStride;
-  if (!fits) stride.refuse(fmt::format("{} bytes for the mode {}", layout.stride, mode));
-  if (mode == "TRIANGLES" && layout.count % 3 != 0) count.refuse("it is not a multiple of 3");
-  if (layout.count > most_elements(mode, layout.stride, size)) {
-    count.refuse(fmt::format("{} elements, more than {} bytes can hold", layout.count, size));
+  if (!fits) stride.refuse(fmt::format("{} bytes for the mode {}", layout.stride, layout.mode));
+  if (layout.mode == "TRIANGLES" && layout.count % 3 != 0)
+    count.refuse("it is not a multiple of 3");
+  if (layout.count > most_elements(layout.mode, layout.stride, compressed_bytes)) {
+    count.refuse(
+        fmt::format("{} elements, more than {} bytes can hold", layout.count, compressed_bytes));
   }
   return layout;
 }
 
-}  // namespace
-
-std::string decode_meshopt(const Value& extension, std::string_view bytes) {
-  const Value mode_value = extension.required("mode");
-  const std::string mode = mode_value.text();
-  if (mode != "ATTRIBUTES" && mode != "TRIANGLES" && mode != "INDICES") {
-    mode_value.refuse(in_quotes(mode) + " (allowed: ATTRIBUTES, TRIANGLES, INDICES)");
-  }
-  const Layout layout = layout_of(extension, mode, bytes.size());
+std::string decode_meshopt(const Value& extension, const MeshoptLayout& layout,
+                           std::string_view compressed) {
   std::string decoded(layout.count * layout.stride, '\0');
-  const auto* const data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const auto* const data = reinterpret_cast<const unsigned char*>(compressed.data());
   using Decode = int (*)(void*, std::size_t, std::size_t, const unsigned char*, std::size_t);
   Decode decode = &meshopt_decodeVertexBuffer;
-  if (mode == "TRIANGLES") decode = &meshopt_decodeIndexBuffer;
-  if (mode == "INDICES") decode = &meshopt_decodeIndexSequence;
-  if (decode(decoded.data(), layout.count, layout.stride, data, bytes.size()) != 0) {
+  if (layout.mode == "TRIANGLES") decode = &meshopt_decodeIndexBuffer;
+  if (layout.mode == "INDICES") decode = &meshopt_decodeIndexSequence;
+  if (decode(decoded.data(), layout.count, layout.stride, data, compressed.size()) != 0) {
     extension.refuse("its data cannot be decompressed");
   }
-  if (mode == "ATTRIBUTES") {
+  if (layout.mode == "ATTRIBUTES") {
     apply_filter(extension["filter"], layout, decoded);
   } else if (extension["filter"].text_or("NONE") != "NONE") {
     extension["filter"].refuse("indices have none");

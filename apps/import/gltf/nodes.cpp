@@ -208,14 +208,19 @@ Nodes read_nodes(Document& document) {
   return result;
 }
 
-std::vector<Eigen::Matrix4d> copies_of(Document& document, Buffers& buffers, const Value& node) {
+std::size_t count_copies(const Document& document, const Value& node) {
   const Value extension = node.extension(kInstancing);
-  if (!extension) return {Eigen::Matrix4d::Identity()};
+  if (!extension) return 1;
   const Value attributes = extension.required("attributes");
   if (attributes.members().empty()) attributes.refuse("copies need an attribute");
-  std::size_t count = 0;
+  return describe_accessor(document.target("accessors", attributes.members().back().second)).count;
+}
+
+std::vector<Eigen::Matrix4d> copies_of(Document& document, Buffers& buffers, const Value& node) {
+  if (!node.extension(kInstancing)) return {Eigen::Matrix4d::Identity()};
+  const Value attributes = node.extension(kInstancing)["attributes"];
+  const std::size_t count = count_copies(document, node);
   for (const auto& [name, index] : attributes.members()) {
-    count = describe_accessor(document.target("accessors", index)).count;
     const bool is_used = name == "TRANSLATION" || name == "ROTATION" || name == "SCALE";
     if (is_used) continue;
     document.notes.add("attributes of copies are left out: " + name.substr(0, 80));

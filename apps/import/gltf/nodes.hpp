@@ -26,7 +26,10 @@ inline constexpr std::size_t kNoNode = std::numeric_limits<std::size_t>::max();
 /// ancestors.
 Nodes read_nodes(Document& document);
 
-/// The transforms of the copies of a node's mesh (EXT_mesh_gpu_instancing); one without copies.
+/// The number of copies of a node's mesh (EXT_mesh_gpu_instancing); one without the extension.
+std::size_t count_copies(const Document& document, const Value& node);
+
+/// Their transforms.
 std::vector<Eigen::Matrix4d> copies_of(Document& document, Buffers& buffers, const Value& node);
 
 /// The affine matrix of 16 numbers by columns. If rounding changed its last row (named `row` in

@@ -155,6 +155,7 @@ class Placement {
     }
     const Value mesh = context_.document.target("meshes", node["mesh"]);
     const std::vector<Part>& parts = meshes_of(node, mesh);
+    context_.model.take_instances(count_copies(context_.document, node) * parts.size());
     const std::vector<Eigen::Matrix4d> copies =
         copies_of(context_.document, context_.buffers, node);
     if (skin && node.extension("EXT_mesh_gpu_instancing")) {
@@ -163,7 +164,6 @@ class Placement {
     std::string name = mesh["name"].text_or("");
     if (name.empty()) name = node["name"].text_or("");
     if (name.empty()) name = mesh.path();
-    context_.model.require_room(copies.size() * parts.size());
     std::vector<SourceNode>& parts_of_model = context_.model.nodes;
     for (std::size_t i = 0; i < copies.size(); ++i) {
       const Eigen::Matrix4d scene_from_copy = nodes_.scene_from_node[number] * copies[i];
@@ -245,8 +245,9 @@ bool is_gltf(std::string_view extension, std::string_view first_bytes) {
 
 SourceModel read_gltf(std::string_view file, OpenFile open) {
   Document document = parse(file);
-  Buffers buffers(document, std::move(open));
   SourceModel model;
+  model.budget.add_input(file.size());
+  Buffers buffers(document, std::move(open), model.budget);
   model.format = "glTF2";
   model.declared = {1.0, Axis::y};
   std::vector<UvSets> uv_sets = read_materials(document, buffers, model);

@@ -56,11 +56,21 @@ struct StoredTopic {
   bool is_ros = true;  ///< false: messages of another encoding, such as JSON in MCAP
 };
 
+/// The data of a message that is still in the file of its bag.
+class BagData {
+ public:
+  virtual ~BagData() = default;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Copies the bytes from an offset on.
+  virtual void copy(std::size_t offset, std::span<std::byte> to) = 0;
+};
+
 /// A message of a bag.
 struct BagMessage {
   std::size_t topic = 0;  ///< index in topics()
   std::int64_t time_ns = 0;
   std::span<const std::byte> data;  ///< valid until the next call of next()
+  BagData* in_file = nullptr;       ///< instead of `data`, see leave_in_file(); as long valid
 };
 
 /// Reads a bag in the order of its messages' times; holds only some chunks of it in memory.
@@ -74,6 +84,8 @@ class BagReader {
   [[nodiscard]] virtual std::span<const StoredTopic> topics() const = 0;
   /// Reads only these topics, by index; all before the first call.
   virtual void select(std::span<const std::size_t> topics) = 0;
+  /// From now on, next() leaves data in the file if they can be copied from it piece by piece.
+  virtual void leave_in_file() {}
   /// The next message; false at the end. Throws Error when the bag is damaged.
   virtual bool next(BagMessage& message) = 0;
 };

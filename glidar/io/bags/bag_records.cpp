@@ -104,9 +104,18 @@ void send_bag(BagReader& bag, RecordWriter& to, int control) {
   to.write({RecordKind::ready, 0, 0, {}});
   to.flush();
   bag.select(receive_selection(bag.topics().size(), control));
+  bag.leave_in_file();
   for (BagMessage message; bag.next(message);) {
-    to.write({RecordKind::item, static_cast<std::uint32_t>(message.topic), message.time_ns,
-              message.data});
+    const Record record{RecordKind::item, static_cast<std::uint32_t>(message.topic),
+                        message.time_ns, message.data};
+    if (message.in_file == nullptr) {
+      to.write(record);
+      continue;
+    }
+    const auto copy = [&](std::size_t offset, std::span<std::byte> bytes) {
+      message.in_file->copy(offset, bytes);
+    };
+    to.write(record, message.in_file->size(), CopyPayload(copy));
   }
   to.write({RecordKind::end, 0, 0, {}});
   to.flush();

@@ -126,6 +126,10 @@ class MergedReader : public BagReader {
     }
   }
 
+  void leave_in_file() override {
+    for (Part& part : parts_) part.reader->leave_in_file();
+  }
+
   bool next(BagMessage& message) override {
     for (Part& part : parts_) {
       if (!part.is_pending && !part.has_ended) advance(part);

@@ -350,11 +350,32 @@ std::string_view Statement::text(int column) const {
           static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
 }
 
-std::span<const std::byte> Statement::bytes(int column) const {
-  const void* bytes = sqlite3_column_blob(statement_.get(), column);
-  if (bytes == nullptr) return {};
-  return {static_cast<const std::byte*>(bytes),
-          static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
+void BlobColumn::Closer::operator()(sqlite3_blob* blob) const {
+  sqlite3_blob_close(blob);
+}
+
+void BlobColumn::check(int code) const {
+  if (code != SQLITE_OK) database_->fail();
+}
+
+void BlobColumn::select(std::int64_t row) {
+  if (blob_) {
+    check(sqlite3_blob_reopen(blob_.get(), row));
+    return;
+  }
+  sqlite3_blob* opened = nullptr;
+  const int code = sqlite3_blob_open(database_->get(), "main", table_, column_, row, 0, &opened);
+  blob_.reset(opened);
+  check(code);
+}
+
+std::size_t BlobColumn::size() const {
+  return static_cast<std::size_t>(sqlite3_blob_bytes(blob_.get()));
+}
+
+void BlobColumn::read(std::size_t offset, std::span<std::byte> to) const {
+  check(sqlite3_blob_read(blob_.get(), to.data(), static_cast<int>(to.size()),
+                          static_cast<int>(offset)));
 }
 
 }  // namespace glidar::bags

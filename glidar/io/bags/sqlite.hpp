@@ -16,6 +16,7 @@
 #include <vector>
 
 struct sqlite3;
+struct sqlite3_blob;
 struct sqlite3_stmt;
 
 namespace glidar::bags {
@@ -71,8 +72,6 @@ class Statement {
   [[nodiscard]] std::int64_t number(int column) const;
   /// Valid until the next step() or reset().
   [[nodiscard]] std::string_view text(int column) const;
-  /// Valid until the next step() or reset().
-  [[nodiscard]] std::span<const std::byte> bytes(int column) const;
 
  private:
   void check(int code) const;
@@ -81,6 +80,31 @@ class Statement {
   };
   const Database* database_;
   std::unique_ptr<sqlite3_stmt, Finaliser> statement_;
+};
+
+/// The values of one column that are blobs or texts, row by row. They are read from the file's
+/// pages to where they are needed, without a copy in between.
+class BlobColumn {
+ public:
+  /// Both names must outlive it.
+  BlobColumn(const Database& database, const char* table, const char* column)
+      : database_(&database), table_(table), column_(column) {}
+
+  /// Selects a row by its rowid. Throws Error when it has no such value.
+  void select(std::int64_t row);
+  [[nodiscard]] std::size_t size() const;
+  /// Bytes of the selected value, which must have them.
+  void read(std::size_t offset, std::span<std::byte> to) const;
+
+ private:
+  void check(int code) const;
+  struct Closer {
+    void operator()(sqlite3_blob* blob) const;
+  };
+  const Database* database_;
+  const char* table_;
+  const char* column_;
+  std::unique_ptr<sqlite3_blob, Closer> blob_;
 };
 
 }  // namespace glidar::bags

@@ -43,7 +43,7 @@ std::uint64_t checked_size(const std::filesystem::path& path) {
   return file.size();
 }
 
-class SqliteBagReader : public BagReader {
+class SqliteBagReader : public BagReader, private BagData {
  public:
   SqliteBagReader(const std::filesystem::path& path, SharedBudget budget)
       : path_(path.string()),
@@ -53,7 +53,7 @@ class SqliteBagReader : public BagReader {
     read_topics();
     // Only the index is sorted; messages are read one by one.
     order_.emplace(database_, "SELECT timestamp,id FROM messages ORDER BY timestamp,id");
-    message_.emplace(database_, "SELECT topic_id,timestamp,data FROM messages WHERE id=?");
+    message_.emplace(database_, "SELECT topic_id,timestamp,rowid FROM messages WHERE id=?");
     selected_.assign(topics_.size(), true);
   }
 
@@ -63,6 +63,8 @@ class SqliteBagReader : public BagReader {
     selected_.assign(topics_.size(), false);
     for (const std::size_t topic : topics) selected_.at(topic) = true;
   }
+
+  void leave_in_file() override { leaves_in_file_ = true; }
 
   bool next(BagMessage& message) override {
     while (!ended_) {
@@ -79,16 +81,31 @@ class SqliteBagReader : public BagReader {
       if (topic == numbers_.end())
         reject_bag(path_, fmt::format("a message of the unknown topic {}", message_->number(0)));
       if (!selected_[topic->second]) continue;
-      const std::span<const std::byte> data = message_->bytes(2);
-      // a row can lack its data and have a default of the table, which may be long
-      budget_->take(Budget::decompressed_bytes, data.size(), path_);
-      message = {topic->second, message_->number(1), data};
+      data_.select(message_->number(2));
+      budget_->take(Budget::decompressed_bytes, size(), path_);
+      message = {topic->second, message_->number(1), {}};
+      if (leaves_in_file_) {
+        message.in_file = this;
+      } else {
+        message.data = whole_data();
+      }
       return true;
     }
     return false;
   }
 
  private:
+  [[nodiscard]] std::size_t size() const override { return data_.size(); }
+
+  void copy(std::size_t offset, std::span<std::byte> to) override { data_.read(offset, to); }
+
+  std::span<const std::byte> whole_data() {
+    if (buffer_.size() < size()) buffer_.resize(size());
+    const std::span<std::byte> whole = std::span(buffer_).first(size());
+    copy(0, whole);
+    return whole;
+  }
+
   /// A damaged table can have pages that contain each other, and rows without end.
   void read_topics() {
     Statement rows(database_, "SELECT id,name,type,serialization_format FROM topics ORDER BY id");
@@ -124,6 +141,9 @@ class SqliteBagReader : public BagReader {
   std::vector<bool> selected_;
   std::optional<Statement> order_;
   std::optional<Statement> message_;
+  BlobColumn data_{database_, "messages", "data"};
+  Bytes buffer_;  ///< of the message that was read last
+  bool leaves_in_file_ = false;
   std::optional<std::pair<std::int64_t, std::int64_t>> last_;  ///< time and id
   bool ended_ = false;
 };

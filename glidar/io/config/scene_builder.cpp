@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/config/scene_plan.hpp>
 
+#include <glidar/core/box_classes.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/mesh.hpp>
@@ -90,9 +91,8 @@ std::vector<ModelAtom> atoms_of(const Mesh& mesh, const std::vector<ModelPart>& 
 class Selection {
  public:
   Selection(const LoadedModel& model, const Scene& scene) : model_(model) {
-    for (const std::uint32_t index : model.whole.materials) {
+    for (const std::uint32_t index : model.whole.materials)
       materials_.push_back(scene.materials[index].name);
-    }
   }
 
   /// The name of the material of a slot.
@@ -131,9 +131,8 @@ class Selection {
       if (std::find(known.begin(), known.end(), selector) == known.end()) known.push_back(selector);
     }
     std::string listed;
-    for (std::size_t i = 0; i < known.size() && i < kListed; ++i) {
+    for (std::size_t i = 0; i < known.size() && i < kListed; ++i)
       listed += (i == 0 ? "'" : ", '") + known[i] + "'";
-    }
     if (known.size() > kListed) listed += " ... ('glidar info --parts' lists all)";
     const std::string nearest = closest_match(part.selector, known);
     throw Error({part.where, "the model has no part '" + excerpt(part.selector) + "'", listed,
@@ -386,9 +385,8 @@ void override_materials(const std::vector<MaterialOverride>& overrides, TextureP
 /// The same for a whole model, which has the materials of all changes.
 void override_known_materials(const std::vector<MaterialOverride>& overrides, TexturePlaces& places,
                               Instance& instance, Scene& scene) {
-  for (const MaterialOverride& change : overrides) {
+  for (const MaterialOverride& change : overrides)
     require_known(change, instance.materials, scene, "the model");
-  }
   override_materials(overrides, places, instance, scene);
 }
 
@@ -406,9 +404,8 @@ std::uint32_t class_index(const std::string& name, ClassPlaces& places,
 
 ClassPlaces places_of(const std::vector<std::string>& names) {
   ClassPlaces places;
-  for (const std::string& name : names) {
+  for (const std::string& name : names)
     places.try_emplace(name, static_cast<std::uint32_t>(places.size()));
-  }
   return places;
 }
 
@@ -430,8 +427,8 @@ ClassPlaces places_of(const std::vector<std::string>& names) {
 std::vector<std::string> sensor_names(const std::vector<RigSensor>& rig) {
   std::vector<std::string> names;
   for (const RigSensor& sensor : rig) names.push_back(sensor.name);
-  if (rig.empty() || (rig.size() == 1 && names[0].empty())) names = {kOnlySensor};
-  return names;
+  const bool has_no_names = rig.empty() || (rig.size() == 1 && names[0].empty());
+  return has_no_names ? std::vector<std::string>{kOnlySensor} : names;
 }
 
 std::vector<std::uint32_t> ids_of(const SensorNames& sensors, const std::vector<RigSensor>& rig) {
@@ -566,9 +563,8 @@ class SceneBuilder {
     }
     for (const PlannedInstance& planned : plan.instances) take_name_and_id(planned);
     for (const PlannedInstance& planned : plan.instances) check_parts(planned);
-    for (const Instance& instance : scene_.instances) {
+    for (const Instance& instance : scene_.instances)
       trajectories_.emplace_back(ConstantPose{instance.world_from_object});
-    }
   }
 
   void build() {
@@ -656,7 +652,17 @@ class SceneBuilder {
   }
 
   void place_whole(const PlannedInstance& planned) {
-    add(planned, instance_of(planned, loaded(planned)), Pose::Identity());
+    const Instance instance = instance_of(planned, loaded(planned));
+    if (planned.poses.empty()) return add(planned, instance, Pose::Identity());
+    const std::size_t count = planned.poses.size();
+    const std::uint32_t first = first_free_id(planned, count, true);
+    for (std::size_t i = 0; i < count; ++i) {
+      Instance one = instance;
+      if (i > 0) one.name = free_name(planned.name);
+      one.id = first + static_cast<std::uint32_t>(i);
+      ids_.insert(one.id);
+      add(planned, std::move(one), planned.poses[i]);
+    }
   }
 
   void place_pieces(const PlannedInstance& planned) {
@@ -692,10 +698,10 @@ class SceneBuilder {
   }
 
   std::string free_name(const std::string& base) {
-    std::string name = base;
-    for (std::uint64_t n = 2; !names_.insert(name).second; ++n) {
-      name = base + "_" + std::to_string(n);
-    }
+    std::uint64_t& n = last_numbers_[base];
+    std::string name;
+    do name = ++n == 1 ? base : base + "_" + std::to_string(n);
+    while (!names_.insert(name).second);
     return name;
   }
 
@@ -740,6 +746,7 @@ class SceneBuilder {
   std::map<LoadKey, LoadedModel> loaded_;
   RealPaths real_paths_;
   std::set<std::string> names_;
+  std::unordered_map<std::string, std::uint64_t> last_numbers_;
   std::set<std::uint32_t> ids_;
   std::vector<std::uint32_t> cut_meshes_;
 };
@@ -783,6 +790,8 @@ SceneFile build_scene(const ScenePlan& plan, const ModelLoader& load, Scene into
                  .imus = plan.imus,
                  .gravity_m_s2 = plan.gravity_m_s2};
   SceneBuilder(plan, load, file).build();
+  boxed_classes(file.scene.class_names, plan.box_classes, plan.where_box_classes);  // its errors
+  file.box_classes = plan.box_classes;
   return file;
 }
 

@@ -39,6 +39,13 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
   return load_plan(read_scene_plan(path, defaults), report);
 }
 
+SceneFile load_scene_content(const std::filesystem::path& path, const std::string& content,
+                             const ModelOptions& defaults, const Report& report) {
+  ScenePlan plan = read_scene_plan(read_yaml_content(path, content), defaults);
+  plan.files.insert(plan.files.begin(), path.string());
+  return load_plan(plan, report);
+}
+
 SceneFile parse_scene(const std::string& text, const Report& report,
                       const std::filesystem::path& folder) {
   return load_plan(read_scene_plan(read_yaml_text((folder / "scene").string(), text), {}), report);

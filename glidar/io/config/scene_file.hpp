@@ -41,6 +41,8 @@ struct SceneFile {
   std::optional<Trajectory> rig_motion = {};         ///< empty: the rig is static
   std::vector<RigImu> imus = {};                     ///< on the rig
   Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();  ///< that IMUs measure, world axes
+  /// Names of the classes whose objects have boxes, see boxed_classes().
+  std::vector<std::string> box_classes = {};
 };
 
 /// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.
@@ -48,6 +50,10 @@ struct SceneFile {
 /// and the nearest known key.
 SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
                           const Report& report);
+
+/// The same from the content of the file that is given, such as with other values.
+SceneFile load_scene_content(const std::filesystem::path& path, const std::string& content,
+                             const ModelOptions& defaults, const Report& report);
 
 /// The same from a text, YAML or JSON. Paths are relative to `folder`, or to the working folder
 /// when it is empty. Errors name the field.

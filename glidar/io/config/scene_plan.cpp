@@ -14,6 +14,7 @@
 #include <glidar/io/config/sensor_presets.hpp>
 #include <glidar/io/config/yaml_field_reader.hpp>
 #include <glidar/io/files/input_file.hpp>
+#include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 
 #include <algorithm>
@@ -310,6 +311,22 @@ void visit_attributes(FieldVisitor& visitor, PlannedInstance& model, MotionKeys&
   visit_visibility(visitor, model.visibility);
 }
 
+/// The poses of many instances.
+void visit_poses(FieldVisitor& visitor, PlannedInstance& model) {
+  visitor.path({"poses",
+                "a file of [poses](scenes.md#many-instances) relative to `pose`: an instance of "
+                "the model for each",
+                kNoUnit, false, "one instance"},
+               model.poses_file);
+  if (!visitor.is_reading() || model.poses_file.empty()) return;
+  for (const char* key : {"motion", "split", "parts"}) {
+    if (!visitor.has(key)) continue;
+    visitor.reject("poses", std::string("given beside '") + key + "'",
+                   "poses of whole objects at rest", "leave one of them out");
+  }
+  model.poses = load_poses(model.poses_file);
+}
+
 /// Names that the file gives are kept; the others get their file's name, with a number if it is
 /// taken.
 void complete_names(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
@@ -352,6 +369,7 @@ std::vector<std::string> files_of(const std::vector<PlannedInstance>& instances)
   std::vector<std::string> files;
   for (const PlannedInstance& one : instances) {
     files.insert(files.end(), one.motion_files.begin(), one.motion_files.end());
+    if (!one.poses_file.empty()) files.push_back(one.poses_file);
   }
   const auto add_textures = [&files](const std::vector<MaterialOverride>& changes) {
     for (const MaterialOverride& change : changes) {
@@ -380,6 +398,7 @@ void describe(PlannedInstance& model, FieldVisitor& visitor) {
   visit_scale(visitor, model.scale);
   MotionKeys motion;
   visit_attributes(visitor, model, motion);
+  visit_poses(visitor, model);
   if (visitor.is_writing()) motion.trajectory = model.motion;
   const FieldInfo field = {"motion", "[motion](motion.md#motion)", kNoUnit, false, "stationary"};
   if (!visit_motion(visitor, field, motion) || !visitor.is_reading()) return;
@@ -396,6 +415,10 @@ void describe(ScenePlan& plan, FieldVisitor& visitor) {
   if (visitor.is_reading()) plan.files = files_of(plan.instances);
   visit_rig(visitor, plan);
   visit_imus(visitor, plan);
+  visitor.texts({"box_classes", "classes whose objects have [boxes](../boxes.md), or `[all]`",
+                 kNoUnit, false, "those that are countable"},
+                plan.box_classes);
+  if (visitor.is_reading()) plan.where_box_classes = visitor.where("box_classes");
 }
 
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {

@@ -67,8 +67,10 @@ struct PlannedInstance {
   std::string name;                                 ///< unique in the scene
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< along the model's own axes
   Pose world_from_object = Pose::Identity();        ///< at time 0
-  std::optional<Trajectory> motion;                 ///< empty: stationary
-  std::vector<std::string> motion_files;            ///< trajectory files that were read
+  std::string poses_file;                 ///< of instances of the same model; empty: there is one
+  std::vector<Pose> poses;                ///< of these, relative to that pose; empty: there is one
+  std::optional<Trajectory> motion;       ///< empty: stationary
+  std::vector<std::string> motion_files;  ///< trajectory files that were read
   std::uint32_t id = 0;
   std::string class_name;                   ///< empty: unlabelled
   std::vector<MaterialOverride> overrides;  ///< those for "*" first
@@ -87,6 +89,8 @@ struct ScenePlan {
   std::optional<Trajectory> rig_motion;  ///< empty: stationary
   std::vector<RigImu> imus;
   Eigen::Vector3d gravity_m_s2 = standard_gravity_m_s2();
+  std::vector<std::string> box_classes;  ///< see SceneFile
+  std::string where_box_classes;         ///< for errors
   std::vector<std::string> files;  ///< the scene file, and the files that it names except models
 };
 

@@ -32,13 +32,21 @@ Sensor read_member(const FamilyMember& member, std::optional<RayTable> table = s
   });
 }
 
-}  // namespace
-
-Sensor load_sensor_file(const SensorReference& reference) {
-  const YamlField root = read_yaml(reference.file);
+/// The sensor of a file with this content.
+Sensor load_sensor(const YamlField& root, const SensorReference& reference) {
   Sensor sensor = read_member(select_sensor(root, reference.variant, reference.mode));
   sensor.files.push_back(reference.file.string());
   return sensor;
+}
+
+}  // namespace
+
+Sensor load_sensor_file(const SensorReference& reference) {
+  return load_sensor(read_yaml(reference.file), reference);
+}
+
+Sensor load_sensor_content(const SensorReference& reference, const std::string& content) {
+  return load_sensor(read_yaml_content(reference.file, content), reference);
 }
 
 Sensor load_sensor_file(const std::filesystem::path& path) {

@@ -21,6 +21,8 @@ struct SensorReference {
 /// without the name of a variant is an error that lists them, an unknown mode one that lists the
 /// modes.
 Sensor load_sensor_file(const SensorReference& reference);
+/// The same from the content of the file that is given, such as with other values.
+Sensor load_sensor_content(const SensorReference& reference, const std::string& content);
 Sensor load_sensor_file(const std::filesystem::path& path);
 
 /// The same from a text, YAML or JSON; files that it names count from the working folder. Errors

@@ -267,6 +267,10 @@ YamlField read_yaml(const fs::path& file) {
   const std::string content =
       read_text_file(file, {"a YAML file", kMaxYamlFile_mib,
                             "name models by their path, do not put them into the file"});
+  return read_yaml_content(file, content);
+}
+
+YamlField read_yaml_content(const fs::path& file, const std::string& content) {
   require_utf8(file, content);
   return root_of(file.string(), parse_documents(file.string(), content));
 }
@@ -306,6 +310,10 @@ std::string content_text(const YamlField& field) {
   const std::string word = shown(field.node.Scalar());
   if (field.node.Tag() == "!") return "the text \"" + word + "\"";
   return spelled_number(field.node) ? word : "'" + word + "'";
+}
+
+bool is_number(const YamlField& field) {
+  return spelled_number(field.node).has_value();
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& known) {

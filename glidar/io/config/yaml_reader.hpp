@@ -41,6 +41,9 @@ inline constexpr NumberRule kCoordinate = {-kMaxCoordinate_m, kMaxCoordinate_m, 
 /// syntax, empty, nested too deeply, too many values, several documents, not a map.
 YamlField read_yaml(const std::filesystem::path& file);
 
+/// The same of a file's content that was read before.
+YamlField read_yaml_content(const std::filesystem::path& file, const std::string& content);
+
 /// The same of a text that is no file: errors name it and the field, no line.
 YamlField read_yaml_text(const std::string& name, const std::string& text);
 
@@ -56,6 +59,9 @@ std::string where(const YamlField& field);
 
 /// What a field holds, for error texts: "a map", "the text 'abc'" ...
 std::string content_text(const YamlField& field);
+
+/// Whether it is a plain scalar that is a number. Quoted ones are texts.
+bool is_number(const YamlField& field);
 
 /// " did you mean ..." for a word that is none of `known`; empty when none is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);

@@ -132,7 +132,8 @@ HelperEnd end_helper(pid_t helper, bool is_killed) {
     return ended;
   }
   ended.signal = WTERMSIG(status);
-  ended.end = ended.signal == SIGXCPU   ? ImportEnd::out_of_time
+  const bool is_late = ended.signal == SIGXCPU || ended.signal == SIGPROF;
+  ended.end = is_late                   ? ImportEnd::out_of_time
               : ended.signal == SIGXFSZ ? ImportEnd::over_file_size
                                         : ImportEnd::crashed;
   return ended;

@@ -63,12 +63,13 @@ std::uint32_t SharedRing::space() const {
   return kBytes - (at_ - shared_->taken.load());
 }
 
-std::size_t SharedRing::put(std::span<const std::byte> bytes) {
-  const std::size_t count = std::min<std::size_t>(bytes.size(), space());
+std::size_t SharedRing::put(std::size_t size, CopyPayload copy) {
+  const std::size_t count = std::min<std::size_t>(size, space());
   const std::size_t start = at_ % kBytes;
   const std::size_t first = std::min(count, kBytes - start);
-  std::memcpy(shared_->bytes.data() + start, bytes.data(), first);
-  std::memcpy(shared_->bytes.data(), bytes.data() + first, count - first);
+  const std::span<std::byte> bytes(shared_->bytes);
+  copy(0, bytes.subspan(start, first));
+  if (first < count) copy(first, bytes.first(count - first));
   at_ += static_cast<std::uint32_t>(count);
   return count;
 }
@@ -97,6 +98,11 @@ constexpr std::size_t kBufferBytes = std::size_t{256} << 10U;
 constexpr std::size_t kMaxFailureBytes = std::size_t{64} << 10U;
 constexpr std::size_t kMinRingPayload = std::size_t{4} << 10U;
 constexpr std::uint32_t kMaxPiece = SharedRing::kBytes / 4;
+constexpr std::uint32_t kAbandoned = 0;  ///< instead of a piece: the record ends, a failure follows
+
+bool is_in_ring(RecordKind kind, std::uint64_t size) {
+  return kind != RecordKind::failure && size >= kMinRingPayload;
+}
 
 /// A record in the stream, before its payload. Both ends are on one machine.
 struct RecordHead {
@@ -117,18 +123,29 @@ void append_bytes(std::vector<std::byte>& to, const void* from, std::size_t size
 /// Small records are collected. At first each is sent at once, so that a reader of the first
 /// message need not wait until thousands are read.
 void RecordWriter::write(const Record& record) {
+  const auto copy = [&](std::size_t offset, std::span<std::byte> to) {
+    std::ranges::copy(record.payload.subspan(offset, to.size()), to.begin());
+  };
+  write(record, record.payload.size(), CopyPayload(copy));
+}
+
+void RecordWriter::write(const Record& record, std::size_t size, CopyPayload copy) {
   const RecordHead head{static_cast<std::uint32_t>(record.kind), record.index, record.stamp_ns,
-                        record.payload.size()};
+                        size};
+  const std::size_t before = buffer_.size();
   append_bytes(buffer_, &head, sizeof head);
-  ++records_;
-  if (ring_ != nullptr && record.payload.size() >= kMinRingPayload) {
-    put_in_ring(record.payload);
-  } else if (record.payload.size() >= kBufferBytes) {
-    flush();
-    return write_all(record.payload);
+  if (ring_ != nullptr && is_in_ring(record.kind, size)) {
+    put_in_ring(size, copy);
   } else {
-    append_bytes(buffer_, record.payload.data(), record.payload.size());
+    buffer_.resize(buffer_.size() + size);
+    try {
+      copy(0, std::span(buffer_).last(size));
+    } catch (...) {
+      buffer_.resize(before);
+      throw;
+    }
   }
+  ++records_;
   if (buffer_.size() >= kBufferBytes || records_ - flushed_records_ > flushed_records_) flush();
 }
 
@@ -145,12 +162,21 @@ void RecordWriter::write_failure(const ErrorParts& parts) {
 }
 
 /// The reader must know of all bytes before this waits for space.
-void RecordWriter::put_in_ring(std::span<const std::byte> payload) {
-  while (!payload.empty()) {
-    const auto piece = static_cast<std::uint32_t>(
-        ring_->put(payload.first(std::min<std::size_t>(payload.size(), kMaxPiece))));
+void RecordWriter::put_in_ring(std::size_t size, CopyPayload copy) {
+  for (std::size_t sent = 0; sent < size;) {
+    const auto copy_rest = [&](std::size_t offset, std::span<std::byte> to) {
+      copy(sent + offset, to);
+    };
+    std::uint32_t piece = 0;
+    try {
+      piece = static_cast<std::uint32_t>(
+          ring_->put(std::min<std::size_t>(size - sent, kMaxPiece), CopyPayload(copy_rest)));
+    } catch (...) {
+      append_bytes(buffer_, &kAbandoned, sizeof kAbandoned);
+      throw;
+    }
     if (piece != 0) append_bytes(buffer_, &piece, sizeof piece);
-    payload = payload.subspan(piece);
+    sent += piece;
     ring_bytes_ += piece;
     if (piece == 0 || ring_bytes_ >= kMaxPiece) flush();
     if (piece == 0) ring_->wait_for_space();
@@ -186,7 +212,7 @@ void RecordReader::reject(const std::string& found) const {
                "the file is damaged or malicious"});
 }
 
-Record RecordReader::next() {
+Record RecordReader::take_head(std::uint64_t& size) {
   RecordHead head;
   take(std::as_writable_bytes(std::span(&head, 1)));
   if (head.kind < static_cast<std::uint32_t>(RecordKind::topic) ||
@@ -197,11 +223,23 @@ Record RecordReader::next() {
                                  : kind == RecordKind::failure ? kMaxFailureBytes
                                                                : 3 * InputBudget::kMaxNameBytes;
   if (head.size > max_size) reject(fmt::format("a record of {} bytes", head.size));
-  const bool is_in_ring = ring_ != nullptr && head.size >= kMinRingPayload;
-  const std::span<const std::byte> payload =
-      is_in_ring ? take_from_ring(head.size) : take_payload(head.size);
-  if (kind == RecordKind::failure) rethrow(payload);
-  return {kind, head.index, head.stamp_ns, payload};
+  size = head.size;
+  return {kind, head.index, head.stamp_ns, {}};
+}
+
+Record RecordReader::next() {
+  std::uint64_t size = 0;
+  Record record = take_head(size);
+  record.payload =
+      ring_ != nullptr && is_in_ring(record.kind, size) ? take_from_ring(size) : take_payload(size);
+  if (record.kind == RecordKind::failure) rethrow(record.payload);
+  return record;
+}
+
+void RecordReader::take_failure() {
+  std::uint64_t size = 0;
+  if (take_head(size).kind != RecordKind::failure) reject("a record without its end");
+  rethrow(take_payload(size));
 }
 
 /// Fills all bytes.
@@ -235,7 +273,8 @@ std::span<const std::byte> RecordReader::take_from_ring(std::uint64_t size) {
   for (std::size_t filled = 0; filled < size;) {
     std::uint32_t piece = 0;
     take(std::as_writable_bytes(std::span(&piece, 1)));
-    if (piece == 0 || piece > std::min<std::uint64_t>(kMaxPiece, size - filled))
+    if (piece == kAbandoned) take_failure();
+    if (piece > std::min<std::uint64_t>(kMaxPiece, size - filled))
       reject(fmt::format("a piece of {} bytes", piece));
     make_room(filled + piece, size);
     ring_->take(std::span(payload_).subspan(filled, piece));

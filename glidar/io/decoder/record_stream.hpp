@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/function_ref.hpp>
 #include <glidar/io/files/input_file.hpp>
 
 #include <atomic>
@@ -15,6 +16,9 @@
 #include <vector>
 
 namespace glidar {
+
+/// Copies bytes of a payload, from an offset on, and as many as there are in `to`.
+using CopyPayload = FunctionRef<void(std::size_t offset, std::span<std::byte> to)>;
 
 /// A ring of bytes in memory that two processes share: one of them puts bytes, the other one takes
 /// them, and a pipe between them states how many there are. It costs less than half of a pipe,
@@ -31,8 +35,8 @@ class SharedRing {
   SharedRing& operator=(const SharedRing&) = delete;
   ~SharedRing();
 
-  /// Copies as many of the bytes as there is space for and returns how many.
-  std::size_t put(std::span<const std::byte> bytes);
+  /// Copies the first of `size` bytes, as many as there is space for, and returns how many.
+  std::size_t put(std::size_t size, CopyPayload copy);
   /// Waits until the other end takes bytes, if there is no space.
   void wait_for_space();
 
@@ -71,11 +75,14 @@ class RecordWriter {
 
   /// Throws Error when the stream cannot be written.
   void write(const Record& record);
+  /// The same with a payload of `size` bytes that need not be in memory.
+  /// What `copy` throws ends the stream; the reader gets the failure that is written next.
+  void write(const Record& record, std::size_t size, CopyPayload copy);
   void write_failure(const ErrorParts& parts);
   void flush();
 
  private:
-  void put_in_ring(std::span<const std::byte> payload);
+  void put_in_ring(std::size_t size, CopyPayload copy);
   void write_all(std::span<const std::byte> bytes);
 
   int fd_;
@@ -105,7 +112,9 @@ class RecordReader {
   [[nodiscard]] const std::string& place() const { return place_; }
 
  private:
+  Record take_head(std::uint64_t& size);
   void take(std::span<std::byte> to);
+  [[noreturn]] void take_failure();
   std::span<const std::byte> take_payload(std::uint64_t size);
   std::span<const std::byte> take_from_ring(std::uint64_t size);
   void make_room(std::size_t bytes, std::uint64_t size);

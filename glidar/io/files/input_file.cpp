@@ -30,7 +30,7 @@ struct BudgetRule {
 };
 
 /// In the order of Budget. LZ4 expands a byte to at most 255; chunks of real bags have some MiB.
-constexpr std::array<BudgetRule, 8> kRules = {{
+constexpr std::array<BudgetRule, 11> kRules = {{
     {"decompressed bytes", 256 * kBudgetMiB, 256, kUnlimited},
     {"bytes in memory", 64 * kBudgetMiB, 64, 1024 * kBudgetMiB},
     {"messages", 100'000, 4, kUnlimited},
@@ -39,6 +39,9 @@ constexpr std::array<BudgetRule, 8> kRules = {{
     {"numbers of a point", 4096, 1, 65'536},
     {"values, with aliases written out", 1'000'000, 2, kUnlimited},
     {"steps of SQLite", 5'000'000, 20, kUnlimited},
+    {"numbers in its accessors, each as often as it is read", 4'000'000, 16, kUnlimited},
+    {"instances of meshes", 65'536, 1, std::uint64_t{1} << 20U},
+    {"vertices and triangles in copies of meshes", 8'000'000, 2, 200'000'000},
 }};
 
 }  // namespace
@@ -58,8 +61,12 @@ void InputBudget::take_name(std::uint64_t bytes, const std::string& place) {
   take(Budget::name_bytes, bytes, place);
 }
 
+std::string InputBudget::excess(Budget what) const {
+  return fmt::format("more than {} {}", limit(what), kRules[index(what)].name);
+}
+
 void InputBudget::fail(Budget what, const std::string& place) const {
-  throw Error({place, fmt::format("more than {} {}", limit(what), kRules[index(what)].name),
+  throw Error({place, excess(what),
                fmt::format("at most so many for an input of {} bytes", input_bytes_),
                "the file is damaged or malicious"});
 }

@@ -23,6 +23,9 @@ enum class Budget : std::uint8_t {
   components,  ///< of the fields of a cloud
   values,      ///< of YAML and JSON, with aliases expanded
   steps,       ///< of SQLite's virtual machine
+  numbers,     ///< of the accessors of a model, each as often as it is read
+  instances,   ///< of the meshes of a model
+  copies,      ///< vertices and triangles of all instances but the first of each mesh
 };
 
 /// Limits of one input, a file or a folder with several: each is a constant and a multiple of the
@@ -43,9 +46,13 @@ class InputBudget {
     used_[index(what)] += amount;
     return true;
   }
+  /// "more than 5096 topics": what an error of the budget has found.
+  [[nodiscard]] std::string excess(Budget what) const;
   /// The error of take().
   [[noreturn]] void fail(Budget what, const std::string& place) const;
   void give_back(Budget what, std::uint64_t amount) { used_[index(what)] -= amount; }
+  /// A further file of the same input was opened.
+  void add_input(std::uint64_t bytes) { input_bytes_ += bytes; }
 
   /// Counts a name. Throws Error also when it is longer than kMaxNameBytes.
   void take_name(std::uint64_t bytes, const std::string& place);
@@ -54,7 +61,7 @@ class InputBudget {
   [[nodiscard]] std::uint64_t limit(Budget what) const;
 
  private:
-  static constexpr std::size_t kBudgets = static_cast<std::size_t>(Budget::steps) + 1;
+  static constexpr std::size_t kBudgets = static_cast<std::size_t>(Budget::copies) + 1;
   static constexpr std::size_t index(Budget what) { return static_cast<std::size_t>(what); }
 
   std::uint64_t input_bytes_;

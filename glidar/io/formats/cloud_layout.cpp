@@ -30,7 +30,7 @@ using Values = std::variant<F32, F64, U8, U16, U32>;
 struct LayoutField {
   std::string name;
   Values type;         ///< an empty vector of it
-  std::string column;  ///< of the cloud, or kReflectivity; empty: the field is 0
+  std::string column;  ///< of the cloud, kReflectivity or kPackedColour; empty: the field is 0
   std::size_t component = 0;
   double (*convert)(double) = nullptr;
 };
@@ -44,6 +44,8 @@ struct Layout {
 
 /// Apparent reflectivity: 1 for a white diffuse surface at normal incidence. See reflectivity().
 constexpr const char* kReflectivity = "reflectivity";
+/// The bytes of red, green and blue in one number, as PCL packs them.
+constexpr const char* kPackedColour = "rgb";
 
 double same(double value) {
   return value;
@@ -133,6 +135,13 @@ std::vector<LayoutField> ouster_fields(const LayoutField& ring, const std::strin
                    {"range", U32{}, "range", 0, whole_millimetres}});
 }
 
+/// ColorPoint of ouster-ros, of sensors that measure colour.
+std::vector<LayoutField> ouster_colour_fields() {
+  std::vector<LayoutField> fields = ouster_fields({"ring", U16{}, "ring", 0, same}, "ambient");
+  fields.push_back({"rgb", U32{}, kPackedColour, 0, same});
+  return fields;
+}
+
 /// The sources of each layout are in docs/files/layouts.md.
 const std::vector<Layout>& layouts() {
   static const std::vector<Layout> kLayouts = {
@@ -170,6 +179,7 @@ const std::vector<Layout>& layouts() {
                  {"time_stamp", U32{}, "time", 0, same}})},
       {"ouster-fast-lio", "FAST-LIO2, lidar_type 3",
        ouster_fields({"ring", U8{}, "ring", 0, same}, "ambient")},
+      {"ouster-rgb", "ouster-ros, color_point", ouster_colour_fields()},
       {"robosense-xyzi", "rslidar_sdk as built by default",
        with_xyz({{"intensity", F32{}, kReflectivity, 0, percent_byte}})},
   };
@@ -184,7 +194,9 @@ std::vector<std::string> columns_of(const Layout& layout) {
       columns.push_back(name);
   };
   for (const LayoutField& field : layout.fields) {
-    need(field.column == kReflectivity ? "intensity" : field.column);
+    need(field.column == kReflectivity   ? "intensity"
+         : field.column == kPackedColour ? "colour"
+                                         : field.column);
     if (field.column == kReflectivity) need("range");
   }
   return columns;
@@ -227,6 +239,16 @@ std::vector<double> field_values(const PointCloud& cloud, const Layout& layout,
       },
       column->values);
   return numbers;
+}
+
+std::vector<double> packed_colours(const PointCloud& cloud, const Layout& layout) {
+  std::vector<double> packed(cloud.size(), 0.0);
+  for (std::size_t component = 0; component < 3; ++component) {
+    const std::vector<double> shares = field_values(cloud, layout, "colour", component);
+    for (std::size_t i = 0; i < packed.size(); ++i)
+      packed[i] = 256.0 * packed[i] + std::round(kMaxByte * std::clamp(shares[i], 0.0, 1.0));
+  }
+  return packed;
 }
 
 /// How the sensor reports intensity.
@@ -300,7 +322,8 @@ Column made(const LayoutField& field, const std::vector<double>& numbers, std::s
 void check_returns(const Layout& layout, const Beams& beams) {
   if (layout.name != "autoware" || beams.returns == 1) return;
   throw Error({"cloud layout autoware", fmt::format("the sensor reports {} returns", beams.returns),
-               "one return of each pulse", "use --returns strongest, or another layout"});
+               "one return of each pulse",
+               "measure with the strongest one, or use another layout"});
 }
 
 /// Turns the axes of a cloud; all coordinates of layouts are in xyz.
@@ -390,6 +413,8 @@ PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const 
       field.convert = same;
     } else if (field.column == kReflectivity) {
       numbers = reflectivity(cloud, wanted, sensor, beams);
+    } else if (field.column == kPackedColour) {
+      numbers = packed_colours(cloud, wanted);
     } else if (!field.column.empty()) {
       numbers = field_values(cloud, wanted, field.column, field.component);
     }

@@ -275,12 +275,15 @@ void write_perspective(const CloudFile& job, AtomicFile& file) {
 Misfit cloud_picture_misfit(const CloudPictureOptions& picture, const Sensor& sensor,
                             const Beams& /*beams*/) {
   if (picture.colour_by == ColourBy::radial_velocity && !sensor.doppler) {
-    return {"the sensor measures no radial velocity to colour by",
-            "choose another --colour-by, or add 'doppler: {}' to a sensor file"};
+    return {
+        "the sensor measures no radial velocity to colour by",
+        "colour by something else (--colour-by, colour_by in Python), or add 'doppler: {}' to a "
+        "sensor file"};
   }
   const bool is_camera = std::holds_alternative<Pinhole>(sensor.optics);
   if (!is_camera || picture.colour_by != ColourBy::ring) return {};
-  return {"a camera has no rings to colour by", "choose another --colour-by"};
+  return {"a camera has no rings to colour by",
+          "colour by something else (--colour-by, colour_by in Python)"};
 }
 
 }  // namespace

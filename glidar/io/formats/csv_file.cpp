@@ -6,11 +6,21 @@
 namespace glidar {
 namespace {
 
+std::string csv_start(const CloudFile& job, const RunTotals& /*totals*/) {
+  return joined_names(job.fields, ',') + "\n";
+}
+
+void append_csv(const CloudFile& job, RunTotals& totals, AtomicFile& file) {
+  totals.points += job.cloud.size();
+  write_text_rows(job.fields, job.cloud.size(), ',', file, job.options.progress);
+}
+
 /// Writes a line of field names, then a line per point, with the shortest digits that represent
 /// each number exactly.
 void write_csv(const CloudFile& job, AtomicFile& file) {
-  file.write(joined_names(job.fields, ',') + "\n");
-  write_text_rows(job.fields, job.cloud.size(), ',', file, job.options.progress);
+  RunTotals totals;
+  file.write(csv_start(job, totals));
+  append_csv(job, totals, file);
 }
 
 }  // namespace
@@ -23,6 +33,8 @@ Format csv_format() {
           .content = Content::points,
           .fields = native_fields,
           .write = write_csv,
+          .run_start = csv_start,
+          .append = append_csv,
           .is_text = [](const FileSinkOptions& /*options*/) { return true; }};
 }
 

@@ -21,9 +21,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 namespace glidar {
@@ -159,13 +163,14 @@ class FormatSink : public FileSink {
   [[nodiscard]] std::vector<std::filesystem::path> files() const override {
     std::vector<std::filesystem::path> all = {target_.path};
     if (target_.descriptor >= 0) return all;
-    if (has_sidecar()) all.push_back(sidecar_path());
+    if (has_sidecar()) all.push_back(sidecar_path(target_.path));
     if (format_.extra_path != nullptr) all.push_back(format_.extra_path(target_.path));
     return all;
   }
 
   void stage(const PointCloud& cloud, const Frame& frame) override {
     staged_.clear();
+    entry_.reset();
     check_column_names(cloud, target_.path);
     check_column_sizes(cloud, target_.path);
     check_column_types(cloud, target_.path);
@@ -182,14 +187,28 @@ class FormatSink : public FileSink {
     }
   }
 
+  [[nodiscard]] const std::optional<SidecarEntry>& sidecar_entry() const override { return entry_; }
+
+  void stage_text(const std::filesystem::path& path, const std::string& text) override {
+    AtomicFile& file = staged_.add(path);
+    file.write(text);
+    file.finish();
+  }
+
   void commit() override { staged_.commit(); }
+
+  void write(const PointCloud& cloud, const Frame& frame) override {
+    stage(cloud, frame);
+    if (entry_) {
+      const std::filesystem::path path = sidecar_path(target_.path);
+      stage_text(path, sidecar_text(context_, frame, std::span(&*entry_, 1), path));
+    }
+    commit();
+  }
 
  private:
   [[nodiscard]] bool has_sidecar() const {
-    return options_.sidecar && glidar::has_sidecar(format_);
-  }
-  [[nodiscard]] std::filesystem::path sidecar_path() const {
-    return target_.path.string() + ".json";
+    return options_.sidecar && glidar::has_sidecar(format_) && target_.descriptor < 0;
   }
 
   [[nodiscard]] std::vector<PointField> fields_of(const PointCloud& cloud) const {
@@ -274,10 +293,7 @@ class FormatSink : public FileSink {
     }
     if (is_stream) return;
     if (format_.stage_extra_files != nullptr) format_.stage_extra_files(job, path, staged_);
-    if (!has_sidecar()) return;
-    AtomicFile& sidecar = staged_.add(sidecar_path());
-    sidecar.write(sidecar_text(job, path));
-    sidecar.finish();
+    if (has_sidecar()) entry_ = glidar::sidecar_entry(job, path);
   }
 
   void warn_rounding(const std::string& warning) const {
@@ -291,7 +307,22 @@ class FormatSink : public FileSink {
   Report report_;
   PointCloud hits_;  ///< of the last cloud; reuses its memory
   StagedFiles staged_;
+  std::optional<SidecarEntry> entry_;
 };
+
+/// The points in the order of time; misses stay if the format has them.
+PointCloud in_time_order(const PointCloud& cloud) {
+  const auto& stamps = std::get<std::vector<std::int64_t>>(find_column(cloud, "stamp")->values);
+  std::vector<std::uint32_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return stamps[i]; });
+  PointCloud sorted{
+      1, static_cast<std::uint32_t>(cloud.size()), cloud.frame_id, cloud.world_from_cloud, {}};
+  sorted.columns.resize(cloud.columns.size());
+  for (std::size_t i = 0; i < cloud.columns.size(); ++i)
+    select_points(cloud.columns[i], order, sorted.columns[i]);
+  return sorted;
+}
 
 void check(const FileSinkOptions& options) {
   if (!options.layout.empty()) find_layout(options.layout);
@@ -315,9 +346,115 @@ std::span<const std::string> colour_by_names() {
   return kSinkNames;
 }
 
-void FileSink::write(const PointCloud& cloud, const Frame& frame) {
-  stage(cloud, frame);
-  commit();
+std::filesystem::path sidecar_path(const std::filesystem::path& path) {
+  std::string name = path.string();
+  name.resize(name.size() - format_for(path).suffix.size());
+  return name + ".glidar.json";
+}
+
+struct RunFile::State {
+  std::filesystem::path path;
+  const Format& format;
+  FileSinkOptions options;
+  SidecarContext context;
+  Report report;
+  StagedFiles staged = {};
+  AtomicFile* file = nullptr;  ///< nullptr: there was no frame
+  RunTotals totals = {};
+  PointCloud columns = {};  ///< of the first frame, without its points
+  Frame first = {};         ///< with its stamp only
+  bool has_warned = false;
+
+  /// The columns of the first frame as those of all points.
+  [[nodiscard]] CloudFile job(std::span<const PointField> fields) const {
+    return {columns, first, options, context, fields};
+  }
+
+  void begin(const PointCloud& cloud, const Frame& frame, std::span<const PointField> fields) {
+    columns = {1, 0, cloud.frame_id, cloud.world_from_cloud, {}};
+    for (const Column& column : cloud.columns) {
+      Column& empty = columns.columns.emplace_back(Column{column.name, column.components, {}});
+      std::visit([&](const auto& values) { empty.values = std::decay_t<decltype(values)>(); },
+                 column.values);
+    }
+    first.stamp_ns = frame.stamp_ns;
+    file = &staged.add(path);
+    file->write(format.run_start(job(fields), totals));
+  }
+
+  /// Throws Error for a cloud with other columns or axes than the first one, or too many points.
+  void check_same(const PointCloud& cloud) const {
+    const auto is_same = [](const Column& one, const Column& other) {
+      return one.name == other.name && one.values.index() == other.values.index();
+    };
+    if (cloud.frame_id != columns.frame_id ||
+        !std::ranges::equal(cloud.columns, columns.columns, is_same))
+      throw Error({path.string(), "a frame with other columns or axes than the first one", "",
+                   "open an output for each"});
+    if (totals.points + cloud.size() <= std::numeric_limits<std::uint32_t>::max()) return;
+    throw Error({path.string(), "more than 2^32 - 1 points", "fewer points in a file",
+                 "write a file for each frame (--per-frame, per_frame=True in Python)"});
+  }
+};
+
+RunFile::RunFile(const std::filesystem::path& path, const FileSinkOptions& options,
+                 const SidecarContext& context, Report report)
+    : state_(new State{path, find_format(path), options, context, std::move(report)}) {
+  check_available(path, state_->format.info);
+  check_folder(path, state_->format);
+  check(options);
+  state_->staged.protect(context.inputs);
+}
+
+RunFile::~RunFile() = default;
+
+std::uint64_t RunFile::append(const PointCloud& cloud, const Frame& frame, const Beams& beams) {
+  State& s = *state_;
+  check_column_names(cloud, s.path);
+  check_column_sizes(cloud, s.path);
+  check_column_types(cloud, s.path);
+  check_needed_columns(s.format.info, cloud, s.path);
+  const bool has_hits_only = s.format.content == Content::hits;
+  PointCloud points = cloud;
+  if (has_hits_only || s.options.drop_invalid) remove_invalid_points(cloud, points);
+  if (!has_hits_only) points = in_time_order(points);
+  points.columns.push_back(
+      {kFrameColumn, {kFrameColumn}, std::vector<std::uint32_t>(points.size(), frame.number)});
+  const std::vector<PointField> fields = s.format.fields(points);
+  check_unique(fields, s.path);
+  if (s.file == nullptr) s.begin(points, frame, fields);
+  s.check_same(points);
+  const SidecarContext context{s.context.scene,    s.context.sensor,  beams,
+                               s.context.renderer, s.context.command, s.context.inputs};
+  s.format.append({points, frame, s.options, context, fields}, s.totals, *s.file);
+  const std::string warning = s.format.rounding_warning != nullptr
+                                  ? s.format.rounding_warning(points)
+                                  : rounding_warning(fields,
+                                                     "write .csv or .ply, which store "
+                                                     "distant points exactly");
+  if (!warning.empty() && !std::exchange(s.has_warned, true))
+    s.report.warn(s.path.string() + ": " + warning);
+  return points.size();
+}
+
+SidecarEntry RunFile::finish() {
+  State& s = *state_;
+  const std::vector<PointField> fields = s.format.fields(s.columns);
+  s.columns.cols = static_cast<std::uint32_t>(s.totals.points);
+  s.file->seek(0);
+  s.file->write(s.format.run_start(s.job(fields), s.totals));
+  s.file->finish();
+  return sidecar_entry(s.job(fields), s.path);
+}
+
+void RunFile::stage_text(const std::filesystem::path& path, const std::string& text) {
+  AtomicFile& file = state_->staged.add(path);
+  file.write(text);
+  file.finish();
+}
+
+void RunFile::commit() {
+  state_->staged.commit();
 }
 
 std::unique_ptr<FileSink> make_file_sink(const std::filesystem::path& path,

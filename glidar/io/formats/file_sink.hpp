@@ -51,7 +51,7 @@ struct FileSinkOptions {
   PcdEncoding pcd = PcdEncoding::binary;
   bool ply_ascii = false;
   bool drop_invalid = false;  ///< point formats omit points without a return
-  bool sidecar = true;        ///< write FILE.json for a cloud
+  bool sidecar = true;        ///< write NAME.glidar.json for NAME.pcd and other files of that name
   std::string layout = {};    ///< of cloud_layouts(), for formats that take columns; empty: none
   std::string crs = {};       ///< of LAS files, as crs_text() takes it; empty: a local system
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
@@ -63,6 +63,12 @@ struct FileSinkOptions {
 struct CommandRecord {
   std::vector<std::string> arguments = {};
   std::filesystem::path folder = {};
+};
+
+/// What a sidecar lists of a file.
+struct SidecarEntry {
+  std::string json;
+  Pose world_from_cloud;
 };
 
 /// Contents of the sidecar other than the frame; must outlive the sink.
@@ -118,6 +124,10 @@ std::string frame_for(const FileFormat& format, const std::string& requested);
 bool takes_layout(const std::filesystem::path& path);
 std::string suffixes_with_layouts();
 
+/// Whether one file of this name can have all frames of a run with these options. Throws Error as
+/// format_for() does.
+bool takes_runs(const std::filesystem::path& path, const FileSinkOptions& options);
+
 /// Whether a name has the suffix of a format.
 bool has_format(const std::filesystem::path& path);
 
@@ -144,6 +154,9 @@ struct Misfit {
 Misfit find_misfit(const FileFormat& format, const CloudPictureOptions& picture,
                    const Sensor& sensor, const Beams& beams);
 
+/// NAME.glidar.json for NAME.pcd and NAME.depth.png. Throws Error as format_for() does.
+std::filesystem::path sidecar_path(const std::filesystem::path& path);
+
 /// Writes files in two steps, so that the files of several sinks appear together or not at all.
 class FileSink {
  public:
@@ -152,19 +165,47 @@ class FileSink {
   FileSink& operator=(const FileSink&) = delete;
   virtual ~FileSink() = default;
 
-  /// The files that a cloud is written to, as far as known in advance; for a folder format the
-  /// folder.
+  /// The files that a cloud is written to, as far as known in advance, the sidecar included; for a
+  /// folder format the folder.
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
-  /// Writes all files of the cloud under temporary names. Throws Error, also when one of them
-  /// is among the context's inputs; then no file remains.
+  /// Writes all files of the cloud but the sidecar under temporary names. Throws Error, also when
+  /// one of them is among the context's inputs; then no file remains.
   virtual void stage(const PointCloud& cloud, const Frame& frame) = 0;
+  /// What the sidecar lists of the staged cloud; empty: it has none.
+  [[nodiscard]] virtual const std::optional<SidecarEntry>& sidecar_entry() const = 0;
+  /// Adds a file to the staged ones.
+  virtual void stage_text(const std::filesystem::path& path, const std::string& text) = 0;
   /// Gives the staged files their names. Throws Error when the system refuses.
   virtual void commit() = 0;
-  /// Both steps, for an organised cloud, made from `frame`.
-  void write(const PointCloud& cloud, const Frame& frame);
+  /// All steps, for an organised cloud, made from `frame`, with a sidecar of its own.
+  virtual void write(const PointCloud& cloud, const Frame& frame) = 0;
 };
 
-/// A sink that writes one file (and its sidecar) per cloud: to a temporary name in the same folder,
+/// One file of the clouds of all frames of a run, with the columns `stamp` and `frame`, and the
+/// points of a frame in the order of time. It appears under its name when it is complete.
+class RunFile {
+ public:
+  /// Throws Error like make_file_sink(). What the context refers to must outlive it.
+  RunFile(const std::filesystem::path& path, const FileSinkOptions& options,
+          const SidecarContext& context, Report report = {});
+  RunFile(const RunFile&) = delete;
+  RunFile& operator=(const RunFile&) = delete;
+  ~RunFile();
+
+  /// Adds the points of a frame, whose cloud has the column `stamp`, and which was measured with
+  /// these beams. Returns their number. Throws Error also if the columns are others than before.
+  std::uint64_t append(const PointCloud& cloud, const Frame& frame, const Beams& beams);
+  /// Completes the file, which has no name yet, and returns what its sidecar lists.
+  SidecarEntry finish();
+  void stage_text(const std::filesystem::path& path, const std::string& text);
+  void commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A sink that writes one file per cloud: to a temporary name in the same folder,
 /// then renamed, so that a path has either the complete file or is unchanged. Throws Error at once
 /// when the suffix or the layout is unknown or the folder does not exist. Warns through `report`
 /// when the format's float32 moves a coordinate or depth by more than 0.1 mm.

@@ -6,7 +6,10 @@
 
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/math/constants.hpp>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -23,6 +26,32 @@ enum class Content : std::uint8_t {
   per_beam,  ///< a preview or a pose: always the whole frame, no sidecar
 };
 
+/// The column with the number of its frame that points of a file of several frames have.
+inline constexpr const char* kFrameColumn = "frame";
+
+/// What the start of a file of several frames has of all of them.
+struct RunTotals {
+  static constexpr std::size_t kMaxReturns = 15;
+
+  std::uint64_t points = 0;
+  // of LAS files:
+  std::array<std::uint64_t, kMaxReturns> of_return = {};
+  Eigen::Vector3d min_m = Eigen::Vector3d::Constant(kInfinity);
+  Eigen::Vector3d max_m = Eigen::Vector3d::Constant(-kInfinity);
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  double scale_m = 0.0;
+};
+
+/// The size of a cloud in a header, and spaces that make headers of all sizes equally long.
+struct CloudSize {
+  std::uint64_t rows = 1;
+  std::uint64_t cols = 0;
+  std::string padding;
+};
+
+/// The size of a header that has it `times` times.
+CloudSize size_of_run(const RunTotals& totals, std::size_t times);
+
 struct Format {
   FileFormat info;
   Content content = Content::points;
@@ -30,6 +59,10 @@ struct Format {
   std::vector<PointField> (*fields)(const PointCloud&) = nullptr;
   /// nullptr: `stage_extra_files` writes all.
   void (*write)(const CloudFile&, AtomicFile&) = nullptr;
+  /// For one file of all frames of a run: its start, whose length is the same for any totals, and
+  /// the points of a frame after it, which are added to the totals; nullptr: a file for each frame.
+  std::string (*run_start)(const CloudFile&, const RunTotals&) = nullptr;
+  void (*append)(const CloudFile&, RunTotals&, AtomicFile&) = nullptr;
   /// Adds further files; nullptr: none.
   void (*stage_extra_files)(const CloudFile&, const std::filesystem::path&, StagedFiles&) = nullptr;
   /// The path of the further file beside a path; nullptr: none, or a folder of files.

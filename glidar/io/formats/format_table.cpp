@@ -102,6 +102,19 @@ void require_known_kind(const std::filesystem::path& path, const Format& format)
 
 }  // namespace
 
+CloudSize size_of_run(const RunTotals& totals, std::size_t times) {
+  constexpr std::size_t kMaxDigits = 20;
+  const std::size_t spaces = times * (kMaxDigits - std::to_string(totals.points).size());
+  return {1, totals.points, std::string(spaces, ' ')};
+}
+
+bool takes_runs(const std::filesystem::path& path, const FileSinkOptions& options) {
+  const Format& format = find_format(path);
+  const bool is_packed =
+      format.info.suffix == ".pcd" && options.pcd == PcdEncoding::binary_compressed;
+  return format.append != nullptr && !is_packed && options.layout.empty();
+}
+
 std::filesystem::path output_path(const std::filesystem::path& path) {
   return find_format(path).info.is_folder ? without_separators(path) : path;
 }
@@ -123,6 +136,14 @@ void refuse_suffix(const std::filesystem::path& given, const std::vector<std::st
   for (const Format& format : formats()) all.push_back(format.info.suffix);
   all.insert(all.end(), others.begin(), others.end());
   const std::string nearest = suffix.empty() ? "" : closest_match(suffix, all);
+  constexpr std::array<std::string_view, 6> kVideos = {".mp4", ".mkv", ".mov",
+                                                       ".avi", ".gif", ".webm"};
+  if (std::ranges::find(kVideos, suffix) != kVideos.end()) {
+    throw Error({given.string(), "a video", "pictures, which ffmpeg joins",
+                 "write numbered pictures, -o frame.png --duration 2, and run: ffmpeg -framerate "
+                 "10 -i frame_%06d.png -pix_fmt yuv420p " +
+                     excerpt(given.string())});
+  }
   throw Error({given.string(),
                suffix.empty() ? "the name has no suffix that selects a format"
                               : fmt::format("no format has the suffix {}", excerpt(suffix)),

@@ -85,11 +85,11 @@ std::string box_text(const std::optional<ImageBox>& box) {
 
 /// Occlusion states: 0 fully visible, 1 partly occluded, 2 largely occluded, 3 unknown. KITTI gives
 /// no numbers.
-int occlusion_state(const ObjectBox* box) {
+int occlusion_state(const ObjectBox& box) {
   constexpr double kPartly = 0.1;
   constexpr double kLargely = 0.5;
-  if (box == nullptr || box->beams == 0) return 3;
-  const double hidden = occlusion(*box);
+  if (box.beams == 0) return 3;
+  const double hidden = occlusion(box);
   if (hidden <= kPartly) return 0;
   return hidden <= kLargely ? 1 : 2;
 }
@@ -111,7 +111,8 @@ std::string object_line(const std::string& type, int occluded, const PlacedMesh&
                   occluded, decimal(alpha), box_text(image));
   for (const double number : {box.size.y(), box.size.z(), box.size.x(), box.bottom.x(),
                               box.bottom.y(), box.bottom.z(), box.rotation_y}) {
-    line += " " + decimal(number);
+    line += ' ';
+    line += decimal(number);
   }
   return line + "\n";
 }
@@ -184,14 +185,15 @@ std::string kitti_labels(const Scene& scene, const KittiCamera& camera, const Fr
   const Pose camera_from_world = camera.camera_from_velodyne * frame.world_from_sensor.inverse();
   std::string text;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    if (!met.contains(i)) continue;
     const Instance& instance = scene.instances[i];
+    const ObjectBox* box = box_of(frame, i);
+    if (!met.contains(i) || (instance.class_id != 0 && box == nullptr)) continue;
     const PlacedMesh seen{scene.meshes.at(instance.mesh),
                           camera_from_world * frame.world_from_instance.at(i), instance.scale};
     const std::string type = FileText(scene.class_names.at(instance.class_id)).word();
     text += instance.class_id == 0
                 ? dont_care_line(seen, camera.intrinsics)
-                : object_line(type, occlusion_state(box_of(frame, i)), seen, camera.intrinsics);
+                : object_line(type, occlusion_state(*box), seen, camera.intrinsics);
   }
   return text;
 }

@@ -44,7 +44,8 @@ std::string kitti_calibration(std::span<const KittiCamera> cameras, KittiCalibra
 std::string kitti_pose_line(const Pose& pose);
 
 /// The text of a file in label_2/: a line for each visible instance, with its box in the
-/// camera's frame; DontCare for those without a class. Occlusion is that of frame.boxes.
+/// camera's frame; DontCare for those without a class, nothing for those whose class has no
+/// boxes. Occlusion is that of frame.boxes.
 std::string kitti_labels(const Scene& scene, const KittiCamera& camera, const Frame& frame);
 
 }  // namespace glidar

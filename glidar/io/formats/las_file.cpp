@@ -73,15 +73,17 @@ Eigen::Vector3d offset_for(const Bounds& bounds, double scale_m) {
   return ((0.5 * bounds.low + 0.5 * bounds.high) / unit_m).array().round() * unit_m;
 }
 
+double reach_m(const Bounds& bounds, const Eigen::Vector3d& offset_m) {
+  return std::max((bounds.high - offset_m).maxCoeff(), (offset_m - bounds.low).maxCoeff());
+}
+
 /// The grid without counts.
 LasGrid grid_for(const Bounds& bounds) {
   LasGrid grid;
   for (int exponent = fine_step(bounds.extent());; ++exponent) {
     grid.scale_m = power_of_ten(exponent);
     grid.offset_m = offset_for(bounds, grid.scale_m);
-    const double reach_m =
-        std::max((bounds.high - grid.offset_m).maxCoeff(), (grid.offset_m - bounds.low).maxCoeff());
-    if (reach_m / grid.scale_m + 1.0 <= kMaxCount) return grid;
+    if (reach_m(bounds, grid.offset_m) / grid.scale_m + 1.0 <= kMaxCount) return grid;
   }
 }
 
@@ -89,8 +91,18 @@ LasGrid grid_for(const Bounds& bounds) {
 
 LasGrid make_las_grid(const std::vector<double>& xyz) {
   if (xyz.empty()) return {.scale_m = power_of_ten(kDefaultStep), .counts = {}};
+  return make_las_grid(xyz, grid_for(bounds_of(xyz)));
+}
+
+LasGrid make_las_grid(const std::vector<double>& xyz, const LasGrid& steps) {
+  LasGrid grid{.scale_m = steps.scale_m, .offset_m = steps.offset_m, .counts = {}};
+  if (xyz.empty()) return grid;
   const Bounds bounds = bounds_of(xyz);
-  LasGrid grid = grid_for(bounds);
+  if (reach_m(bounds, grid.offset_m) / grid.scale_m + 1.0 > kMaxCount) {
+    throw Error({"LAS", "points too far from those of the first frame",
+                 fmt::format("{} m in each direction", kMaxCount * grid.scale_m),
+                 "write a file for each frame (--per-frame, per_frame=True in Python)"});
+  }
   const Coordinates points(xyz.data(), 3, static_cast<Eigen::Index>(xyz.size() / 3));
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::vector<std::uint32_t>& counts = grid.counts[static_cast<std::size_t>(axis)];
@@ -211,7 +223,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 375;
 constexpr std::size_t kExtraFieldBytes = 192;
 constexpr std::uint8_t kPointFormat = 6;
-constexpr std::size_t kMaxReturns = 15;  // 4 bits
+constexpr std::size_t kMaxReturns = RunTotals::kMaxReturns;
 constexpr std::size_t kMaxNameBytes = 31;
 constexpr std::uint16_t kStandardTime = 0x01;  // bits of the global encoding
 constexpr std::uint16_t kWellKnownText = 0x10;
@@ -429,9 +441,9 @@ std::uint16_t global_encoding(const CloudFile& job) {
 }
 
 /// The header, without a date, so that the same cloud has the same bytes.
-std::string las_header(const CloudFile& job, const LasGrid& grid, const PulseReturns& returns,
-                       std::size_t record_bytes, std::span<const PointField> extra,
+std::string las_header(const CloudFile& job, const RunTotals& totals, std::size_t extra_bytes,
                        std::size_t vlr_bytes) {
+  constexpr std::size_t kRecordBytes = 30;
   Bytes to;
   to.put_text("LASF", 4);
   to.put(std::uint16_t{0});  // file source
@@ -444,21 +456,19 @@ std::string las_header(const CloudFile& job, const LasGrid& grid, const PulseRet
   to.put_zeros(4);  // day and year
   to.put(static_cast<std::uint16_t>(kHeaderBytes));
   to.put(static_cast<std::uint32_t>(kHeaderBytes + vlr_bytes));
-  to.put(std::uint32_t{extra.empty() ? 1U : 2U});
+  to.put(std::uint32_t{extra_bytes == 0 ? 1U : 2U});
   to.put(kPointFormat);
-  to.put(static_cast<std::uint16_t>(record_bytes));
+  to.put(static_cast<std::uint16_t>(kRecordBytes + extra_bytes));
   to.put_zeros(24);  // counts of earlier versions
-  for (int axis = 0; axis < 3; ++axis) to.put(grid.scale_m);
-  for (int axis = 0; axis < 3; ++axis) to.put(grid.offset_m[axis]);
+  for (int axis = 0; axis < 3; ++axis) to.put(totals.scale_m);
+  for (int axis = 0; axis < 3; ++axis) to.put(totals.offset_m[axis]);
   for (int axis = 0; axis < 3; ++axis) {
-    to.put(grid.max_m[axis]);
-    to.put(grid.min_m[axis]);
+    to.put(totals.points > 0 ? totals.max_m[axis] : 0.0);
+    to.put(totals.points > 0 ? totals.min_m[axis] : 0.0);
   }
   to.put_zeros(20);  // no waveforms, no extended records
-  to.put(static_cast<std::uint64_t>(job.cloud.size()));
-  std::array<std::uint64_t, kMaxReturns> counts{};
-  for (const std::uint8_t number : returns.number) ++counts[number - 1U];
-  for (const std::uint64_t count : counts) to.put(count);
+  to.put(static_cast<std::uint64_t>(totals.points));
+  for (const std::uint64_t count : totals.of_return) to.put(count);
   return to.text();
 }
 
@@ -490,28 +500,75 @@ void check_crs_frame(const CloudFile& job, const AtomicFile& file) {
        "coordinates in the world's axes", "leave the frame out"});
 }
 
-void write_las(const CloudFile& job, AtomicFile& file) {
-  check_crs_frame(job, file);
+/// The points of a frame as records, and the columns of their extra fields.
+struct LasPoints {
+  PointCloud cloud;  ///< in the order of the file
+  PointCloud records;
+};
+
+void count(const LasGrid& grid, const PulseReturns& returns, RunTotals& totals) {
+  totals.points += returns.number.size();
+  for (const std::uint8_t number : returns.number) ++totals.of_return[number - 1U];
+  if (returns.number.empty()) return;
+  totals.min_m = totals.min_m.cwiseMin(grid.min_m);
+  totals.max_m = totals.max_m.cwiseMax(grid.max_m);
+}
+
+/// The first frame with points determines the steps of all.
+LasGrid next_grid(const std::vector<double>& xyz, RunTotals& totals) {
+  if (totals.points > 0)
+    return make_las_grid(xyz,
+                         {.scale_m = totals.scale_m, .offset_m = totals.offset_m, .counts = {}});
+  LasGrid grid = make_las_grid(xyz);
+  totals.scale_m = grid.scale_m;
+  totals.offset_m = grid.offset_m;
+  return grid;
+}
+
+LasPoints las_points(const CloudFile& job, RunTotals& totals) {
   const Beams& beams = job.context.beams;
   std::vector<std::uint32_t> order = las_order(job.frame, beams);
   // else decoded from other clouds
   const bool is_measured = !order.empty() && order.size() == job.cloud.size();
-  const PointCloud cloud = is_measured ? in_las_order(job.cloud, las_places(order)) : job.cloud;
+  LasPoints points{is_measured ? in_las_order(job.cloud, las_places(order)) : job.cloud, {}};
+  const PointCloud& cloud = points.cloud;
   const LasScan scan =
       is_measured ? las_scan(job.frame, beams, job.context.sensor, cloud.world_from_cloud, order)
                   : LasScan{std::vector<std::int16_t>(cloud.size()),
                             std::vector<std::uint8_t>(cloud.size())};
   const CloudFile sorted{cloud, job.frame, job.options, job.context, job.fields};
-  LasGrid grid = make_las_grid(*values_of<double>(cloud, "xyz"));
+  LasGrid grid = next_grid(*values_of<double>(cloud, "xyz"), totals);
   const PulseReturns returns = returns_of(sorted);
-  const std::vector<PointField> extra = extra_fields(cloud);
-  const std::string variable = variable_records(sorted, extra);
-  const PointCloud records = las_records(sorted, grid, returns, scan);
-  std::vector<PointField> fields = native_fields(records);
+  count(grid, returns, totals);
+  points.records = las_records(sorted, grid, returns, scan);
+  return points;
+}
+
+/// Header and variable records.
+std::string las_start(const CloudFile& job, const RunTotals& totals) {
+  const std::vector<PointField> extra = extra_fields(job.cloud);
+  const std::string variable = variable_records(job, extra);
+  return las_header(job, totals, row_bytes(extra), variable.size()) + variable;
+}
+
+void write_las_points(const CloudFile& job, const LasPoints& points, AtomicFile& file) {
+  std::vector<PointField> fields = native_fields(points.records);
+  const std::vector<PointField> extra = extra_fields(points.cloud);
   fields.insert(fields.end(), extra.begin(), extra.end());
-  file.write(las_header(sorted, grid, returns, row_bytes(fields), extra, variable.size()));
-  file.write(variable);
-  write_binary_rows(fields, cloud.size(), file, job.options.progress);
+  write_binary_rows(fields, points.cloud.size(), file, job.options.progress);
+}
+
+void append_las(const CloudFile& job, RunTotals& totals, AtomicFile& file) {
+  check_crs_frame(job, file);
+  write_las_points(job, las_points(job, totals), file);
+}
+
+void write_las(const CloudFile& job, AtomicFile& file) {
+  check_crs_frame(job, file);
+  RunTotals totals;
+  const LasPoints points = las_points(job, totals);
+  file.write(las_start(job, totals));
+  write_las_points(job, points, file);
 }
 
 std::string las_warning(const PointCloud& cloud) {
@@ -539,6 +596,8 @@ Format las_format() {
           .content = Content::hits,
           .fields = las_fields,
           .write = write_las,
+          .run_start = las_start,
+          .append = append_las,
           .rounding_warning = las_warning};
 }
 

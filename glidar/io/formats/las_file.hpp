@@ -28,6 +28,9 @@ struct LasGrid {
 /// and these are within 100 km of the origin.
 LasGrid make_las_grid(const std::vector<double>& xyz);
 
+/// The same with the steps and the offset of another one. Throws Error if the points do not fit.
+LasGrid make_las_grid(const std::vector<double>& xyz, const LasGrid& steps);
+
 /// The warning for a step by which rounding moves a coordinate by more than kFinePosition_m: by how
 /// much, and the remedy. Empty otherwise.
 std::string las_rounding_warning(const std::vector<double>& xyz);

@@ -34,7 +34,8 @@ std::string viewpoint(const CloudFile& job) {
   return fmt::format("{}", fmt::join(to_xyz_wxyz(cloud_from_sensor), " "));
 }
 
-std::string header(const CloudFile& job, std::span<const PointField> fields) {
+std::string header(const CloudFile& job, const CloudSize& size, const std::string& viewpoint) {
+  const std::span<const PointField> fields = job.fields;
   constexpr std::array kData = {"ascii", "binary", "binary_compressed"};
   const PcdEncoding encoding = job.options.pcd;
   std::string sizes;
@@ -47,11 +48,11 @@ std::string header(const CloudFile& job, std::span<const PointField> fields) {
   }
   return fmt::format(
       "# .PCD v0.7 - Point Cloud Data file format\n"
-      "# glidar {}, metres in the frame {}\n"
+      "# glidar {}, metres in the frame {}{}\n"
       "VERSION 0.7\nFIELDS {}\nSIZE{}\nTYPE{}\nCOUNT{}\nWIDTH {}\nHEIGHT {}\nVIEWPOINT {}\n"
       "POINTS {}\nDATA {}\n",
-      version(), printable_line(job.cloud.frame_id), joined_names(fields, ' '), sizes, types,
-      counts, job.cloud.cols, job.cloud.rows, viewpoint(job), job.cloud.size(),
+      version(), printable_line(job.cloud.frame_id), size.padding, joined_names(fields, ' '), sizes,
+      types, counts, size.cols, size.rows, viewpoint, size.rows * size.cols,
       kData[static_cast<std::size_t>(encoding)]);
 }
 
@@ -107,7 +108,7 @@ std::vector<PointField> pcd_fields(const PointCloud& cloud) {
 /// The viewpoint is the sensor's pose in the cloud's frame.
 void write_pcd(const CloudFile& job, AtomicFile& file) {
   const std::span<const PointField> fields = job.fields;
-  file.write(header(job, fields));
+  file.write(header(job, {job.cloud.rows, job.cloud.cols, {}}, viewpoint(job)));
   switch (job.options.pcd) {
     case PcdEncoding::ascii:
       return write_text_rows(fields, job.cloud.size(), ' ', file, job.options.progress);
@@ -115,6 +116,20 @@ void write_pcd(const CloudFile& job, AtomicFile& file) {
       return write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
     case PcdEncoding::binary_compressed:
       return write_compressed(fields, job.cloud.size(), file);
+  }
+}
+
+/// The sensor may move, so that there is no single viewpoint.
+std::string pcd_run_start(const CloudFile& job, const RunTotals& totals) {
+  return header(job, size_of_run(totals, 2), "0 0 0 1 0 0 0");
+}
+
+void append_pcd(const CloudFile& job, RunTotals& totals, AtomicFile& file) {
+  totals.points += job.cloud.size();
+  if (job.options.pcd == PcdEncoding::ascii) {
+    write_text_rows(job.fields, job.cloud.size(), ' ', file, job.options.progress);
+  } else {
+    write_binary_rows(job.fields, job.cloud.size(), file, job.options.progress);
   }
 }
 
@@ -129,6 +144,8 @@ Format pcd_format() {
       .content = Content::points,
       .fields = pcd_fields,
       .write = write_pcd,
+      .run_start = pcd_run_start,
+      .append = append_pcd,
       .is_text = [](const FileSinkOptions& options) { return options.pcd == PcdEncoding::ascii; }};
 }
 

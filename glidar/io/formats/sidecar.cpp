@@ -3,10 +3,12 @@
 #include <glidar/io/formats/sidecar.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/text.hpp>
 #include <glidar/io/config/json_value.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/files/input_file.hpp>
 #include <glidar/io/files/paths.hpp>
+#include <glidar/io/formats/file_sink.hpp>
 
 #include <cmath>
 #include <type_traits>
@@ -25,22 +27,89 @@ CommandRecord read_command(const JsonValue& json, const std::filesystem::path& s
   return {.arguments = arguments, .folder = resolve_folder(sidecar, folder)};
 }
 
-Sidecar read(const JsonValue& json, const std::filesystem::path& path) {
-  Sidecar sidecar;
-  sidecar.path = path;
-  sidecar.version = json.at("glidar").text();
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& found,
+                         const char* remedy) {
+  throw Error({path.string(), found, "the file that glidar wrote for the cloud", remedy});
+}
+
+/// A sidecar's text and its content.
+struct ReadJson {
+  std::string text;
+  nlohmann::json json;
+};
+
+ReadJson read_json(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) {
+    throw Error({.where = path.string(),
+                 .found = "there is no such file",
+                 .allowed = "a cloud with its sidecar in the same folder",
+                 .remedy = "write the cloud again, with -o and without --no-sidecar"});
+  }
+  ReadJson made{read_text_file(path, kSidecar), {}};
+  made.json = parse_own_json(path.string(), made.text, [&](const std::string& found) {
+    refuse(path, "a damaged file: " + found, "copy the file again, or write the cloud again");
+  });
+  return made;
+}
+
+RefuseJson refuse_value(const std::filesystem::path& path) {
+  return [path](const std::string& found) {
+    refuse(path, "not a sidecar of this version: " + found, "write the cloud again");
+  };
+}
+
+/// What the frames of a run have in common.
+void read_run(const JsonValue& json, const std::filesystem::path& path, Sidecar& sidecar) {
   sidecar.command = read_command(json.at("command"), path);
-  sidecar.frame = json.at("frame").count<std::uint32_t>();
-  sidecar.frame_hash = json.at("frame_hash").text();
-  const JsonValue cloud = json.at("cloud");
-  sidecar.points = std::uint64_t{cloud.at("rows").count<std::uint32_t>()} *
-                   cloud.at("cols").count<std::uint32_t>();
-  sidecar.hits = json.at("beams_by_status").at("hit").count<std::uint32_t>();
   for (const JsonValue& instance : json.at("instances").items()) {
     const JsonValue hash = instance.at("model_hash");
     sidecar.model_hashes.push_back(hash.is_null() ? "" : hash.text());
   }
-  return sidecar;
+}
+
+/// The sidecar of the run that that of a frame names.
+void read_run_of(const JsonValue& json, Sidecar& sidecar) {
+  const std::string name = json.at("run").text();
+  check_recorded_path(sidecar.path, "run", name);
+  const std::filesystem::path path =
+      std::filesystem::path(sidecar.path).replace_filename(std::filesystem::path(name).filename());
+  const ReadJson run = read_json(path);
+  const RefuseJson refuse = refuse_value(path);
+  const JsonValue shared(run.json, refuse);
+  if (shared.at("run_hash").text() != json.at("run_hash").text()) {
+    throw Error({path.string(), "is of another run than " + sidecar.path.filename().string(), "",
+                 "copy both again, or write the cloud again"});
+  }
+  read_run(shared, path, sidecar);
+}
+
+/// The points of the cloud in the sidecar of a frame, or of a run.
+std::size_t read_points(const JsonValue& json, const std::string& cloud,
+                        const std::filesystem::path& path) {
+  for (const JsonValue& file : json.at("files").items()) {
+    const std::uint64_t rows = file.at("rows").count<std::uint32_t>();
+    const std::uint64_t points = rows * file.at("cols").count<std::uint32_t>();
+    if (file.at("file").text() == cloud) return points;
+  }
+  throw Error({path.string(), "does not list " + excerpt(cloud), "", "write the cloud again"});
+}
+
+SidecarFrame read_frame(const JsonValue& json, std::size_t points) {
+  return {.number = json.at("frame").count<std::uint32_t>(),
+          .points = points,
+          .hash = json.at("frame_hash").text()};
+}
+
+std::vector<SidecarFrame> read_frames(const JsonValue& json, const std::string& cloud,
+                                      const std::filesystem::path& path) {
+  const std::size_t all = read_points(json, cloud, path);
+  if (!json.contains("frames")) return {read_frame(json, all)};
+  std::vector<SidecarFrame> frames;
+  for (const JsonValue& frame : json.at("frames").items())
+    frames.push_back(
+        read_frame(frame, frame.at("points").at(cloud.c_str()).count<std::uint32_t>()));
+  if (frames.empty()) json.refuse("no frames");
+  return frames;
 }
 
 }  // namespace
@@ -75,25 +144,30 @@ std::string frame_hash(const Frame& frame) {
   return hex(hash.value());
 }
 
+std::string listed_files(const std::filesystem::path& sidecar, const std::string& frame_hash) {
+  const ReadJson read = read_json(sidecar);
+  const RefuseJson refuse = refuse_value(sidecar);
+  const JsonValue json(read.json, refuse);
+  if (!json.contains("frame_hash") || json.at("frame_hash").text() != frame_hash) return "[]";
+  for (const JsonValue& file : json.at("files").items()) (void)file.at("file").text();
+  return read.json["files"].dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
 Sidecar read_sidecar(const std::filesystem::path& cloud) {
-  const std::filesystem::path path = cloud.string() + ".json";
-  if (!std::filesystem::exists(path)) {
-    throw Error({.where = path.string(),
-                 .found = "there is no such file",
-                 .allowed = "a cloud with its sidecar in the same folder",
-                 .remedy = "write the cloud again, with -o and without --no-sidecar"});
+  Sidecar sidecar;
+  sidecar.path = sidecar_path(cloud);
+  const ReadJson read = read_json(sidecar.path);
+  const RefuseJson refuse = refuse_value(sidecar.path);
+  const JsonValue json(read.json, refuse);
+  sidecar.version = json.at("glidar").text();
+  if (json.contains("run")) {
+    read_run_of(json, sidecar);
+  } else {
+    read_run(json, sidecar.path, sidecar);
   }
-  const auto refuse = [&](const std::string& found, const char* remedy) {
-    throw Error({path.string(), found, "the file that glidar wrote for the cloud", remedy});
-  };
-  const std::string text = read_text_file(path, kSidecar);
-  const nlohmann::json json = parse_own_json(path.string(), text, [&](const std::string& found) {
-    refuse("a damaged file: " + found, "copy the file again, or write the cloud again");
-  });
-  const RefuseJson refuse_value = [&](const std::string& found) {
-    refuse("not a sidecar of this version: " + found, "write the cloud again");
-  };
-  return read(JsonValue(json, refuse_value), path);
+  sidecar.has_all_frames = json.contains("frames");
+  sidecar.frames = read_frames(json, cloud.filename().string(), sidecar.path);
+  return sidecar;
 }
 
 }  // namespace glidar

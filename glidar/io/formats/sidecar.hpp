@@ -12,15 +12,20 @@
 
 namespace glidar {
 
+/// A frame of a cloud.
+struct SidecarFrame {
+  std::uint32_t number = 0;
+  std::size_t points = 0;  ///< in the cloud
+  std::string hash;        ///< see frame_hash()
+};
+
 /// The origin of a cloud, as recorded in its sidecar.
 struct Sidecar {
   std::filesystem::path path;
-  std::string version;    ///< of the program
-  CommandRecord command;  ///< its folder as an absolute path; no arguments: not recorded
-  std::uint32_t frame = 0;
-  std::size_t points = 0;                 ///< in the cloud
-  std::size_t hits = 0;                   ///< of the frame
-  std::string frame_hash;                 ///< see frame_hash()
+  std::string version;               ///< of the program
+  CommandRecord command;             ///< its folder as an absolute path; no arguments: not recorded
+  std::vector<SidecarFrame> frames;  ///< at least one
+  bool has_all_frames = false;       ///< of a run, with the points of each in order of time
   std::vector<std::string> model_hashes;  ///< one per instance; empty for built-in models
 };
 
@@ -35,8 +40,12 @@ std::string sensor_to_json(const Sensor& sensor, const Beams& beams);
 std::string relative_folder(const std::filesystem::path& file, const std::filesystem::path& folder);
 std::filesystem::path resolve_folder(const std::filesystem::path& file, const std::string& seen);
 
-/// Reads the sidecar of a cloud, CLOUD.json. Throws Error when it is missing or not
-/// a sidecar.
+/// The JSON list of the files of a frame in its sidecar; "[]" if it has another frame. Throws
+/// Error.
+std::string listed_files(const std::filesystem::path& sidecar, const std::string& frame_hash);
+
+/// Reads the sidecar of a cloud, NAME.glidar.json of NAME.pcd, and that of its run if there is one.
+/// Throws Error when one is missing or not a sidecar, or when it does not list the cloud.
 Sidecar read_sidecar(const std::filesystem::path& cloud);
 
 }  // namespace glidar

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/formats/sidecar_file.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/core/unit_conversion.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/json_numbers.hpp>
 #include <glidar/io/config/sensor_keys.hpp>
+#include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/formats/box_json.hpp>
 #include <glidar/io/formats/sidecar.hpp>
 #include <glidar/io/formats/stored_columns.hpp>
@@ -16,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <system_error>
 
 namespace glidar {
 namespace {
@@ -63,12 +66,10 @@ Json sensor_json(const Sensor& sensor, const Beams& beams) {
   return json;
 }
 
-Json sensor_json(const CloudFile& job) {
-  Json json = sensor_json(job.context.sensor, job.context.beams);
-  const Sensor& sensor = job.context.sensor;
-  if (!sensor.variant.empty()) json["variant"] = sensor.variant;
-  if (!sensor.mode.empty()) json["mode"] = sensor.mode;
-  json["world_from_sensor"] = pose_json(job.frame.world_from_sensor);
+Json sensor_json(const SidecarContext& context) {
+  Json json = sensor_json(context.sensor, context.beams);
+  if (!context.sensor.variant.empty()) json["variant"] = context.sensor.variant;
+  if (!context.sensor.mode.empty()) json["mode"] = context.sensor.mode;
   return json;
 }
 
@@ -92,54 +93,59 @@ Json image_json(const CloudFile& job) {
   return image;
 }
 
-Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
-  return {{"file", path.filename().string()},
-          {"rows", job.cloud.rows},
-          {"cols", job.cloud.cols},
-          {"frame_id", job.cloud.frame_id},
-          {"world_from_cloud", pose_json(job.cloud.world_from_cloud)},
-          {"layout", job.layout.empty() ? Json() : Json(job.layout)},
-          {"columns", columns_json(job.fields)},
-          {"image", image_json(job)}};
-}
-
 /// A factor, or one for each of the model's axes.
 Json scale_json(const Instance& instance, const MeshSource& source) {
   if (source.stretch == Eigen::Vector3d::Ones()) return instance.scale;
   return vector_json(instance.scale * source.stretch);
 }
 
-Json instances_json(const CloudFile& job) {
-  const Scene& scene = job.context.scene;
+/// Position and orientation.
+Json short_pose_json(const Pose& pose) {
+  Json json = pose_json(pose);
+  json.erase("matrix");
+  return json;
+}
+
+Json instances_json(const SidecarContext& context, const Frame& frame) {
+  const Scene& scene = context.scene;
   Json instances = Json::array();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const MeshSource& source = scene.sources.at(instance.mesh);
-    Json entry = {{"name", instance.name},
-                  {"id", instance.id},
-                  {"class_id", instance.class_id},
-                  {"class", scene.class_names.at(instance.class_id)},
-                  {"model", source.path},
-                  {"model_hash", source.hash.empty() ? Json() : Json(source.hash)},
-                  {"metres_per_unit", source.metres_per_unit},
-                  {"up", source.up.empty() ? Json() : Json(source.up)},
-                  {"scale", scale_json(instance, source)}};
-    entry["world_from_object"] = pose_json(job.frame.world_from_instance.at(i));
-    instances.push_back(entry);
+    instances.push_back({{"name", instance.name},
+                         {"id", instance.id},
+                         {"class_id", instance.class_id},
+                         {"class", scene.class_names.at(instance.class_id)},
+                         {"model", source.path},
+                         {"model_hash", source.hash.empty() ? Json() : Json(source.hash)},
+                         {"metres_per_unit", source.metres_per_unit},
+                         {"up", source.up.empty() ? Json() : Json(source.up)},
+                         {"scale", scale_json(instance, source)},
+                         {"world_from_object", short_pose_json(frame.world_from_instance.at(i))}});
   }
   return instances;
 }
 
-/// In the coordinate frame of the cloud.
-Json boxes_json(const CloudFile& job) {
-  const Pose& world_from_sensor = job.frame.world_from_sensor;
-  const bool is_own = job.cloud.world_from_cloud.matrix() == world_from_sensor.matrix();
-  const Pose cloud_from_sensor =
-      is_own ? Pose::Identity() : job.cloud.world_from_cloud.inverse() * world_from_sensor;
-  Json boxes = Json::array();
-  for (const ObjectBox& box : job.frame.boxes) {
-    boxes.push_back(box_json(job.context.scene, box, cloud_from_sensor));
+/// Those that have moved since the first frame of the run.
+Json moved_json(const SidecarContext& context, const Frame& frame, std::span<const Pose> first) {
+  Json moved = Json::array();
+  for (std::size_t i = 0; i < context.scene.instances.size(); ++i) {
+    const Pose& pose = frame.world_from_instance.at(i);
+    if (i < first.size() && first[i].matrix() == pose.matrix()) continue;
+    moved.push_back(
+        {{"id", context.scene.instances[i].id}, {"world_from_object", short_pose_json(pose)}});
   }
+  return moved;
+}
+
+/// In the coordinate frame of a cloud.
+Json boxes_json(const SidecarContext& context, const Frame& frame, const Pose& world_from_cloud) {
+  const bool is_own = world_from_cloud.matrix() == frame.world_from_sensor.matrix();
+  const Pose cloud_from_sensor =
+      is_own ? Pose::Identity() : world_from_cloud.inverse() * frame.world_from_sensor;
+  Json boxes = Json::array();
+  for (const ObjectBox& box : frame.boxes)
+    boxes.push_back(box_json(context.scene, box, cloud_from_sensor));
   return boxes;
 }
 
@@ -168,22 +174,64 @@ std::string on_one_line(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Indented, with lists of plain values on one line, so that matrices are readable.
-void append_text(const Json& value, std::size_t indent, std::string& text) {
-  const auto nested = [](const Json& part) { return part.is_structured(); };
-  if (!value.is_object() && std::none_of(value.begin(), value.end(), nested)) {
-    text += on_one_line(value);
-    return;
+/// A line for each key, for each key of an object in it, and for each part of a list of objects.
+std::string text_of(Json json) {
+  remove_negative_zeros(json);
+  std::string text;
+  const char* before = "{\n  ";
+  for (const auto& [key, value] : json.items()) {
+    text += before + on_one_line(key) + ": ";
+    before = ",\n  ";
+    const bool has_lines =
+        value.is_object() || (value.is_array() && !value.empty() && value.front().is_object());
+    if (!has_lines || value.empty()) {
+      text += on_one_line(value);
+      continue;
+    }
+    const char* line = value.is_object() ? "{\n    " : "[\n    ";
+    for (const auto& [name, part] : value.items()) {
+      text += line + (value.is_object() ? on_one_line(name) + ": " : "") + on_one_line(part);
+      line = ",\n    ";
+    }
+    text += value.is_object() ? "\n  }" : "\n  ]";
   }
-  const std::string margin(indent + 2, ' ');
-  std::string_view before = value.is_object() ? "{\n" : "[\n";
-  for (const auto& [key, part] : value.items()) {
-    text.append(before).append(margin);
-    if (value.is_object()) text += on_one_line(key) + ": ";
-    append_text(part, indent + 2, text);
-    before = ",\n";
+  return text + "\n}\n";
+}
+
+/// The files that a sidecar lists which is about to be replaced, if they have the same frame.
+Json other_files(const std::filesystem::path& path, const std::string& frame_hash) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return Json::array();
+  try {
+    return Json::parse(listed_files(path, frame_hash));
+  } catch (const Error&) {  // it is damaged, or not a sidecar
   }
-  text.append("\n").append(indent, ' ').append(value.is_object() ? "}" : "]");
+  return Json::array();
+}
+
+/// What all frames of a run have in common.
+Json run_json(const SidecarContext& context, const Frame& frame,
+              const std::filesystem::path& path) {
+  return {{"glidar", version()},
+          {"command", command_json(context.command, path)},
+          {"renderer", context.renderer},
+          {"sensor", sensor_json(context)},
+          {"instances", instances_json(context, frame)}};
+}
+
+/// What is particular to a frame.
+Json frame_json(const SidecarContext& context, const Frame& frame,
+                std::span<const SidecarEntry> files) {
+  Json listed = Json::array();
+  for (const SidecarEntry& file : files) listed.push_back(Json::parse(file.json));
+  return {{"seed", frame.seed},
+          {"frame", frame.number},
+          {"frame_hash", frame_hash(frame)},
+          {"stamp_ns", frame.stamp_ns},
+          {"world_from_sensor", pose_json(frame.world_from_sensor)},
+          {"files", std::move(listed)},
+          {"boxes", boxes_json(context, frame, files.front().world_from_cloud)},
+          {"beams_by_status", status_json(frame)}};
 }
 
 }  // namespace
@@ -195,23 +243,76 @@ std::string sensor_to_json(const Sensor& sensor, const Beams& beams) {
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path) {
+SidecarEntry sidecar_entry(const CloudFile& job, const std::filesystem::path& path) {
+  const PointCloud& cloud = job.cloud;
+  Json json = {{"file", path.filename().string()},
+               {"rows", cloud.rows},
+               {"cols", cloud.cols},
+               {"frame_id", cloud.frame_id},
+               {"world_from_cloud", pose_json(cloud.world_from_cloud)},
+               {"layout", job.layout.empty() ? Json() : Json(job.layout)},
+               {"columns", columns_json(job.fields)},
+               {"image", image_json(job)}};
+  remove_negative_zeros(json);
+  return {on_one_line(json), cloud.world_from_cloud};
+}
+
+std::string sidecar_text(const SidecarContext& context, const Frame& frame,
+                         std::span<const SidecarEntry> files, const std::filesystem::path& path) {
+  Json all = run_json(context, frame, path);
+  all.update(frame_json(context, frame, files));
+  for (const Json& other : other_files(path, all["frame_hash"].get<std::string>())) {
+    const auto is_same = [&](const Json& file) { return file["file"] == other.value("file", ""); };
+    if (std::ranges::none_of(all["files"], is_same)) all["files"].push_back(other);
+  }
+  return text_of(std::move(all));
+}
+
+RunSidecar run_sidecar(const SidecarContext& context, const Frame& first,
+                       const std::filesystem::path& path) {
+  Json json = run_json(context, first, path);
+  remove_negative_zeros(json);
+  const std::string text = on_one_line(json);
+  json.erase("command");  // runs by Python have none
+  const std::string measured = on_one_line(json);
+  ContentHash hash;
+  hash.add(measured.data(), measured.size());
+  return {path, text, hex(hash.value()), first.world_from_instance};
+}
+
+std::string sidecar_text(const RunSidecar& run, std::span<const SidecarEntry> files,
+                         std::span<const std::string> frames) {
+  Json all = Json::parse(run.json);
+  all["run_hash"] = run.hash;
+  for (const SidecarEntry& file : files) all["files"].push_back(Json::parse(file.json));
+  for (const std::string& frame : frames) all["frames"].push_back(Json::parse(frame));
+  return text_of(std::move(all));
+}
+
+std::string frame_entry(const SidecarContext& context, const Frame& frame, const RunSidecar& run,
+                        std::span<const FramePoints> points, const Pose& world_from_cloud) {
+  Json counts = Json::object();
+  for (const FramePoints& one : points) counts[one.file] = one.points;
+  Json json = {{"frame", frame.number},
+               {"seed", frame.seed},
+               {"frame_hash", frame_hash(frame)},
+               {"stamp_ns", frame.stamp_ns},
+               {"world_from_sensor", short_pose_json(frame.world_from_sensor)},
+               {"points", std::move(counts)},
+               {"moved", moved_json(context, frame, run.world_from_instance)},
+               {"boxes", boxes_json(context, frame, world_from_cloud)},
+               {"beams_by_status", status_json(frame)}};
+  return on_one_line(json);
+}
+
+std::string sidecar_text(const SidecarContext& context, const Frame& frame,
+                         std::span<const SidecarEntry> files, const RunSidecar& run) {
   Json all = {{"glidar", version()},
-              {"command", command_json(job.context.command, path)},
-              {"renderer", job.context.renderer},
-              {"seed", job.frame.seed},
-              {"frame", job.frame.number},
-              {"frame_hash", frame_hash(job.frame)},
-              {"stamp_ns", job.frame.stamp_ns},
-              {"cloud", cloud_json(job, path)},
-              {"sensor", sensor_json(job)},
-              {"instances", instances_json(job)},
-              {"boxes", boxes_json(job)},
-              {"beams_by_status", status_json(job.frame)}};
-  remove_negative_zeros(all);
-  std::string text;
-  append_text(all, 0, text);
-  return text + "\n";
+              {"run", run.path.filename().string()},
+              {"run_hash", run.hash},
+              {"moved", moved_json(context, frame, run.world_from_instance)}};
+  all.update(frame_json(context, frame, files));
+  return text_of(std::move(all));
 }
 
 }  // namespace glidar

@@ -7,6 +7,7 @@
 #include <glidar/io/bags/bag.hpp>
 #include <glidar/io/bags/bag_contents.hpp>
 #include <glidar/io/files/input_file.hpp>
+#include <glidar/math/elementary.hpp>
 
 #include <algorithm>
 #include <array>
@@ -399,6 +400,33 @@ std::vector<TimedPose> read_bag(const std::filesystem::path& path,
   return bags::read_bag_poses(path, {options.topic, options.parent_frame, options.child_frame});
 }
 
+/// A row of load_poses(); its number takes the place of a time.
+void read_untimed_row(const TextRowReader& rows, std::size_t width, std::vector<TimedPose>& poses) {
+  const auto t_ns = static_cast<std::int64_t>(poses.size());
+  if (width == kKitti) return read_matrix_row(rows, t_ns, poses);
+  require_count(rows, width, "");
+  const auto number = [&](std::size_t i) { return rows.number(rows.words()[i]); };
+  TimedPose pose{.t_ns = t_ns,
+                 .position_m = {number(0), number(1), number(2)},
+                 .orientation = Eigen::Quaterniond::Identity()};
+  if (width == 4) {
+    const SineCosine half = sincos_turns(number(3) / 720.0);
+    pose.orientation = Eigen::Quaterniond(half.cosine, 0.0, 0.0, half.sine);
+  }
+  if (width == 7) pose.orientation = Eigen::Quaterniond(number(6), number(3), number(4), number(5));
+  append(rows, pose, {rows.words()[0], rows.words()[0], rows.words()[width > 3 ? 3 : 0]}, poses);
+}
+
+/// Whether a row has the names of the columns of load_poses().
+bool is_header(const TextRowReader& rows) {
+  constexpr std::array<std::string_view, 7> kColumns = {"x", "y", "z", "qx", "qy", "qz", "qw"};
+  const std::vector<Word>& words = rows.words();
+  if (words.size() == 4 && words[3].text == "yaw_deg" && words[0].text == "x") return true;
+  return words.size() <= kColumns.size() &&
+         std::equal(words.begin(), words.end(), kColumns.begin(),
+                    [](const Word& word, std::string_view name) { return word.text == name; });
+}
+
 /// The poses were checked; only their spline may not exist.
 TimedPoses interpolated(std::vector<TimedPose> poses, Interpolation interpolation,
                         const std::string& file) {
@@ -426,6 +454,27 @@ TimedPoses load_trajectory_file(const std::filesystem::path& path,
   TimedPoses timed = interpolated(std::move(poses), options.interpolation, file);
   if (options.start_ns) timed.shift_times(timed.first_ns(), *options.start_ns);
   return timed;
+}
+
+std::vector<Pose> load_poses(const std::filesystem::path& path) {
+  const std::string content = read_text_file(path, file_kind());
+  TextRowReader rows(path.string(), content);
+  std::vector<TimedPose> read;
+  std::size_t width = 0;
+  while (rows.next()) {
+    const bool is_first = width == 0;
+    if (is_first) width = rows.words().size();
+    if (is_first && width != 3 && width != 4 && width != 7 && width != kKitti) {
+      rows.reject(rows.words()[0], std::to_string(width) + " columns",
+                  "3 (x y z), 4 (x y z yaw_deg), 7 (x y z qx qy qz qw) or 12 (a matrix)");
+    }
+    if (!is_first || !is_header(rows)) read_untimed_row(rows, width, read);
+  }
+  if (read.empty()) throw Error({path.string(), "no pose", "at least one", ""});
+  std::vector<Pose> poses;
+  poses.reserve(read.size());
+  for (const TimedPose& pose : read) poses.push_back(make_pose(pose.position_m, pose.orientation));
+  return poses;
 }
 
 }  // namespace glidar

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/pose.hpp>
 #include <glidar/motion/timed_poses.hpp>
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -30,5 +32,10 @@ struct TrajectoryFileOptions {
 /// (docs/bags.md). Every error states file:line:column, what was found and what is allowed.
 TimedPoses load_trajectory_file(const std::filesystem::path& path,
                                 const TrajectoryFileOptions& options = {});
+
+/// Reads poses without times, one in each row: x y z, x y z yaw_deg, x y z qx qy qz qw, or 12
+/// numbers (three rows of a matrix), with blanks or commas between; a row of these names may be
+/// first.
+std::vector<Pose> load_poses(const std::filesystem::path& path);
 
 }  // namespace glidar

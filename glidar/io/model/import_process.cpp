@@ -17,6 +17,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <optional>
 #include <utility>
 
@@ -132,6 +133,10 @@ void reject_answer(const std::filesystem::path& model, const std::string& found)
 ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
   switch (run.end) {
     case ImportEnd::out_of_time:
+      if (run.signal == SIGPROF) {
+        fail(request, "reading it takes longer than the limit for a file of its size",
+             "the file may be corrupt; otherwise save the model as PLY, OBJ or glTF");
+      }
       fail(request, fmt::format("reading it took longer than {:g} s", request.time_limit_s),
            "save the model in another format, or make it smaller");
     case ImportEnd::out_of_memory:

@@ -3,8 +3,10 @@
 #include <glidar/io/model/vertex_attributes.hpp>
 
 #include <glidar/math/portable.hpp>
+#include <glidar/math/simd.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -114,29 +117,62 @@ struct Faces {
   std::vector<float> angles;             ///< of corner 3 * face + k
 };
 
+/// The first two angles of some triangles, as in angle_between_rad().
+struct CornerAngles {
+  static constexpr std::size_t kMost = 512;  ///< triangles
+  std::array<double, 2 * kMost> sines;       ///< times any lengths
+  std::array<double, 2 * kMost> cosines;
+  std::array<float, 2 * kMost> rad;
+};
+
+GLIDAR_SIMD void compute(CornerAngles& angles, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double turns = atan2_turns(angles.sines[i], angles.cosines[i]);
+    angles.rad[i] = static_cast<float>(2.0 * std::numbers::pi * turns);
+  }
+}
+
+/// Returns the normal of a triangle, and stores what its first two angles follow from.
+Eigen::Vector3f measure(const Mesh& mesh, const Triangle& t, std::size_t i, CornerAngles& angles) {
+  const Eigen::Vector3f& a = mesh.positions_m[t[0]];
+  // Products of lengths must not overflow or underflow.
+  Eigen::Vector3f ab = mesh.positions_m[t[1]] - a;
+  Eigen::Vector3f ac = mesh.positions_m[t[2]] - a;
+  const float size = std::max(ab.lpNorm<Eigen::Infinity>(), ac.lpNorm<Eigen::Infinity>());
+  if (size > 0.0F) {
+    ab = (ab.cast<double>() / double{size}).cast<float>();
+    ac = (ac.cast<double>() / double{size}).cast<float>();
+  }
+  const Eigen::Vector3f cross = ab.cross(ac);
+  const Eigen::Vector3f bc = ac - ab;
+  const float area = cross.norm();
+  angles.sines[2 * i] = area;
+  angles.cosines[2 * i] = ab.dot(ac);
+  angles.sines[2 * i + 1] = (-ab).cross(bc).norm();
+  angles.cosines[2 * i + 1] = (-ab).dot(bc);
+  return area > 0.0F ? Eigen::Vector3f(cross / area) : Eigen::Vector3f::Zero();
+}
+
 Faces faces_of(const Mesh& mesh) {
   Faces faces;
-  faces.normals.resize(mesh.triangles.size());
-  faces.angles.resize(mesh.triangles.size() * 3);
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    const Triangle& t = mesh.triangles[f];
-    const Eigen::Vector3f& a = mesh.positions_m[t[0]];
-    // Products of lengths must not overflow or underflow.
-    Eigen::Vector3f ab = mesh.positions_m[t[1]] - a;
-    Eigen::Vector3f ac = mesh.positions_m[t[2]] - a;
-    const float size = std::max(ab.lpNorm<Eigen::Infinity>(), ac.lpNorm<Eigen::Infinity>());
-    if (size > 0.0F) {
-      ab = (ab.cast<double>() / double{size}).cast<float>();
-      ac = (ac.cast<double>() / double{size}).cast<float>();
+  const std::size_t count = mesh.triangles.size();
+  faces.normals.resize(count);
+  faces.angles.resize(count * 3);
+  CornerAngles angles;
+  for (std::size_t begin = 0; begin < count; begin += CornerAngles::kMost) {
+    const std::size_t some = std::min(CornerAngles::kMost, count - begin);
+    for (std::size_t i = 0; i < some; ++i) {
+      faces.normals[begin + i] = measure(mesh, mesh.triangles[begin + i], i, angles);
     }
-    const Eigen::Vector3f cross = ab.cross(ac);
-    const float area = cross.norm();
-    faces.normals[f] = area > 0.0F ? Eigen::Vector3f(cross / area) : Eigen::Vector3f::Zero();
-    const float at_a = angle_between_rad(ab, ac);
-    const float at_b = angle_between_rad(-ab, ac - ab);
-    faces.angles[3 * f] = at_a;
-    faces.angles[3 * f + 1] = at_b;
-    faces.angles[3 * f + 2] = std::max(0.0F, std::numbers::pi_v<float> - at_a - at_b);
+    compute(angles, 2 * some);
+    for (std::size_t i = 0; i < some; ++i) {
+      const float at_a = angles.rad[2 * i];
+      const float at_b = angles.rad[2 * i + 1];
+      float* const of_face = &faces.angles[3 * (begin + i)];
+      of_face[0] = at_a;
+      of_face[1] = at_b;
+      of_face[2] = std::max(0.0F, std::numbers::pi_v<float> - at_a - at_b);
+    }
   }
   return faces;
 }
@@ -273,8 +309,10 @@ class Smoother {
 
 }  // namespace
 
-void make_normals(Mesh& mesh, double crease_angle_rad) {
-  const std::vector<std::uint32_t> position_of = first_at_position(mesh.positions_m);
+void make_normals(Mesh& mesh, double crease_angle_rad, bool are_distinct) {
+  std::vector<std::uint32_t> position_of(are_distinct ? mesh.positions_m.size() : 0);
+  std::iota(position_of.begin(), position_of.end(), 0U);
+  if (!are_distinct) position_of = first_at_position(mesh.positions_m);
   const Fans fans = fans_of(mesh, position_of);
   Smoother smoother(mesh, crease_angle_rad);
   for (std::size_t p = 0; p + 1 < fans.first.size(); ++p) {

@@ -41,7 +41,8 @@ void keep_vertices(Mesh& mesh, const std::vector<std::uint32_t>& kept,
 /// 3(1), 1998). If corners of one vertex get different normals, the vertex is split;
 /// new vertices are appended; triangles keep their order. Degenerate faces contribute nothing.
 /// Where more than 512 faces meet with a crease among them every corner keeps its face's normal.
-void make_normals(Mesh& mesh, double crease_angle_rad);
+/// `are_distinct`: no two vertices have the same position, which saves time.
+void make_normals(Mesh& mesh, double crease_angle_rad, bool are_distinct = false);
 
 /// Computes vertex tangents from normals and one uv set, similar to MikkTSpace (Mikkelsen,
 /// Simulation of wrinkled surfaces revisited, 2008): per corner the face's +u direction, projected

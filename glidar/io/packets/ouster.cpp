@@ -10,6 +10,10 @@
 #include <glidar/io/packets/packet_codec.hpp>
 #include <glidar/math/constants.hpp>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,8 +32,9 @@ constexpr std::size_t kLegacyTail = 4;
 constexpr std::uint32_t kEncoderTurn = 90'112;  // counts of a revolution, LEGACY
 constexpr std::uint32_t kLegacyValid = 0xFFFFFFFF;
 
-constexpr std::array<std::string_view, 4> kNames = {
-    "LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL", "RNG15_RFL8_NIR8"};
+constexpr std::array<std::string_view, 6> kNames = {
+    "LEGACY",          "RNG19_RFL8_SIG16_NIR16",       "RNG19_RFL8_SIG16_NIR16_DUAL",
+    "RNG15_RFL8_NIR8", "RNG19_RFL8_SIG16_NIR16_RGB16", "RNG19_RFL8_SIG16_NIR16_RGB16_DUAL"};
 
 bool is_legacy(const OusterFormat& format) {
   return format.profile == OusterProfile::legacy;
@@ -38,7 +43,10 @@ bool is_legacy(const OusterFormat& format) {
 std::size_t pixel_bytes(OusterProfile profile) {
   switch (profile) {
     case OusterProfile::rng19_rfl8_sig16_nir16_dual:
+    case OusterProfile::rng19_rfl8_sig16_nir16_rgb16:
       return 16;
+    case OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual:
+      return 20;
     case OusterProfile::rng15_rfl8_nir8:
       return 4;
     default:
@@ -60,6 +68,15 @@ std::uint32_t range_word(const OusterPixel& pixel) {
   return limited(pixel.range_mm, 19) | (pixel.flags & 0x1FU) << 19U;
 }
 
+/// Range, flags and reflectivity in one word.
+std::uint32_t return_word(const OusterPixel& pixel) {
+  return range_word(pixel) | std::uint32_t{pixel.reflectivity} << 24U;
+}
+
+void put_colour(Bytes& bytes, const OusterPixel& pixel) {
+  for (const float value : pixel.colour) put_little(bytes, Eigen::half(value).x, 2);
+}
+
 void put_pixel(Bytes& bytes, OusterProfile profile, const OusterPixel& first,
                const OusterPixel& second) {
   switch (profile) {
@@ -77,8 +94,7 @@ void put_pixel(Bytes& bytes, OusterProfile profile, const OusterPixel& first,
       put_little(bytes, first.window, 1);
       return;
     case OusterProfile::rng19_rfl8_sig16_nir16_dual:
-      for (const OusterPixel& pixel : {first, second})
-        put_little(bytes, range_word(pixel) | std::uint32_t{pixel.reflectivity} << 24U, 4);
+      for (const OusterPixel& pixel : {first, second}) put_little(bytes, return_word(pixel), 4);
       put_little(bytes, first.signal, 2);
       put_little(bytes, second.signal, 2);
       put_little(bytes, first.near_ir, 3);
@@ -89,11 +105,40 @@ void put_pixel(Bytes& bytes, OusterProfile profile, const OusterPixel& first,
       put_little(bytes, first.reflectivity, 1);
       put_little(bytes, limited(first.near_ir / 16U, 8), 1);
       return;
+    case OusterProfile::rng19_rfl8_sig16_nir16_rgb16:
+      put_little(bytes, return_word(first), 4);
+      put_little(bytes, first.signal, 2);
+      put_little(bytes, first.near_ir, 2);
+      put_colour(bytes, first);
+      put_little(bytes, 0, 2);
+      return;
+    case OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual:
+      for (const OusterPixel& pixel : {first, second}) put_little(bytes, return_word(pixel), 4);
+      put_little(bytes, first.signal, 2);
+      put_little(bytes, second.signal, 2);
+      put_little(bytes, first.near_ir, 2);
+      put_colour(bytes, first);
+      return;
   }
 }
 
 OusterPixel rng19(std::uint32_t word) {
   return {.range_mm = word & 0x7FFFFU, .flags = static_cast<std::uint8_t>(word >> 19U & 0x1FU)};
+}
+
+/// Of return_word().
+OusterPixel return_of(std::uint32_t word) {
+  OusterPixel pixel = rng19(word);
+  pixel.reflectivity = static_cast<std::uint8_t>(word >> 24U);
+  return pixel;
+}
+
+std::array<float, 3> get_colour(ByteView bytes, std::size_t at) {
+  std::array<float, 3> colour{};
+  for (std::size_t i = 0; i < colour.size(); ++i)
+    colour[i] = static_cast<float>(
+        Eigen::half(Eigen::half_impl::raw_uint16_to_half(get<std::uint16_t>(bytes, at + 2 * i))));
+  return colour;
 }
 
 void get_pixel(ByteView bytes, OusterProfile profile, OusterPixel& first, OusterPixel* second) {
@@ -113,10 +158,8 @@ void get_pixel(ByteView bytes, OusterProfile profile, OusterPixel& first, Ouster
       return;
     }
     case OusterProfile::rng19_rfl8_sig16_nir16_dual:
-      first = rng19(get<std::uint32_t>(bytes, 0));
-      *second = rng19(get<std::uint32_t>(bytes, 4));
-      first.reflectivity = get<std::uint8_t>(bytes, 3);
-      second->reflectivity = get<std::uint8_t>(bytes, 7);
+      first = return_of(get<std::uint32_t>(bytes, 0));
+      *second = return_of(get<std::uint32_t>(bytes, 4));
       first.signal = get<std::uint16_t>(bytes, 8);
       second->signal = get<std::uint16_t>(bytes, 10);
       first.near_ir = second->near_ir = get<std::uint16_t>(bytes, 12);
@@ -127,6 +170,20 @@ void get_pixel(ByteView bytes, OusterProfile profile, OusterPixel& first, Ouster
       first.flags = static_cast<std::uint8_t>(word >> 15U);
       first.reflectivity = get<std::uint8_t>(bytes, 2);
       first.near_ir = static_cast<std::uint16_t>(16U * get<std::uint8_t>(bytes, 3));
+      return;
+    case OusterProfile::rng19_rfl8_sig16_nir16_rgb16:
+      first = return_of(get<std::uint32_t>(bytes, 0));
+      first.signal = get<std::uint16_t>(bytes, 4);
+      first.near_ir = get<std::uint16_t>(bytes, 6);
+      first.colour = get_colour(bytes, 8);
+      return;
+    case OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual:
+      first = return_of(get<std::uint32_t>(bytes, 0));
+      *second = return_of(get<std::uint32_t>(bytes, 4));
+      first.signal = get<std::uint16_t>(bytes, 8);
+      second->signal = get<std::uint16_t>(bytes, 10);
+      first.near_ir = second->near_ir = get<std::uint16_t>(bytes, 12);
+      first.colour = second->colour = get_colour(bytes, 14);
       return;
   }
 }
@@ -206,7 +263,15 @@ std::string_view name(OusterProfile profile) {
 }
 
 std::size_t ouster_returns(OusterProfile profile) {
-  return profile == OusterProfile::rng19_rfl8_sig16_nir16_dual ? 2 : 1;
+  return profile == OusterProfile::rng19_rfl8_sig16_nir16_dual ||
+                 profile == OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual
+             ? 2
+             : 1;
+}
+
+bool has_colour(OusterProfile profile) {
+  return profile == OusterProfile::rng19_rfl8_sig16_nir16_rgb16 ||
+         profile == OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual;
 }
 
 std::size_t ouster_packet_bytes(const OusterFormat& format) {
@@ -427,8 +492,7 @@ OusterProfile profile_of(const nlohmann::json* value, const std::string& where) 
   const auto names = ouster_profile_names();
   const auto at = std::find(names.begin(), names.end(), word);
   if (at != names.end()) return static_cast<OusterProfile>(at - names.begin());
-  throw Error({where, "'" + shown(word) + "'",
-               "LEGACY, RNG19_RFL8_SIG16_NIR16, RNG19_RFL8_SIG16_NIR16_DUAL, RNG15_RFL8_NIR8",
+  throw Error({where, "'" + shown(word) + "'", fmt::format("{}", fmt::join(names, ", ")),
                "record with one of these profiles"});
 }
 
@@ -445,7 +509,7 @@ OusterFormat ouster_format(const Sensor& sensor, const OusterOptions& options) {
                                                     : OusterProfile::rng19_rfl8_sig16_nir16);
   if (ouster_returns(format.profile) != returns)
     fail_of(sensor, std::to_string(returns) + " returns with " + std::string(name(format.profile)),
-            "two returns with RNG19_RFL8_SIG16_NIR16_DUAL, one with the others");
+            "two returns with the profiles ..._DUAL, one with the others");
   format.rows = spinning.channels.size();
   format.columns_per_packet = kColumnsPerPacket;
   if (format.rows != 16 && format.rows != 32 && format.rows != 64 && format.rows != 128)
@@ -474,7 +538,8 @@ OusterPixel pixel_of(const PacketReturn& found) {
   const double range_mm = std::clamp(std::round(found.range_m / kMillimetre_m), 0.0, 1e9);
   return {.range_mm = static_cast<std::uint32_t>(range_mm),
           .reflectivity = found.reflectivity,
-          .signal = static_cast<std::uint16_t>(signal)};
+          .signal = static_cast<std::uint16_t>(signal),
+          .colour = found.colour};
 }
 
 class OusterEncoder final : public PacketEncoder {
@@ -485,6 +550,9 @@ class OusterEncoder final : public PacketEncoder {
         identity_(options.identity) {}
 
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
+    if (has_colour(format_.profile) && frame.ground_truth.colour.empty())
+      fail_of(sensor_, "a frame without the column colour",
+              "colours with " + std::string(name(format_.profile)));
     const double unit_m =
         (format_.profile == OusterProfile::rng15_rfl8_nir8 ? 8.0 : 1.0) * kMillimetre_m;
     for (const FiringSequence& sequence : firing_sequences(sensor_, frame, beams, unit_m)) {
@@ -557,7 +625,8 @@ class OusterEncoder final : public PacketEncoder {
 class OusterDecoder final : public PacketDecoder {
  public:
   explicit OusterDecoder(OusterSource source)
-      : source_(std::move(source)), assembler_(source_.sensor) {}
+      : source_(std::move(source)),
+        assembler_(source_.sensor, true, has_colour(source_.format.profile)) {}
 
   void decode(const UdpPacket& received, std::vector<DecodedFrame>& frames) override {
     if (received.port != source_.identity.lidar_port) return;
@@ -587,8 +656,8 @@ class OusterDecoder final : public PacketDecoder {
     const bool has_signal = source_.format.profile != OusterProfile::rng15_rfl8_nir8;
     const auto add = [&](const OusterPixel& pixel) {
       const double value = has_signal ? pixel.signal : pixel.reflectivity;
-      sequence.returns.push_back(
-          {pixel.range_mm * kMillimetre_m, static_cast<float>(value), pixel.reflectivity});
+      sequence.returns.push_back({pixel.range_mm * kMillimetre_m, static_cast<float>(value),
+                                  pixel.reflectivity, pixel.colour});
     };
     const OusterFormat& format = source_.format;
     if (format.slots.empty()) std::for_each(column.pixels.begin(), column.pixels.end(), add);

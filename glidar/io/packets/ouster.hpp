@@ -28,6 +28,9 @@ enum class OusterProfile : std::uint8_t {
   rng19_rfl8_sig16_nir16,       ///< RNG19_RFL8_SIG16_NIR16
   rng19_rfl8_sig16_nir16_dual,  ///< RNG19_RFL8_SIG16_NIR16_DUAL: two returns
   rng15_rfl8_nir8,              ///< RNG15_RFL8_NIR8: low data rate, ranges in 8 mm
+  /// RNG19_RFL8_SIG16_NIR16_RGB16: colour, of revision 8 (ouster-sdk 0.16.2, parsing.cpp)
+  rng19_rfl8_sig16_nir16_rgb16,
+  rng19_rfl8_sig16_nir16_rgb16_dual,  ///< RNG19_RFL8_SIG16_NIR16_RGB16_DUAL
 };
 
 /// The names as metadata spell them, in the order of OusterProfile.
@@ -35,6 +38,7 @@ std::span<const std::string_view> ouster_profile_names();
 std::string_view name(OusterProfile profile);
 /// Returns of a pixel: 1 or 2.
 std::size_t ouster_returns(OusterProfile profile);
+bool has_colour(OusterProfile profile);
 
 struct OusterFormat {
   OusterProfile profile = OusterProfile::rng19_rfl8_sig16_nir16;
@@ -53,7 +57,10 @@ struct OusterPixel {
   std::uint8_t reflectivity = 0;
   std::uint16_t signal = 0;   ///< photons; not in RNG15_RFL8_NIR8
   std::uint16_t near_ir = 0;  ///< a multiple of 16 in RNG15_RFL8_NIR8
-  std::uint8_t window = 0;    ///< blocked window, only in RNG19 profiles
+  std::uint8_t window = 0;    ///< blocked window, only in RNG19 profiles without colour
+  /// Red, green, blue, linear, 1 for white in the simulated light; only in RGB16 profiles, where
+  /// both returns have one, in half precision.
+  std::array<float, 3> colour{};
 };
 
 struct OusterColumn {

@@ -115,7 +115,11 @@ std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& 
       if (!(frame.range_m[entry] > 0.0)) continue;
       const double units =
           to_whole_units(limits, Limits::Along::range, frame.range_m[entry] + added_m, unit_m);
-      sequences[col].returns[at] = {units * unit_m, frame.intensity[entry], byte_of(unit[entry])};
+      PacketReturn& sent = sequences[col].returns[at];
+      sent = {units * unit_m, frame.intensity[entry], byte_of(unit[entry])};
+      if (frame.ground_truth.colour.empty()) continue;
+      const Eigen::Vector3f& colour = frame.ground_truth.colour[entry];
+      sent.colour = {colour.x(), colour.y(), colour.z()};
     }
   }
   // the row that fires first: the least error of the rotation until it fires
@@ -139,10 +143,12 @@ std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& 
   return sequences;
 }
 
-RevolutionAssembler::RevolutionAssembler(const Sensor& sensor, bool follow_rotation)
+RevolutionAssembler::RevolutionAssembler(const Sensor& sensor, bool follow_rotation,
+                                         bool has_colour)
     : sensor_(sensor),
       spinning_(spinning_optics(sensor, "packets")),
-      follow_rotation_(follow_rotation) {
+      follow_rotation_(follow_rotation),
+      hit_columns_{.colour = has_colour} {
   const auto period_ns = static_cast<std::int64_t>(std::ceil(sequence_period_ns(spinning_)));
   Spinning whole_turn = spinning_;
   whole_turn.azimuth_width_rad = kTwoPi;
@@ -215,6 +221,8 @@ void RevolutionAssembler::fill_column(std::size_t col, DecodedFrame& made) const
           found.range_m + channel.distance_correction_m - made.beams.range_offset_m;
       made.frame.intensity[entry] = found.intensity;
       made.frame.status[entry] = Status::hit;
+      if (hit_columns_.colour)
+        made.frame.ground_truth.colour[entry] = Eigen::Vector3f(found.colour.data());
     } else {
       invalidate_return(made.frame, entry, row < lasers ? Status::miss : Status::no_return_of_rank);
     }
@@ -239,8 +247,8 @@ void RevolutionAssembler::emit(std::vector<DecodedFrame>& frames) {
   made.beams.times_ns.resize(size);
   made.beams.rings.resize(size);
   resize(made.frame, size);
-  resize(made.frame.ground_truth, size, {});
-  write_misses({}, 0, size, made.frame.ground_truth);  // packets have none
+  resize(made.frame.ground_truth, size, hit_columns_);
+  write_misses(hit_columns_, 0, size, made.frame.ground_truth);  // packets have no other columns
   made.frame.rows = made.beams.rows;
   made.frame.cols = made.beams.cols;
   made.frame.frame_id = made.beams.frame_id;

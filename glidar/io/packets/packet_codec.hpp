@@ -7,6 +7,7 @@
 #include <glidar/sensor/optics/spinning.hpp>
 #include <glidar/sensor/sensor.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -66,6 +67,7 @@ struct PacketReturn {
   double range_m = 0.0;
   float intensity = 0.0F;
   std::uint8_t reflectivity = 0;  ///< 0 to 100 % diffuse, above: retro-reflective
+  std::array<float, 3> colour{};  ///< of the frame's ground truth; 0 without it
 };
 
 /// One firing sequence: all lasers once.
@@ -90,8 +92,10 @@ std::vector<FiringSequence> firing_sequences(const Sensor& sensor, const Frame& 
 /// Collects firing sequences and joins those of a revolution to a frame.
 class RevolutionAssembler {
  public:
-  /// `follow_rotation`: the head turns on between the sequence's start and a laser's firing.
-  explicit RevolutionAssembler(const Sensor& sensor, bool follow_rotation = true);
+  /// `follow_rotation`: the head turns on between the sequence's start and a laser's firing;
+  /// `has_colour`: the frames have the column colour.
+  explicit RevolutionAssembler(const Sensor& sensor, bool follow_rotation = true,
+                               bool has_colour = false);
 
   /// Adds the next sequence in time; appends the revolution before it if it begins a new one.
   void add(FiringSequence sequence, std::vector<DecodedFrame>& frames);
@@ -107,6 +111,7 @@ class RevolutionAssembler {
   Spinning spinning_;
   std::vector<std::size_t> laser_of_row_;
   bool follow_rotation_;
+  HitColumnMask hit_columns_;
   std::size_t max_sequences_;
   std::uint32_t number_ = 0;
   std::vector<FiringSequence> sequences_;

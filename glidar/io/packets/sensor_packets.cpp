@@ -53,9 +53,10 @@ bool is_earlier_packet(const UdpPacket& a, const UdpPacket& b) {
 
 }  // namespace
 
-const std::vector<std::string>& packet_columns() {
-  static const std::vector<std::string> kPacketColumns = {"xyz", "intensity", "range"};
-  return kPacketColumns;
+std::vector<std::string> packet_columns(const PacketOptions& options) {
+  std::vector<std::string> columns = {"xyz", "intensity", "range"};
+  if (options.ouster.profile && has_colour(*options.ouster.profile)) columns.emplace_back("colour");
+  return columns;
 }
 
 bool has_packets(const Sensor& sensor) {

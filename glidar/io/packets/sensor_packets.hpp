@@ -28,7 +28,7 @@ struct PacketOptions {
 };
 
 /// The cloud columns that packets need.
-const std::vector<std::string>& packet_columns();
+std::vector<std::string> packet_columns(const PacketOptions& options);
 
 /// Whether the sensor is named after a model whose packets are known.
 bool has_packets(const Sensor& sensor);

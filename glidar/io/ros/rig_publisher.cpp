@@ -414,7 +414,8 @@ std::vector<std::string> RigPublisher::columns(std::size_t sensor) const {
     if (is_colour(image.stream->content)) add_once("colour", columns);
   }
   if (topics_[sensor].packets) {
-    for (const std::string& name : packet_columns()) add_once(name, columns);
+    for (const std::string& name : packet_columns(rig_.sensors[sensor].packets->options))
+      add_once(name, columns);
   }
   return columns;
 }

@@ -63,7 +63,9 @@ class FootprintTrace {
  public:
   FootprintTrace(const BeamSearch& search, Hits& hits) : search_(search), hits_(hits) {}
 
-  void trace(BeamRange footprints) {
+  void trace(BeamRange footprints, std::span<FootprintWay> ways) {
+    ways_ = ways;
+    first_ = footprints.begin;
     std::fill(hits_.instance.begin() + static_cast<std::ptrdiff_t>(footprints.begin * size_),
               hits_.instance.begin() + static_cast<std::ptrdiff_t>(footprints.end * size_),
               kInvalidId);
@@ -220,13 +222,19 @@ class FootprintTrace {
 
   void decide(std::size_t footprint, PossibleHits& found) {
     found.forget_farther();
-    if (found.count == 0) return;
+    if (found.count == 0) return note(footprint, FootprintWay::nothing);
     const std::size_t first = footprint * size_;
-    if (found.count == 1 && found.hit[0].is_certain) return hit_all(first, found.hit[0]);
+    const bool is_one = found.count == 1 && found.hit[0].is_certain;
+    note(footprint, is_one ? FootprintWay::one_triangle : FootprintWay::candidates);
+    if (is_one) return hit_all(first, found.hit[0]);
     for (std::size_t beam = first; beam < first + size_; ++beam) {
       if (beam == first || unsure_.count == 0) add_leaves(found);
       if (unsure_.add(beam, found.end_m)) find_unsure();
     }
+  }
+
+  void note(std::size_t footprint, FootprintWay way) {
+    if (!ways_.empty()) ways_[footprint - first_] = way;
   }
 
   void hit_all(std::size_t first, const PossibleHit& hit) {
@@ -245,6 +253,7 @@ class FootprintTrace {
 
   /// The sub-rays of a footprint.
   void add_others(std::size_t footprint) {
+    note(footprint, FootprintWay::single);
     for (std::size_t beam = footprint * size_; beam < (footprint + 1) * size_; ++beam) {
       add_other(beam);
     }
@@ -298,6 +307,8 @@ class FootprintTrace {
 
   const BeamSearch& search_;
   Hits& hits_;
+  std::span<FootprintWay> ways_;  ///< of the range that is traced
+  std::size_t first_ = 0;         ///< footprint of the range
   const CastView& cast_ = search_.cast();
   const Beams& beams_ = cast_.request.beams;
   const std::size_t size_ = cast_.request.footprints.beams;
@@ -320,8 +331,8 @@ bool FootprintSearch::is_useful() const {
          !beams_.cast().trees.instances().empty();
 }
 
-void FootprintSearch::find(BeamRange footprints, Hits& hits) const {
-  FootprintTrace(beams_, hits).trace(footprints);
+void FootprintSearch::find(BeamRange footprints, Hits& hits, std::span<FootprintWay> ways) const {
+  FootprintTrace(beams_, hits).trace(footprints, ways);
 }
 
 }  // namespace glidar::rays

@@ -5,7 +5,18 @@
 #include <glidar/core/hits.hpp>
 #include <glidar/render/rays/beam_search.hpp>
 
+#include <cstdint>
+#include <span>
+
 namespace glidar::rays {
+
+/// How the hits of a footprint were found.
+enum class FootprintWay : std::uint8_t {
+  nothing,       ///< all sub-rays certainly miss
+  one_triangle,  ///< all certainly hit it first
+  candidates,    ///< every sub-ray was tested with a few triangles
+  single,        ///< every sub-ray was traced
+};
 
 /// Finds the first hits of the sub-rays of footprints: beams that run
 /// close together (CastRequest::footprints). A footprint is searched at once, as a cone: mostly,
@@ -20,8 +31,8 @@ class FootprintSearch {
   [[nodiscard]] bool is_useful() const;
 
   /// Sets instance and primitive of all sub-rays of these footprints. Fastest for multiples of
-  /// kLanes footprints.
-  void find(BeamRange footprints, Hits& hits) const;
+  /// kLanes footprints. `ways`, if not empty, has one entry per footprint.
+  void find(BeamRange footprints, Hits& hits, std::span<FootprintWay> ways = {}) const;
 
  private:
   const BeamSearch& beams_;

@@ -14,6 +14,9 @@
 namespace glidar::rays {
 namespace {
 
+// About 50 microseconds of work, and its hits fit into a core's private cache.
+constexpr std::size_t kTilesPerTask = 64;
+
 /// Inputs that all tiles of a cast share.
 struct Job {
   const Beams& beams;
@@ -214,6 +217,49 @@ class BeamQueue {
   unsigned used_ = 0;        ///< lanes of it
 };
 
+/// Footprints on one triangle each that wait until a batch is full for the diffuse colours of
+/// their other beams.
+class ColourQueue {
+ public:
+  ColourQueue(const Job& job, std::size_t size) : job_(job), size_(size) {}
+
+  void add(std::size_t first) {
+    set(used_, first);
+    if (++used_ == kLanes) finish();
+  }
+
+  void finish() {
+    if (used_ == 0) return;
+    const std::size_t first = batch_.block.beam[0];
+    batch_.block.mask = (1U << used_) - 1U;
+    for (; used_ < kLanes; ++used_) set(used_, first);
+    prepare_hits(job_, false, batch_.block);
+    job_.resolver.write_diffuse_behind(job_.beams, size_ - 1, batch_, job_.hits);
+    used_ = 0;
+  }
+
+ private:
+  void set(unsigned lane, std::size_t beam) {
+    batch_.block.beam[lane] = beam;
+    batch_.block.instance[lane] = job_.hits.instance[beam];
+    batch_.block.primitive[lane] = job_.hits.primitive[beam];
+  }
+
+  const Job& job_;
+  std::size_t size_;  ///< beams of a footprint
+  HitBatch batch_;
+  unsigned used_ = 0;  ///< lanes of it
+};
+
+bool is_one_triangle(const Hits& hits, std::size_t first, std::size_t count) {
+  unsigned others = 0;
+  for (std::size_t i = first + 1; i < first + count; ++i) {
+    others |= static_cast<unsigned>(hits.instance[i] != hits.instance[first]) |
+              static_cast<unsigned>(hits.primitive[i] != hits.primitive[first]);
+  }
+  return others == 0;
+}
+
 /// Adds a beam that hits something, or writes a miss.
 void add_or_miss(const Job& job, std::size_t beam, BeamQueue& queue) {
   if (job.hits.instance[beam] != kInvalidId) return queue.add(beam);
@@ -228,20 +274,27 @@ void cast_footprints(const Job& job, const CastRequest& request, BeamRange range
     add_or_miss(job, first, all_columns);
   }
   all_columns.finish();
+  std::array<OtherHits, kTilesPerTask * kLanes> needed;
+  const std::size_t footprints = (range.end - range.begin) / size;
+  request.needed_of_others(range, {needed.data(), footprints});
   BeamQueue diffuse(job, {.diffuse = true});
-  for (std::size_t first = range.begin; first < range.end; first += size) {
-    const OtherHits needed = request.needed_of_others(first);
+  ColourQueue colours(job, size);
+  for (std::size_t i = 0; i < footprints; ++i) {
+    const std::size_t first = range.begin + i * size;
+    if (needed[i] == OtherHits::ids) continue;
+    if (needed[i] == OtherHits::diffuse && is_one_triangle(job.hits, first, size)) {
+      colours.add(first);
+      continue;
+    }
     for (std::size_t beam = first + 1; beam < first + size; ++beam) {
-      if (needed == OtherHits::diffuse) diffuse.add(beam);
-      if (needed == OtherHits::all_columns) add_or_miss(job, beam, all_columns);
+      if (needed[i] == OtherHits::diffuse) diffuse.add(beam);
+      if (needed[i] == OtherHits::all_columns) add_or_miss(job, beam, all_columns);
     }
   }
   all_columns.finish();
   diffuse.finish();
+  colours.finish();
 }
-
-// About 50 microseconds of work, and its hits fit into a core's private cache.
-constexpr std::size_t kTilesPerTask = 64;
 
 }  // namespace
 

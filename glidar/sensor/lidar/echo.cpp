@@ -331,6 +331,10 @@ double reported_range_m(const Receiver& receiver, const PulseEcho& echo) {
 void select_returns(const Receiver& receiver, std::span<const PulseEcho> echoes,
                     std::array<int, kMaxReturns>& chosen) {
   const std::size_t count = receiver.returns.size();
+  if (echoes.empty()) {
+    std::fill_n(chosen.begin(), count, -1);
+    return;
+  }
   std::array<std::uint16_t, WaveformBuffer::kMax> by_strength;
   for (std::size_t i = 0; i < echoes.size(); ++i) by_strength[i] = static_cast<std::uint16_t>(i);
   std::sort(by_strength.begin(), by_strength.begin() + static_cast<std::ptrdiff_t>(echoes.size()),

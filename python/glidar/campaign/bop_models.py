@@ -24,7 +24,7 @@ DISTANCES = 1 << 22  # maximum number of distances in memory
 def _shape(field):
     """The values of the keys in SHAPE, normalised: different notations of a path or number are equal."""
     found = yf.entries(field)
-    shape = {key: _texts(found[key].node) if key in found else (default,) for key, default in SHAPE.items()}
+    shape = {key: _texts(found[key]) if key in found else (default,) for key, default in SHAPE.items()}
     (model,) = shape.pop("model")
     if not model.lower().endswith(DECLARING) and shape["unit"] == ("",):
         shape["unit"] = ("m",)
@@ -37,10 +37,9 @@ def _shape(field):
     return model, *shape.values()
 
 
-def _texts(node):
+def _texts(field):
     """The text of a scalar, or the texts of a list."""
-    values = node.value if isinstance(node.value, list) else [node]
-    return tuple(str(one.value) for one in values)
+    return tuple(one.value for one in (field.items() if field.kind == "list" else [field]))
 
 
 def _shapes(source):

@@ -131,7 +131,7 @@ def read_choice(field, read):
 
 def read_grid(field, rule):
     """A list of values, or {from: , to: , count: }."""
-    if isinstance(field.node, yf.yaml.SequenceNode):
+    if field.kind == "list":
         return Grid(tuple(yf.number(item, rule) for item in yf.items(field)))
     found = yf.require_keys(field, ["from", "to", "count"])
     first, last = (yf.number(yf.need(field, found, key), rule) for key in ("from", "to"))
@@ -141,10 +141,10 @@ def read_grid(field, rule):
 
 def read_distribution(field, rule=yf.ANY):
     """A number, or a map that describes a distribution; all its values must satisfy the rule."""
-    if yf.is_number(field.node):
+    if field.is_number():
         return Constant(yf.number(field, rule))
-    if not isinstance(field.node, yf.yaml.MappingNode):
-        yf.reject(field, yf.describe(field), f"{rule.allowed}, or a map with one of {', '.join(KINDS)}")
+    if not yf.is_map(field):
+        yf.reject(field, field.description, f"{rule.allowed}, or a map with one of {', '.join(KINDS)}")
     if "choice" in yf.entries(field):
         return read_choice(field, lambda item: yf.number(item, rule))
     kind, value = yf.only_key(field, KINDS)

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the values of a sensor file with variants and modes are written."""
 
-import yaml
-
 from glidar.campaign import yaml_file as yf
 
 
@@ -16,12 +14,12 @@ def _named(maps, key, name):
     layers = []
     for one in maps:
         found = yf.entries(one).get(key)
-        if found is None or not isinstance(found.node, yaml.MappingNode):
+        if found is None or not yf.is_map(found):
             continue
         entries = yf.entries(found)
         same = [word for word in entries if word == name] or [
             word for word in entries if _normalised(word) == _normalised(name)]
-        layers += [entries[word] for word in same[:1] if isinstance(entries[word].node, yaml.MappingNode)]
+        layers += [entries[word] for word in same[:1] if yf.is_map(entries[word])]
     return layers
 
 
@@ -32,5 +30,5 @@ def layers_of(field, variant, mode):
     maps = [*own, field]
     if not mode:
         defaults = [yf.entries(one)["default_mode"] for one in maps if "default_mode" in yf.entries(one)]
-        mode = defaults[0].node.value if defaults and isinstance(defaults[0].node, yaml.ScalarNode) else ""
+        mode = defaults[0].value if defaults else ""
     return [*(_named(maps, "modes", mode) if mode else []), *own]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import glidar
 from glidar import Error
-from glidar.campaign import files, loading, variants, yaml_file as yf
+from glidar.campaign import files, variants, yaml_file as yf
 
 
 class InputChanged(Error):
@@ -91,7 +91,7 @@ def read(name, path, known, variant="", mode=""):
         text = yf.read_text(path)
         named, parts, all_known = {}, {}, True
         for field, key, found in variants.files_of(yf.parse(text, path)):
-            spelled = field.node.value
+            spelled = field.value
             more = _read_with(spelled, found, known) if key == "model" else {}
             named[spelled] = found
             parts.update(more or {})
@@ -107,8 +107,8 @@ def _require_unchanged(source, loaded):
     """Raises InputChanged when a file has changed, or a file was read that did not exist before."""
     wrong = [file.path for file in source.files if _hash(file.path) != file.hash]
     if source.all_known:
-        known = {str(file.path) for file in source.files}
-        wrong += [name for name in loaded if name not in known and not loading.is_copy(name)]
+        known = {str(source.path), *(str(file.path) for file in source.files)}
+        wrong += [name for name in loaded if os.path.realpath(name) not in known and name not in known]
     if wrong:
         raise InputChanged(str(wrong[0]), "it was changed while the campaign ran", "",
                       "restore it and run the same command again, or start in a new folder")

@@ -2,49 +2,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Loads scenes and sensors from the texts of their files, in which values may be replaced."""
 
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
 import glidar
-from glidar import Error
+from glidar import Error, _core
+from glidar._recipe import Recipe
 from glidar.campaign import families, variants, yaml_file as yf
 
-COPY = "glidar-campaign-"  # prefix of folders with changed files
 MAX_FIT_ERROR = 1e-9  # of a pinhole's directions, as tangents
 
 
-def _loaded(text, path, changes, load, layers=()):
-    """Loads a text as if it were the file at `path`: relative paths and locations in errors are those of that
-    file. `layers` as for variants.find."""
-    whole = variants.replaced(text, yf.parse(text, path), changes, layers)
-    with tempfile.TemporaryDirectory(prefix=COPY) as folder:
-        copy = Path(folder) / Path(path).with_suffix(".yaml").name
-        copy.write_text(whole, encoding="utf-8")
-        try:
-            return load(copy)
-        except Error as error:
-            parts = (error.where, error.found, error.allowed, error.remedy)
-            raise Error(*(part.replace(str(copy), str(path)).replace(f"{folder}/", f"{Path(path).parent}/")
-                          for part in parts)) from None
-
-
-def is_copy(path):
-    """Whether a file that was read is the changed copy of the user's file."""
-    return Path(path).parent.name.startswith(COPY)
-
-
 def load_scene(text, path, changes=()):
-    return _loaded(text, path, changes, glidar.load_scene)
+    """The scene of the file at `path`, whose content is `text`, with changes."""
+    if changes:
+        text = variants.replaced(text, yf.parse(text, path), changes)
+    return glidar.Scene._from_recipe(Recipe.of_content(text, str(path)))
 
 
 def load_sensor(text, path, changes=(), variant="", mode=""):
-    """A sensor; `variant` and `mode` of a file that has several, or empty."""
-    def load(copy):
-        return glidar.load_sensor(f"{copy}#{variant}" if variant else copy, mode=mode or None)
-
-    return _loaded(text, path, changes, load, families.layers_of(yf.parse(text, path), variant, mode))
+    """The same for a sensor; `variant` and `mode` of a file that has several, or empty."""
+    if changes:
+        field = yf.parse(text, path)
+        text = variants.replaced(text, field, changes, families.layers_of(field, variant, mode))
+    return glidar.Sensor(_core.load_sensor_content(str(path), text, variant, mode))
 
 
 def intrinsics_of(sensor, name):

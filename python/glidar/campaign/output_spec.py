@@ -60,15 +60,11 @@ def _columns(field):
 
 def _is_off(field):
     """`npz: false` is the same as omitting it; `npz: true` selects the defaults."""
-    return isinstance(field.node, yf.yaml.ScalarNode) and not yf.boolean(field)
-
-
-def _is_plain(field):
-    return isinstance(field.node, yf.yaml.ScalarNode)
+    return yf.is_single(field) and not yf.boolean(field)
 
 
 def _npz(field):
-    if _is_plain(field):
+    if yf.is_single(field):
         return None if _is_off(field) else Npz()
     found = yf.require_keys(field, ["columns", "real", "compress"])
     return Npz(yf.optional(found, "columns", _columns, DEFAULT_COLUMNS),
@@ -77,7 +73,7 @@ def _npz(field):
 
 
 def _cloud(field):
-    if _is_plain(field):
+    if yf.is_single(field):
         return None if _is_off(field) else Cloud()
     found = yf.require_keys(field, ["columns", "every"])
     return Cloud(yf.optional(found, "columns", _columns, None),
@@ -85,7 +81,7 @@ def _cloud(field):
 
 
 def _bop(field):
-    if _is_plain(field):
+    if yf.is_single(field):
         return None if _is_off(field) else Bop()
     found = yf.require_keys(field, ["split", "depth_scale_mm", "images"])
     images = Bop.images

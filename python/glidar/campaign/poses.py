@@ -193,7 +193,7 @@ def require_finite(world_from_body, what):
 
 
 def _radii(field):
-    if yf.is_number(field.node):
+    if field.is_number():
         radius = yf.number(field, yf.ABOVE_ZERO)
         return radius, radius
     return yf.span(field, yf.FROM_ZERO)
@@ -276,7 +276,7 @@ def _euler(field):
 
 
 def read_orientation(field):
-    if isinstance(field.node, yf.yaml.ScalarNode) and field.node.value == "uniform":
+    if field.value == "uniform":
         return UniformRotation()
     kind, value = yf.only_key(field, ORIENTATIONS)
     if kind == "uniform":

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The progress display: a bar with rate and remaining time on a terminal, else a line every 30 seconds."""
+"""The progress display: a bar with rate and remaining time on a terminal, else a line every ten seconds."""
 
 import logging
 import sys
@@ -9,7 +9,7 @@ import time
 from glidar._printing import print_message
 
 BAR = 24
-LINE_EVERY_S = 30.0
+LINE_EVERY_S = 10.0
 DRAW_EVERY_S = 0.2
 MAX_WARNINGS = 5
 

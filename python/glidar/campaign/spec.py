@@ -6,8 +6,6 @@ import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 
-import yaml
-
 from glidar.campaign import output_spec, sampling, variants, yaml_file as yf
 from glidar.campaign.distributions import Choice, Constant, Grid, read_choice, read_distribution
 from glidar.campaign.poses import PoseDistribution, read_pose
@@ -62,7 +60,7 @@ class Spec:
 
 def _read_source(field):
     """A name; {choice: [names], weights: [..]}; or {grid: [names]}: one after the other."""
-    if isinstance(field.node, yaml.ScalarNode):
+    if yf.is_single(field):
         return Source((yf.name(field),), Constant(0))
     found = yf.entries(field)
     if "grid" in found:

@@ -11,14 +11,12 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-import yaml
-
+from glidar import _core
 from glidar._errors import excerpt
 from glidar.campaign import yaml_file as yf
 
 PATH = re.compile(r"(scene|sensor)((?:\.[A-Za-z_]\w*|\[[^\[\]]+\])+)")
 STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([^\[\]]+)\]")
-ANCHOR = re.compile(r"(?:[&!]\S*\s+)*")
 MAX_DIGITS = 9  # of an element's index
 # keys whose values may be paths
 FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "noise_texture", "picture", "calibration_file",
@@ -52,8 +50,8 @@ def _element(field, word):
         return elements[int(word)]
     names = []
     for element in elements:
-        found = yf.entries(element) if isinstance(element.node, yaml.MappingNode) else {}
-        names.append(found["name"].node.value if "name" in found else "")
+        found = yf.entries(element) if yf.is_map(element) else {}
+        names.append(found["name"].value if "name" in found else "")
         if names[-1] == word:
             return element
     known = [name for name in names if name]
@@ -63,8 +61,7 @@ def _element(field, word):
 
 def _require_unanchored(field):
     """Rejects values with an anchor, which may occur at several places and would change at all of them."""
-    position = field.node.start_mark
-    if position.buffer[position.pointer] in "&*!":
+    if field.has_anchor_alias_or_tag():
         yf.reject(field, "an anchor, an alias or a tag", "a plain value", "write it out")
 
 
@@ -85,7 +82,7 @@ def find(field, target, is_replaced=True, layers=()):
 def _has(field, target):
     """Whether a map of overrides has the value, or replaces a list or value that contains it."""
     for step in target.steps:
-        if step.startswith("[") or not isinstance(field.node, yaml.MappingNode):
+        if step.startswith("[") or not yf.is_map(field):
             return True
         found = yf.entries(field)
         if step not in found:
@@ -110,44 +107,28 @@ def files_of(field):
     stack, found, seen = [field], [], set()
     while stack:
         here = stack.pop()
-        if id(here.node) in seen:  # visited before through an alias
+        place = here.kind, here.position
+        if place in seen:  # visited before through an alias
             continue
-        seen.add(id(here.node))
-        if isinstance(here.node, yaml.MappingNode):
+        if yf.is_map(here):
+            seen.add(place)
             for key, value in yf.entries(here).items():
-                if key in FILE_KEYS and _is_path(value.node):
-                    found.append((value, key, Path(os.path.realpath(folder / value.node.value))))
+                if key in FILE_KEYS and _is_path(value.value):
+                    found.append((value, key, Path(os.path.realpath(folder / value.value))))
                 stack.append(value)
-        elif isinstance(here.node, yaml.SequenceNode):
+        elif here.kind == "list":
+            seen.add(place)
             stack += yf.items(here, 0)
-    return sorted(found, key=lambda entry: entry[0].node.start_mark.index)
+    return sorted(found, key=lambda entry: entry[0].position)
 
 
-def _is_path(node):
-    return (isinstance(node, yaml.ScalarNode) and node.value and "\0" not in node.value
-            and not node.value.startswith("builtin:"))
-
-
-def _quoted(path):
-    return "'" + str(path).replace("'", "''") + "'"
-
-
-def _place(text, field):
-    """The range of the value's text, without its anchor and tag: (first, last)."""
-    first, last = field.node.start_mark.index, field.node.end_mark.index
-    return ANCHOR.match(text, first).end(), last
+def _is_path(text):
+    return text and "\0" not in text and not text.startswith("builtin:")
 
 
 def replaced(text, field, values, layers=()):
-    """The text with values replaced, given as pairs (Target, text); `layers` as for find(). Paths of files become absolute, so that the text
-    can be read from any folder."""
-    edits = [(value, _quoted(path)) for value, _, path in files_of(field) if os.path.isfile(path)]
-    edits += [(find(field, target, layers=layers), value) for target, value in values]
-    edits.sort(key=lambda edit: edit[0].node.start_mark.index, reverse=True)
-    for old, new in edits:
-        first, last = _place(text, old)
-        text = text[:first] + new + text[last:]
-    return text
+    """The text with values replaced, given as pairs (Target, text); `layers` as for find()."""
+    return _core.with_values(text, [(find(field, target, layers=layers), value) for target, value in values])
 
 
 def number_text(value):

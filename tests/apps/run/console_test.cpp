@@ -3,6 +3,11 @@
 #include <apps/glidar/run/console.hpp>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+#include <support/waiting.hpp>
+
+#include <chrono>
+#include <string>
 
 namespace glidar::app {
 namespace {
@@ -31,6 +36,37 @@ TEST(ProgressLine, FitsTheTerminal) {
   EXPECT_EQ(line.size(), 60U);
   EXPECT_TRUE(line.ends_with(" 50 %, 1 s left"));
   EXPECT_LE(progress_line(name, 0.5, 1.0, 10).size(), 10U);
+}
+
+TEST(ProgressText, HasPercentAndTimeLeftWithoutABar) {
+  EXPECT_EQ(progress_text("frame 12 of 200", 0.055, 11.0), "frame 12 of 200, 5 %, 3 min 09 s left");
+  EXPECT_EQ(progress_text("loading a.ply", -1.0, 20.4), "loading a.ply, 20 s so far");
+}
+
+TEST(ProgressScope, WritesALineInEachIntervalWithoutATerminal) {
+  ::testing::internal::CaptureStderr();
+  {
+    Console console(false, std::chrono::milliseconds(1));
+    ProgressScope run(console, "frame", 200);
+    for (int i = 0; i < 12; ++i) run.next();
+    const ProgressScope inner(console, "casting 5 beams");
+    console.set_progress(0.5);
+    const auto written = [] { return ::lseek(STDERR_FILENO, 0, SEEK_CUR); };
+    EXPECT_TRUE(testing::soon([&, before = written()] { return written() > before; }));
+  }
+  const std::string text = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("glidar: frame 12 of 200, 5 %, "), std::string::npos) << text;
+  EXPECT_EQ(text.find("casting"), std::string::npos) << text;
+}
+
+TEST(ProgressScope, IsSilentWithQuiet) {
+  ::testing::internal::CaptureStderr();
+  {
+    Console console(true, std::chrono::milliseconds(0));
+    const ProgressScope run(console, "frame", 200);
+    const ProgressScope inner(console, "casting");
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 }  // namespace

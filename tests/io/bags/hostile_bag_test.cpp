@@ -190,16 +190,12 @@ TEST_F(HostileDatabase, LongNamesAreRefused) {
               HasSubstr("a name of 5000 bytes"));
 }
 
-TEST_F(HostileDatabase, DefaultsOfMissingColumnsCount) {
-  std::vector<const char*> statements = {
+TEST_F(HostileDatabase, DefaultsOfMissingColumnsAreRefused) {
+  const std::vector<const char*> statements = {
       kTopics, "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER,timestamp INTEGER)",
-      "INSERT INTO topics VALUES(1,'/a','t','cdr')",
-      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i+1 FROM n WHERE i<20000)"
-      " INSERT INTO messages SELECT i,1,i FROM n"};
-  const std::string add =
-      "ALTER TABLE messages ADD COLUMN data BLOB DEFAULT '" + std::string(90'000, 'x') + "'";
-  statements.push_back(add.c_str());
-  EXPECT_THAT(error_of(statements), HasSubstr("decompressed bytes"));
+      "INSERT INTO topics VALUES(1,'/a','t','cdr')", "INSERT INTO messages VALUES(1,1,5)",
+      "ALTER TABLE messages ADD COLUMN data BLOB DEFAULT 'x'"};
+  EXPECT_THAT(error_of(statements), HasSubstr("type null"));
 }
 
 /// Makes all children of interior pages of tables the same one.

@@ -74,12 +74,15 @@ TEST(SharedRing, HoldsNoMoreThanItsSizeUntilBytesAreTaken) {
   const UniqueFd memory(SharedRing::create());
   SharedRing from(memory.get());
   SharedRing to(memory.get());
-  const Bytes bytes(2 * std::size_t{SharedRing::kBytes}, std::byte{5});
-  EXPECT_EQ(from.put(bytes), SharedRing::kBytes);
-  EXPECT_EQ(from.put(bytes), 0U);
+  const auto fill = [](std::size_t, std::span<std::byte> bytes) {
+    std::ranges::fill(bytes, std::byte{5});
+  };
+  const auto put = [&] { return from.put(2 * SharedRing::kBytes, CopyPayload(fill)); };
+  EXPECT_EQ(put(), SharedRing::kBytes);
+  EXPECT_EQ(put(), 0U);
   Bytes taken(100);
   to.take(taken);
-  EXPECT_EQ(from.put(bytes), 100U);
+  EXPECT_EQ(put(), 100U);
 }
 
 TEST(SharedRing, ItsSizeCannotChange) {
@@ -88,8 +91,42 @@ TEST(SharedRing, ItsSizeCannotChange) {
   EXPECT_NE(::ftruncate(memory.get(), off_t{1} << 24), 0);
 }
 
+TEST(SharedRing, AFailureWithinARecordReplacesIt) {
+  for (const std::size_t size : {100U, 5000U, 1'000'000U}) {
+    Ends ends;
+    std::thread writing([&] {
+      SharedRing ring(ends.memory.get());
+      RecordWriter writer(ends.write_end.get(), &ring);
+      const auto copy = [](std::size_t offset, std::span<std::byte> bytes) {
+        if (offset + bytes.size() > 90) throw Error({"run.db3", "a page is missing"});
+      };
+      writer.write({RecordKind::item, 7, 0, {}});
+      try {
+        writer.write({RecordKind::item, 8, 0, {}}, size, CopyPayload(copy));
+      } catch (const Error& error) {
+        writer.write_failure(error.parts());
+      }
+    });
+    RecordReader reader = ends.reader();
+    EXPECT_EQ(reader.next().index, 7U);
+    EXPECT_EQ(error_text([&] { reader.next(); }), "run.db3: a page is missing");
+    writing.join();
+  }
+}
+
+TEST(SharedRing, ARecordWithoutItsEndIsAnError) {
+  const Ends ends;
+  std::array<std::byte, 52> stream{};  // an item of 5000 bytes, no piece, an item
+  stream[0] = stream[28] = std::byte{3};
+  stream[16] = std::byte{0x88};
+  stream[17] = std::byte{0x13};
+  ASSERT_EQ(::write(ends.write_end.get(), stream.data(), stream.size()), 52);
+  RecordReader reader = ends.reader();
+  EXPECT_THAT(error_text([&] { reader.next(); }), HasSubstr("a record without its end"));
+}
+
 TEST(SharedRing, PiecesThatDoNotFitAreErrors) {
-  for (const std::uint32_t piece : {0U, 5001U, 0xFFFFFFFFU}) {
+  for (const std::uint32_t piece : {5001U, 0xFFFFFFFFU}) {
     const Ends ends;
     std::array<std::byte, 24> head{};
     head[0] = std::byte{3};      // an item

@@ -30,6 +30,10 @@ TEST(InputBudget, GrowsWithTheInputFromAFloor) {
   EXPECT_EQ(InputBudget(kMiB).limit(Budget::decompressed_bytes), 512 * kMiB);
   EXPECT_EQ(InputBudget(0).limit(Budget::held_bytes), 64 * kMiB);
   EXPECT_EQ(InputBudget(1024 * kMiB).limit(Budget::held_bytes), 1024 * kMiB);
+  EXPECT_EQ(InputBudget(0).limit(Budget::copies), 8'000'000U);
+  InputBudget grown(kMiB);
+  grown.add_input(kMiB);
+  EXPECT_EQ(grown.limit(Budget::numbers), InputBudget(2 * kMiB).limit(Budget::numbers));
   EXPECT_GT(InputBudget(UINT64_MAX).limit(Budget::messages), UINT64_MAX / 1024);
 }
 

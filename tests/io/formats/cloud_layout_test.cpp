@@ -211,7 +211,7 @@ TEST(PointFieldLayout, TheSidecarListsTheLayoutAndItsFields) {
   fixture::add_scan_columns(made.cloud);
   const auto cloud_json = [&](const char* name) {
     write_cloud(made, folder / name, {.layout = "velodyne"});
-    return nlohmann::json::parse(file_bytes(folder / (std::string(name) + ".json"))).at("cloud");
+    return nlohmann::json::parse(file_bytes(sidecar_path(folder / name))).at("files").at(0);
   };
   const nlohmann::json reported = cloud_json("a.ply");
   EXPECT_EQ(reported.at("layout"), "velodyne");

@@ -194,7 +194,7 @@ TEST(FileSink, LabelsOfAnEarlierCloudAreRemoved) {
 TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {
   const testing::TestFolder folder;
   write_cloud(make_fixture(), folder / "a.pcd");
-  EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
+  EXPECT_THAT(folder.names(), ElementsAre("a.glidar.json", "a.pcd"));
 }
 
 TEST(FileSink, PreviewsAndPosesHaveNoSidecar) {
@@ -217,15 +217,20 @@ TEST(FileSink, SidecarsOfImagesDescribeThePixels) {
                            "a.instance.png", "a.class.png", "a.exr"}) {
     if (!format_for(name).missing.empty()) continue;
     write_cloud(made, folder / name, {.depth_png_units_per_m = 2000.0});
-    const auto reported = nlohmann::json::parse(file_bytes(folder / (std::string(name) + ".json")));
-    EXPECT_FALSE(reported.at("cloud").at("image").at("pixels").get<std::string>().empty()) << name;
+    const auto reported = nlohmann::json::parse(file_bytes(folder / "a.glidar.json"));
+    EXPECT_EQ(reported.at("files").at(0).at("file"), name);
+    EXPECT_FALSE(reported.at("files").at(0).at("image").at("pixels").get<std::string>().empty())
+        << name;
     const auto& info = reported.at("sensor").at("camera_info");
     EXPECT_EQ(info.at("k"), nlohmann::json::parse("[10.0,0.0,2.0, 0.0,11.0,1.5, 0.0,0.0,1.0]"));
     EXPECT_EQ(info.at("d"), nlohmann::json::parse("[0.25,0.0,0.5,0.0,0.125]"));
     EXPECT_EQ(info.at("distortion_model"), "plumb_bob");
   }
-  const auto depth = nlohmann::json::parse(file_bytes(folder / "a.depth.png.json"));
-  EXPECT_EQ(depth.at("cloud").at("image").at("units_per_m"), 2000.0);
+  const auto all = nlohmann::json::parse(file_bytes(folder / "a.glidar.json"));
+  EXPECT_GE(all.at("files").size(), 7U);  // of the same frame
+  for (const auto& file : all.at("files")) {
+    if (file.at("file") == "a.depth.png") EXPECT_EQ(file.at("image").at("units_per_m"), 2000.0);
+  }
 }
 
 TEST(FileSink, AnInstanceIdThatDoesNotFitIsAnErrorWithARemedy) {
@@ -256,7 +261,7 @@ TEST(FileSink, StagedFilesAppearOnlyOnCommit) {
   sink->stage(made.cloud, made.frame);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.pcd"));
   sink->commit();
-  EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
+  EXPECT_THAT(folder.names(), ElementsAre("a.glidar.json", "a.pcd"));
 }
 
 TEST(FileSink, TheSidecarCanBeOmitted) {
@@ -294,13 +299,13 @@ TEST(FileSink, AnErrorLeavesTheOldFilesUnchanged) {
   CloudFixture made = make_fixture();
   write_cloud(made, folder / "a.pcd");
   const std::string cloud = file_bytes(folder / "a.pcd");
-  const std::string sidecar = file_bytes(folder / "a.pcd.json");
-  std::filesystem::remove(folder / "a.pcd.json");
-  std::filesystem::create_directory(folder / "a.pcd.json");
+  const std::string sidecar = file_bytes(folder / "a.glidar.json");
+  std::filesystem::remove(folder / "a.glidar.json");
+  std::filesystem::create_directory(folder / "a.glidar.json");
   made.cloud.frame_id = "another";
   EXPECT_THROW(write_cloud(made, folder / "a.pcd"), Error);
   EXPECT_EQ(file_bytes(folder / "a.pcd"), cloud);
-  EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
+  EXPECT_THAT(folder.names(), ElementsAre("a.glidar.json", "a.pcd"));
 }
 
 TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
@@ -370,7 +375,7 @@ TEST(FileSink, ConcurrentSinksOfOnePathLeaveACompleteFile) {
   other.join();
   const std::size_t size = file_bytes(folder / "a.bin").size();
   EXPECT_TRUE(size == 3 * 16 || size == std::size_t{200 * 200 - 200 * 200 / 3} * 16) << size;
-  EXPECT_THAT(folder.names(), ElementsAre("a.bin", "a.bin.json"));
+  EXPECT_THAT(folder.names(), ElementsAre("a.bin", "a.glidar.json"));
 }
 
 TEST(FileSink, PathsMayContainSpacesAndAnyCharacters) {
@@ -378,8 +383,8 @@ TEST(FileSink, PathsMayContainSpacesAndAnyCharacters) {
   const std::string name = "größe mit leer — 点群 'q\".pcd";
   write_cloud(make_fixture(), folder / name);
   EXPECT_FALSE(file_bytes(folder / name).empty());
-  const auto reported = nlohmann::json::parse(file_bytes(folder / (name + ".json")));
-  EXPECT_EQ(reported.at("cloud").at("file"), name);
+  const auto reported = nlohmann::json::parse(file_bytes(sidecar_path(folder / name)));
+  EXPECT_EQ(reported.at("files").at(0).at("file"), name);
 }
 
 TEST(FileSink, ABareFileNameIsWrittenToTheCurrentFolder) {
@@ -388,7 +393,7 @@ TEST(FileSink, ABareFileNameIsWrittenToTheCurrentFolder) {
   std::filesystem::current_path(folder.path());
   write_cloud(make_fixture(), "a.csv");
   std::filesystem::current_path(before);
-  EXPECT_THAT(folder.names(), ElementsAre("a.csv", "a.csv.json"));
+  EXPECT_THAT(folder.names(), ElementsAre("a.csv", "a.glidar.json"));
 }
 
 TEST(FileSink, FramesWithoutHitsGiveValidDenseFiles) {

@@ -9,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace glidar {
@@ -26,15 +25,14 @@ TEST(ReadSidecar, ReturnsTheOriginOfTheCloud) {
                      .folder = folder.path() / "elsewhere"};
   make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
   const Sidecar sidecar = read_sidecar(folder.path() / "x.pcd");
-  EXPECT_EQ(sidecar.path, folder.path() / "x.pcd.json");
+  EXPECT_EQ(sidecar.path, folder.path() / "x.glidar.json");
   EXPECT_EQ(sidecar.version, version());
   EXPECT_EQ(sidecar.command.arguments, context.command.arguments);
   EXPECT_EQ(sidecar.command.folder.lexically_normal(), folder.path() / "elsewhere");
-  EXPECT_EQ(sidecar.frame, 7U);
-  EXPECT_EQ(sidecar.frame_hash, frame_hash(made.frame));
-  EXPECT_EQ(sidecar.points, made.cloud.size());
-  EXPECT_EQ(sidecar.hits, static_cast<std::size_t>(std::count(
-                              made.frame.status.begin(), made.frame.status.end(), Status::hit)));
+  ASSERT_EQ(sidecar.frames.size(), 1U);
+  EXPECT_EQ(sidecar.frames[0].number, 7U);
+  EXPECT_EQ(sidecar.frames[0].hash, frame_hash(made.frame));
+  EXPECT_EQ(sidecar.frames[0].points, made.cloud.size());
   EXPECT_EQ(sidecar.model_hashes.size(), made.scene.instances.size());
 }
 
@@ -44,6 +42,20 @@ TEST(ReadSidecar, HasNoCommandForCloudsWithoutOne) {
   const SidecarContext context = made.context();
   make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
   EXPECT_TRUE(read_sidecar(folder.path() / "x.pcd").command.arguments.empty());
+}
+
+TEST(ReadSidecar, FindsEveryFileOfAFrameWhoseFilesWereWrittenOneByOne) {
+  const TestFolder folder;
+  CloudFixture made = make_fixture();
+  const SidecarContext context = made.context();
+  for (const char* name : {"x.pcd", "x.ply", "x.pcd"})
+    make_file_sink(folder.path() / name, {}, context)->write(made.cloud, made.frame);
+  EXPECT_EQ(read_sidecar(folder.path() / "x.ply").frames[0].points, made.cloud.size());
+  EXPECT_EQ(read_sidecar(folder.path() / "x.pcd").frames[0].points, made.cloud.size());
+  made.frame.range_m[0] += 1.0;  // another measurement replaces them
+  make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
+  EXPECT_NE(error_text([&] { read_sidecar(folder.path() / "x.ply"); }).find("does not list x.ply"),
+            std::string::npos);
 }
 
 TEST(FrameHash, DependsOnTheMeasurementOnly) {
@@ -69,7 +81,7 @@ TEST(FrameHash, DependsOnTheMeasurementOnly) {
 }
 
 std::string sidecar_error(const TestFolder& folder, const std::string& sidecar) {
-  (void)folder.write("x.pcd.json", sidecar);
+  (void)folder.write("x.glidar.json", sidecar);
   return error_text([&] { read_sidecar(folder.path() / "x.pcd"); });
 }
 
@@ -80,7 +92,8 @@ TEST(ReadSidecar, RejectsOtherFiles) {
       << error;
   for (const char* text : {"", "{", "{\"glidar\": nul}"}) {
     const std::string damaged = sidecar_error(folder, text);
-    EXPECT_NE(damaged.find("x.pcd.json: a damaged file: its text "), std::string::npos) << damaged;
+    EXPECT_NE(damaged.find("x.glidar.json: a damaged file: its text "), std::string::npos)
+        << damaged;
     EXPECT_NE(damaged.find("; copy the file again, or write the cloud again"), std::string::npos);
     EXPECT_EQ(damaged.find("exception"), std::string::npos) << damaged;
   }

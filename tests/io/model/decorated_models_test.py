@@ -48,6 +48,8 @@ SOUND = {
                              "a texture without a file is left out: 't'"),
     "texture without an image": (dae(more=EFFECT.format(image="", diffuse='<texture texture="t"/>')), "a texture without a file"),
     "colours after white space": (dae(more=EFFECT.format(image="", diffuse="<color>\n  0 0.5 0 1 </color>")), ""),
+    "colours of three numbers": (dae(more=EFFECT.format(image="", diffuse="<color>0 0.5 0</color>")), ""),
+    "parameters without names": (dae().replace(' name="X"', "").replace(' name="Y"', "").replace(' name="Z"', ""), "read in their order"),
     "tangents without binormals": (dae(TANGENTS.format("TEXTANGENT")), ""),
     "binormals without tangents": (dae(TANGENTS.format("TEXBINORMAL")), ""),
     "inputs of its own": (dae(TANGENTS.format("SPEED")), "inputs are left out: SPEED"),
@@ -85,9 +87,9 @@ RELATIONS = '<Relationships xmlns="http://schemas.openxmlformats.org/package/200
 TYPES = '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>'
 
 
-def threemf(names="", item='<item objectid="1"/>', pictures=(), encoding="utf-8", zip64=False):
+def threemf(names="", item='<item objectid="1"/>', pictures=(), encoding="utf-8", zip64=False, change=str):
     data = io.BytesIO()
-    model = MODEL.format(names=names, item=item).encode(encoding)
+    model = change(MODEL.format(names=names, item=item)).encode(encoding)
     files = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model, **dict.fromkeys(pictures, b"\x89PNG no picture")}
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
@@ -112,10 +114,11 @@ def zae():
 
 PRODUCTION = ' xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06"'
 PACKAGES = {"plain.3mf": threemf(), "thumbnail.3mf": threemf(pictures=["Metadata/thumbnail.png", "Auxiliaries/.thumbnails/a.jpg"]),
-            "zip64.3mf": threemf(zip64=True), "utf16.3mf": threemf(encoding="utf-16"), "manifest.zae": zae(),
+            "zip64.3mf": threemf(zip64=True), "production.3mf": threemf(PRODUCTION + ' requiredextensions="p"', '<item objectid="1" p:UUID="1"/>'), "utf16.3mf": threemf(encoding="utf-16"), "manifest.zae": zae(),
             "utf16le.dae": dae().replace("utf-8", "utf-16").encode("utf-16"), "utf16be.dae": b"\xfe\xff" + dae().replace("utf-8", "utf-16").encode("utf-16-be")}
+SLICES = ' xmlns:s="http://schemas.microsoft.com/3dmanufacturing/slice/2015/07"'
 BAD_PACKAGES = {"parts elsewhere": (threemf(PRODUCTION, '<item objectid="1" p:path="/3D/b.model"/>'), "production extension"),
-                "required": (threemf(PRODUCTION + ' requiredextensions="p"'), "requires the extension"),
+                "required": (threemf(SLICES + ' requiredextensions="s"'), "requires the extension"),
                 "too many items": (threemf(item=20001 * '<item objectid="1"/>'), "'build' places more than 20000 objects"),
                 "damaged": (damaged(threemf()), "its archive is damaged: '3D/3dmodel.model'")}
 
@@ -167,6 +170,14 @@ class DecoratedModels(unittest.TestCase):
         for name, data in PACKAGES.items():
             with self.subTest(name):
                 self.expect_square(self.info(name, data))
+
+    def test_triangles_of_3mf_have_their_own_materials(self):
+        paints = '<basematerials id="7"><base name="red" displaycolor="#FF0000"/><base name="blue" displaycolor="#0000FF"/></basematerials><object'
+        package = threemf(change=lambda text: text.replace("<object", paints, 1).replace('v3="2"', 'v3="2" pid="7" p1="0"')
+                          .replace('v3="3"', 'v3="3" pid="7" p1="1"'))
+        report = self.info("a.3mf", package)
+        self.expect_square(report)
+        self.assertEqual([(one["name"][-4:], one["triangles"]) for one in report["materials"]], [("_red", 1), ("blue", 1)])
 
     def test_packages_with_parts_elsewhere_are_refused(self):
         for name, (data, message) in BAD_PACKAGES.items():

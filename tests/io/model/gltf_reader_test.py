@@ -4,6 +4,7 @@
 """glTF files: each statement is used, named in a note, or refused with its JSON path. The files are made here; their
 shape is compared with that which NumPy reads by the standard."""
 
+import base64
 import json
 import os
 import subprocess
@@ -266,6 +267,7 @@ NOTED = {
     "hidden nodes": (lambda: changed(lambda j: [j["nodes"].append({"mesh": 0, "extensions": {"KHR_node_visibility": {"visible": False}}}),
                                                 j["scenes"][0].update(nodes=[0, 1])]), "1 nodes are hidden"),
     "emission": (lambda: material(emissiveFactor=[1, 0, 0]), "light that surfaces emit is left out"),
+    "replaced surface": (lambda: material({"KHR_materials_pbrSpecularGlossiness": {}}, pbrMetallicRoughness={}), "replaces pbrMetallicRoughness"),
     "occlusion": (lambda: material(occlusionTexture={"index": 0}), "textures of occlusion are left out"),
     "roughness": (lambda: material(pbrMetallicRoughness={"metallicRoughnessTexture": {"index": 0}}), "textures of metal and roughness are left out"),
     "attribute of its own": (lambda: plate_with("_AGE", np.zeros(4)), "attributes are left out: _AGE"),
@@ -343,7 +345,7 @@ class GltfReader(unittest.TestCase):
         made = copies(TRANSLATION=(np.zeros((count, 3)), "f4"))
         made.json["buffers"] = [{"byteLength": len(made.bytes), "uri": "a.bin"}]
         (self.folder / "a.bin").write_bytes(made.bytes)
-        self.assertIn("more than 100000000 triangles or 1048576 parts", str(info(made.write(self.folder / "a.gltf"))))
+        self.assertIn("more than 1048576 meshes, which is the limit", str(info(made.write(self.folder / "a.gltf"))))
 
     def test_invalid_statements_are_refused_with_their_path(self):
         for name, (make, message) in REFUSED.items():
@@ -377,6 +379,12 @@ class GltfReader(unittest.TestCase):
         path = made.write(self.folder / "a.gltf")
         path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
         self.assertEqual(info(path)["triangles"], 2)
+
+    def test_schemes_of_data_uris_are_in_letters_of_any_case(self):
+        made = plate()
+        uri = "Data:application/octet-stream;BASE64," + base64.b64encode(made.bytes).decode()
+        made.json["buffers"] = [{"byteLength": len(made.bytes), "uri": uri}]
+        self.assertEqual(self.read(made)["triangles"], 2)
 
     def test_damaged_containers_are_refused(self):
         sound = plate().write(self.folder / "a.glb").read_bytes()

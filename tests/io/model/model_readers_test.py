@@ -36,7 +36,8 @@ def read_obj(path):
     return np.array(vertices), faces
 
 
-def read_ply(path):
+def ply_elements(path):
+    """The entries of each element, by the names of their properties."""
     data = path.read_bytes()
     end = data.index(b"end_header") + len(b"end_header")
     end += 2 if data[end:end + 2] == b"\r\n" else 1
@@ -68,6 +69,11 @@ def read_ply(path):
                 row[p[-1]] = [value(p[2]) for _ in range(int(value(p[1])))] if p[0] == "list" else value(p[0])
             rows.append(row)
         found[name] = rows
+    return found
+
+
+def read_ply(path):
+    found = ply_elements(path)
     vertices = np.array([[float(r[k]) for k in "xyz"] for r in found["vertex"]])
     lists = [r.get("vertex_indices", r.get("vertex_index")) for r in found.get("face", [])]
     return vertices, [[int(i) for i in corners] for corners in lists]

@@ -86,6 +86,8 @@ std::vector<Case> obj_cases() {
       {"cr", f, "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3", 1, 0.5},
       {"comments", f, "#a\nv 0 0 0 # b\nv 1 0 0#c\nv 0 1 0\nf 1 2 3 # d\n", 1, 0.5},
       {"continued", f, "v 0 \\\n 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\\\r\n 3\n", 1, 0.5},
+      {"continued_names", f, one + "g a \\\nb\no c\\\n d\nusemtl \\\n\nf 1 2 3\n", 1, 0.5},
+      {"backslash_in_a_comment", f, "# C:\\models\\\n" + one + "f 1 2 3\n", 1, 0.5},
       {"negative", f, one + "f -3 -2 -1\n", 1, 0.5},
       {"faces_first", f, "f 1 2 3\n" + one, 1, 0.5},
       {"weights", f, "v 0 0 0 .5\nv 1 0 0 .5\nv 0 1 0 .5\nf 1 2 3\n", 1, 0.5, "weights"},
@@ -244,6 +246,10 @@ std::vector<Case> off_cases() {
        "# a\nOFF # b\n\n  # c\n4 1 0\n0 0 0\n  # d\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 # e\n", 2, 1.0},
       {"counts_in_the_first_line", f, "OFF 4 1 0\n" + square + "4 0 1 2 3\n", 2, 1.0},
       {"no_word", f, "4 1 0\n" + square + "4 0 1 2 3\n", 2, 1.0},
+      {"small_letters", f, "coff\n3 1 0\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n3 0 1 2\n", 1, 0.5},
+      {"numbers_on_several_lines", f, "OFF\n4\n1\n4\n0 0\n0\n1\n0 0\n1 1 0\n0 1 0\n4 0 1\n2 3\n", 2,
+       1.0},
+      {"no_normals", f, "NOFF\n4 1 0\n" + square + "4 0 1 2 3\n", 0, 0.0, "line 3"},
       {"no_edges", f, "OFF\n4 1\n" + square + "4 0 1 2 3\n", 2, 1.0},
       {"normals", f, "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n", 1, 0.5},
       {"list_colours", f, "OFF\n4 1 0\n" + square + "4 0 1 2 3 7\n", 2, 1.0, "by their number"},
@@ -426,8 +432,9 @@ TEST(ModelMtl, OptionsAndOddLines) {
   const TestFolder temp;
   temp.write("my paint.ppm", testing::ppm(1, 1, "abc"));
   temp.write("a b.mtl",
-             "newmtl paint # gold\nKd 0.5\nKs 1 x 1\naniso 0.7\nNi 1.5\n"
-             "map_Kd -mm 0 1 -s 2 2 -clamp on my paint.ppm\n");
+             "# C:\\work\\\nnewmtl paint # gold\nKd 0.5\nKs 1 \\\n x 1\naniso 0.7\nNi 1.5\n"
+             "map_Ks -s 1e300 my paint.ppm\n"
+             "map_Kd -mm 0 1 -s 2 2 -clamp on my paint.ppm # the first\n");
   temp.write("c.mtl", "newmtl other\nKd 0 1 0\n");
   const Model model =
       load(temp.write("a.obj", "mtllib a b.mtl c.mtl\n" + kSquare +
@@ -436,8 +443,9 @@ TEST(ModelMtl, OptionsAndOddLines) {
   EXPECT_EQ(model.materials[0].diffuse, Eigen::Vector3f::Constant(0.5F));
   EXPECT_EQ(model.materials[0].diffuse_texture.wrap_u, Wrap::clamp);
   EXPECT_EQ(model.textures.at(0).name, "my paint.ppm");
+  EXPECT_EQ(model.missing_textures.size(), 1U);  // of Ks, whose name begins with a number
   EXPECT_EQ(model.materials[1].diffuse, Eigen::Vector3f(0, 1, 0));
-  EXPECT_THAT(model.notes, Contains(HasSubstr("a b.mtl, line 3")));
+  EXPECT_THAT(model.notes, Contains(HasSubstr("a b.mtl, line 4")));
   EXPECT_THAT(model.notes, Contains(HasSubstr("Ni, aniso")));
 }
 

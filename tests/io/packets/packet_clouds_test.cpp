@@ -10,6 +10,7 @@
 #include <glidar/io/ros/cloud_message.hpp>
 #include <glidar/io/ros/codec.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -108,24 +109,67 @@ TEST_P(PacketClouds, OfDecodedPacketsHaveThePointsOfTheFramesWithinTheUnit) {
   EXPECT_LE(late_ns, 1'100);
 }
 
+TEST(PacketColours, OfDecodedPacketsAreThoseOfTheFirstReturnInHalfPrecision) {
+  PacketOptions options;
+  options.ouster.profile = OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual;
+  const Sensor sensor = packet_sensor("OS1-32", true);
+  const auto encoder = make_packet_encoder(sensor, options);
+  const auto decoder = make_packet_decoder(sensor, options);
+  const DecodedFrame made = room_frame(sensor, 0);
+  std::vector<UdpPacket> packets;
+  encoder->encode(made.frame, made.beams, packets);
+  encoder->finish(packets);
+  std::vector<DecodedFrame> frames;
+  for (const UdpPacket& packet : packets) decoder->decode(packet, frames);
+  decoder->finish(frames);
+  ASSERT_EQ(frames.size(), 1U);
+  const Frame& found = frames.front().frame;
+  ASSERT_EQ(found.ground_truth.colour.size(), found.range_m.size());
+  constexpr float kHalfPrecision = 0x1p-12F;  // of shares up to 1
+  std::size_t colours = 0;
+  for (std::size_t i = 0; i < found.range_m.size() / 2; ++i) {
+    if (found.status[i] != Status::hit) continue;
+    ASSERT_EQ(made.frame.status[i], Status::hit) << i;
+    const Eigen::Vector3f& wanted = made.frame.ground_truth.colour[i];
+    ASSERT_LE((found.ground_truth.colour[i] - wanted).cwiseAbs().maxCoeff(), kHalfPrecision) << i;
+    ++colours;
+  }
+  EXPECT_GT(colours, 10'000U);
+}
+
+TEST(PacketColours, AreDemandedOfTheFrame) {
+  PacketOptions options;
+  options.ouster.profile = OusterProfile::rng19_rfl8_sig16_nir16_rgb16;
+  const Sensor sensor = packet_sensor("OS1-32", false);
+  DecodedFrame made = room_frame(sensor, 0);
+  made.frame.ground_truth.colour.clear();
+  std::vector<UdpPacket> packets;
+  EXPECT_THAT(
+      [&] { make_packet_encoder(sensor, options)->encode(made.frame, made.beams, packets); },
+      ::testing::Throws<Error>(::testing::Property(
+          &Error::what, ::testing::HasSubstr("a frame without the column colour"))));
+  EXPECT_THAT(packet_columns(options), ::testing::Contains("colour"));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, PacketClouds,
-    ::testing::Values(CloudStream{"VLP-16", false, 0.002}, CloudStream{"VLP-16", true, 0.002},
-                      CloudStream{"Puck-Hi-Res", false, 0.002},
-                      CloudStream{"Puck-Hi-Res", true, 0.002}, CloudStream{"VLP-32C", false, 0.004},
-                      CloudStream{"VLP-32C", true, 0.004}, CloudStream{"HDL-32E", false, 0.002},
-                      CloudStream{"HDL-32E", true, 0.002}, CloudStream{"HDL-64E-S3", false, 0.002},
-                      CloudStream{"HDL-64E-S3", true, 0.002}, CloudStream{"VLS-128", false, 0.004},
-                      CloudStream{"VLS-128", true, 0.004}, CloudStream{"OS0-128", false, 0.001},
-                      CloudStream{"OS2-128", false, 0.001},
-                      CloudStream{"OS1-32", false, 0.001, OusterProfile::legacy},
-                      CloudStream{"OS1-32", false, 0.001, OusterProfile::rng19_rfl8_sig16_nir16},
-                      CloudStream{"OS1-32", true, 0.001,
-                                  OusterProfile::rng19_rfl8_sig16_nir16_dual},
-                      CloudStream{"OS1-32", false, 0.009, OusterProfile::rng15_rfl8_nir8},
-                      CloudStream{"Pandar64", false, 0.004}, CloudStream{"Pandar64", true, 0.004},
-                      CloudStream{"QT64", false, 0.004}, CloudStream{"QT64", true, 0.004},
-                      CloudStream{"XT32", false, 0.004}, CloudStream{"XT32", true, 0.004}));
+    ::testing::Values(
+        CloudStream{"VLP-16", false, 0.002}, CloudStream{"VLP-16", true, 0.002},
+        CloudStream{"Puck-Hi-Res", false, 0.002}, CloudStream{"Puck-Hi-Res", true, 0.002},
+        CloudStream{"VLP-32C", false, 0.004}, CloudStream{"VLP-32C", true, 0.004},
+        CloudStream{"HDL-32E", false, 0.002}, CloudStream{"HDL-32E", true, 0.002},
+        CloudStream{"HDL-64E-S3", false, 0.002}, CloudStream{"HDL-64E-S3", true, 0.002},
+        CloudStream{"VLS-128", false, 0.004}, CloudStream{"VLS-128", true, 0.004},
+        CloudStream{"OS0-128", false, 0.001}, CloudStream{"OS2-128", false, 0.001},
+        CloudStream{"OS1-32", false, 0.001, OusterProfile::legacy},
+        CloudStream{"OS1-32", false, 0.001, OusterProfile::rng19_rfl8_sig16_nir16},
+        CloudStream{"OS1-32", true, 0.001, OusterProfile::rng19_rfl8_sig16_nir16_dual},
+        CloudStream{"OS1-32", false, 0.009, OusterProfile::rng15_rfl8_nir8},
+        CloudStream{"OS1-32", false, 0.001, OusterProfile::rng19_rfl8_sig16_nir16_rgb16},
+        CloudStream{"OS1-32", true, 0.001, OusterProfile::rng19_rfl8_sig16_nir16_rgb16_dual},
+        CloudStream{"Pandar64", false, 0.004}, CloudStream{"Pandar64", true, 0.004},
+        CloudStream{"QT64", false, 0.004}, CloudStream{"QT64", true, 0.004},
+        CloudStream{"XT32", false, 0.004}, CloudStream{"XT32", true, 0.004}));
 
 }  // namespace
 }  // namespace glidar::testing

@@ -217,6 +217,17 @@ class Ouster(unittest.TestCase):
     def test_low_data(self):
         self.check("RNG15_RFL8_NIR8", 4.5)
 
+    def test_colour(self):
+        for profile in ("RNG19_RFL8_SIG16_NIR16_RGB16", "RNG19_RFL8_SIG16_NIR16_RGB16_DUAL"):
+            self.check(profile, 0.51)
+            base = FOLDER / f"OS1-128-{profile}"
+            for scans in open_source(str(base) + ".pcap", meta=[str(base) + ".json"]):
+                scan = scans[0] if not hasattr(scans, "h") else scans
+                share = (scan.field("REFLECTIVITY").astype(np.float32) / np.float32(255))[..., None]  # packet_fixture.hpp
+                wanted = np.concatenate([share, 1 - share, share / 2], axis=2)
+                error = np.abs(scan.field("RGB").astype(np.float32) - wanted)[scan.field("RANGE") > 0]
+                self.assertLess(error.max(), 2**-11, profile)  # half precision below 2
+
 
 def decode(capture, source, *options):
     """The returns that GLIDAR decodes from a capture file."""

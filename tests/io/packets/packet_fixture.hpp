@@ -53,12 +53,14 @@ inline Sensor packet_sensor(const std::string& preset, bool is_dual) {
 
 /// Frame `number` of a sensor at rest in the room. Every seventh beam misses; every third has a
 /// second return 1.5 m behind the first if the sensor reports two, and every sixth of these before.
+/// An intensity i has the colour (i, 1 - i, i / 2).
 inline DecodedFrame room_frame(const Sensor& sensor, std::uint32_t number) {
   DecodedFrame made;
   const FrameInterval interval = frame_interval(sensor, number);
   made.beams = make_beams(sensor, interval);
   const std::size_t size = made.beams.size();
   resize(made.frame, size);
+  made.frame.ground_truth.colour.assign(size, Eigen::Vector3f(0.0F, 0.0F, 0.0F));
   made.frame.rows = made.beams.rows;
   made.frame.cols = made.beams.cols;
   made.frame.stamp_ns = kPacketEpoch_ns + interval.start_ns;
@@ -77,6 +79,8 @@ inline DecodedFrame room_frame(const Sensor& sensor, std::uint32_t number) {
     made.frame.range_m[i] = room_range_m(origin, made.beams.directions[i]) + behind_m;
     made.frame.intensity[i] = static_cast<float>((pulse * 13 + 5) % 256) / 255.0F;
     made.frame.status[i] = Status::hit;
+    const float share = made.frame.intensity[i];
+    made.frame.ground_truth.colour[i] = {share, 1.0F - share, 0.5F * share};
   }
   return made;
 }

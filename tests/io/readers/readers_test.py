@@ -63,6 +63,8 @@ LAYOUTS = {
     "elevation <f4 20, distance <f4 24, time_stamp <u4 28",
     "ouster-fast-lio": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, ring |u1 22, "
     "ambient <u2 23, range <u4 25",
+    "ouster-rgb": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, ring <u2 22, ambient <u2 24, "
+    "range <u4 26, rgb <u4 30",
     "robosense-xyzi": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12",
 }
 
@@ -92,6 +94,7 @@ def layout_values(c):
     percent = reflectivity_byte(c["intensity"], 100)
     zero = np.zeros(len(percent))
     turn = np.where(c["azimuth"] < 0, c["azimuth"] + 2 * np.pi, c["azimuth"])
+    red, green, blue = np.floor(255 * np.clip(c["colour"].astype(np.float64), 0, 1) + 0.5).T
     return {
         "minimal": {},
         "velodyne": {"intensity": percent, "ring": c["ring"], "time": c["time"] * 1e-9},
@@ -112,6 +115,9 @@ def layout_values(c):
         "ouster-fast-lio": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
                             "ring": np.minimum(c["ring"], 255), "ambient": zero,
                             "range": np.floor(np.nan_to_num(c["range"]) / 0.001 + 0.5)},
+        "ouster-rgb": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
+                       "ring": c["ring"], "ambient": zero, "range": np.floor(np.nan_to_num(c["range"]) / 0.001 + 0.5),
+                       "rgb": 65536 * red + 256 * green + blue},
         "robosense-xyzi": {"intensity": percent},
     }  # fmt: skip
 
@@ -124,6 +130,11 @@ def dense(columns):
 def colour_bytes(columns):
     full = np.clip(columns["colour"], 0, 1) * np.float32(255)
     return np.floor(full + np.float32(0.5)).astype(np.uint32)
+
+
+
+def sidecar_of(path):
+    return path.with_name(path.name.partition(".")[0] + ".glidar.json")
 
 
 class Formats(unittest.TestCase):
@@ -335,14 +346,15 @@ class Formats(unittest.TestCase):
 
     def test_sidecar(self):
         for path, _, rows, cols in self.each("a.pcd", "dense1.ply", "a.bin"):
-            reported = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
-            self.assertEqual((reported["cloud"]["rows"], reported["cloud"]["cols"]), (rows, cols))
-            self.assertEqual(reported["cloud"]["file"], path.name)
+            reported = json.loads(sidecar_of(path).read_text("utf-8"))
+            (file,) = (one for one in reported["files"] if one["file"] == path.name)
+            self.assertEqual((file["rows"], file["cols"]), (rows, cols))
 
     def told_columns(self, path):
         """The sidecar's (name, type, components)."""
-        reported = json.loads(path.with_name(path.name + ".json").read_text("utf-8"))
-        return [(c["name"], c["type"], c["components"]) for c in reported["cloud"]["columns"]]
+        reported = json.loads(sidecar_of(path).read_text("utf-8"))
+        (file,) = (one for one in reported["files"] if one["file"] == path.name)
+        return [(c["name"], c["type"], c["components"]) for c in file["columns"]]
 
     def test_sidecars_name_every_field_of_the_file_with_its_type(self):
         types = {"f4": "f32", "f8": "f64", "u1": "u8", "u2": "u16", "u4": "u32", "i8": "i64"}

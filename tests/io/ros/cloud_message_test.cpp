@@ -198,6 +198,7 @@ TEST(CloudMessage, LayoutsHaveTheOffsetsOfTheirDrivers) {
   EXPECT_THAT(offsets("robosense", 26), ElementsAre(0, 4, 8, 12, 16, 18));
   EXPECT_THAT(offsets("ouster-2022", 29), ElementsAre(0, 4, 8, 12, 16, 20, 22, 23, 25));
   EXPECT_THAT(offsets("ouster-fast-lio", 29), ElementsAre(0, 4, 8, 12, 16, 20, 22, 23, 25));
+  EXPECT_THAT(offsets("ouster-rgb", 34), ElementsAre(0, 4, 8, 12, 16, 20, 22, 24, 26, 30));
   EXPECT_THAT(offsets("robosense-xyzi", 16), ElementsAre(0, 4, 8, 12));
   EXPECT_THAT(offsets("livox-custom", 19), ElementsAre(0, 4, 8, 12, 16, 17, 18));
 }

@@ -178,32 +178,27 @@ sensor: camera.yaml
     assert listed["sensors"][0]["files"].keys() == {"rays.npy"}
 
 
-def replaced(folder, text, values=()):
-    field = yf.parse(text, folder / "scene.yaml")
-    return variants.replaced(text, field, [(variants.read_target(field, path), new) for path, new in values])
-
-
-def test_aliases_are_replaced_once_per_place(tmp_path):
-    for name in ("rock.obj", "t.png"):
-        (tmp_path / name).write_text("")
+def test_files_behind_aliases_are_inputs(tmp_path):
     text = """models:
   - {model: &m rock.obj, name: a, materials: {'*': &n {noise_texture: t.png}}}
   - {model: *m, name: b, materials: {'*': *n}}
 """
-    rock, texture = (f"'{tmp_path.resolve() / name}'" for name in ("rock.obj", "t.png"))
-    assert replaced(tmp_path, text) == text.replace("rock.obj", rock).replace("*m", rock).replace("t.png", texture)
+    found = variants.files_of(yf.parse(text, tmp_path / "scene.yaml"))
+    assert {path.name for _, _, path in found} == {"rock.obj", "t.png"}
 
 
 def test_values_with_aliases_cannot_be_varied(tmp_path):
     text = "noise:\n  - &n {type: range_gaussian, sigma_m: 0.1}\n  - *n\n"
     for place in (0, 1):
         with pytest.raises(Error, match="an anchor"):
-            replaced(tmp_path, text, [(f"sensor.noise[{place}].sigma_m", "1")])
+            field = yf.parse(text, tmp_path / "sensor.yaml")
+            target = variants.read_target(field, f"sensor.noise[{place}].sigma_m")
+            variants.replaced(text, field, [(target, "1")])
 
 
 def test_recursive_yaml_is_rejected(campaign):
     campaign.write("scene.yaml", "a: &a\n  b: *a\nmodels: []\n")
-    assert "scene.yaml:1:4: an alias of a value that contains it" in campaign.run("out", code=2)
+    assert "scene.yaml:2:6: an alias of the value that it is in" in campaign.run("out", code=2)
 
 
 TWICE = [

@@ -75,12 +75,12 @@ def test_a_missing_command_is_rejected(tmp_path):
 
 
 def test_missing_dependencies_are_reported_with_a_remedy(tmp_path):
-    code = ("import sys; sys.modules['yaml'] = None; from glidar.campaign.cli import main; "
-            "sys.exit(main(['run', 'c.yaml', '-o', 'x']))")
+    code = ("import sys; sys.modules['PIL'] = None; from glidar.campaign.cli import main; "
+            "sys.exit(main(['report', 'x']))")
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True,
                           check=False)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert "'yaml' is missing" in done.stderr and "pip install" in done.stderr
+    assert "'PIL' is missing" in done.stderr and "pip install" in done.stderr
 
 
 def test_nothing_in_the_current_folder_is_executed(tmp_path):

@@ -53,6 +53,12 @@ struct Measured {
   }
 };
 
+/// A plane across a beam, see PlaneBatch.
+struct PlaneAcrossBeam {
+  double range_m = 0.0;
+  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();
+};
+
 /// A beam on a plane.
 struct Case {
   Footprint footprint;
@@ -87,10 +93,40 @@ Measured sample(const Case& c, const std::vector<SubRay>& rays) {
   return m;
 }
 
+/// Batches of one plane.
+PlaneBatch integrated(const Case& c) {
+  PlaneBatch planes;
+  planes.count = 1;
+  planes.range_m[0] = c.plane.range_m;
+  planes.tilt_x[0] = c.plane.tilt.x();
+  planes.tilt_y[0] = c.plane.tilt.y();
+  integrate_over_planes({c.footprint, c.exponent, c.pulse_sigma_m}, planes);
+  return planes;
+}
+
+bool has_closed_form(const Case& c) {
+  return integrated(c).has_closed_form[0];
+}
+
+Eigen::Vector2d tilt_across(const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
+                            const Eigen::Vector3d& normal) {
+  PlaneBatch planes;
+  planes.count = 1;
+  planes.direction.set(0, direction);
+  planes.normal.set(0, normal);
+  find_tilts(up, planes);
+  return {planes.tilt_x[0], planes.tilt_y[0]};
+}
+
+/// The echo of a central ray with the signal 1.
+Measured echo_of(const Case& c, const PlaneBatch& planes) {
+  PlaneEchoes echoes;
+  find_echoes(c.pulse_sigma_m, {1.0}, planes, echoes);
+  return {echoes.range_m[0], echoes.peak[0], echoes.sigma_m[0]};
+}
+
 Measured integrate(const Case& c) {
-  const PlaneEcho echo = integrate_over_plane(c.footprint, c.plane, c.exponent, {}, {});
-  const double width_m2 = c.pulse_sigma_m * c.pulse_sigma_m + echo.variance_m2;
-  return {echo.range_m, echo.signal * c.pulse_sigma_m / std::sqrt(width_m2), std::sqrt(width_m2)};
+  return echo_of(c, integrated(c));
 }
 
 /// Beams of all presets and beyond, on planes at an angle of incidence, that have a closed form.
@@ -110,7 +146,8 @@ std::vector<Case> cases_at(double angle_deg) {
             const double turn = range_m + exponent;  // any
             const PlaneAcrossBeam plane{range_m,
                                         tangent * Eigen::Vector2d(std::cos(turn), std::sin(turn))};
-            if (has_closed_form(f, plane, 0.3)) cases.push_back({f, plane, exponent});
+            const Case c{f, plane, exponent};
+            if (has_closed_form(c)) cases.push_back(c);
           }
         }
       }
@@ -147,17 +184,16 @@ TEST(PlaneEcho, HasGardnersWidthInSecondOrder) {
                     .exit_x_m = 0.01,
                     .exit_y_m = 0.01,
                     .rings = 1};
-  const PlaneAcrossBeam plane{20.0, {0.0, std::tan(1.0)}};
-  const PlaneEcho echo = integrate_over_plane(f, plane, 2.0, {}, {});
+  const Measured echo = integrate({f, {20.0, {0.0, std::tan(1.0)}}});
   const double spread_m = std::tan(1.0) * diameter_m(f, 20.0) / 4.0;
-  EXPECT_NEAR(std::sqrt(echo.variance_m2), spread_m, 1e-4 * spread_m);
+  EXPECT_NEAR(std::sqrt(echo.sigma_m * echo.sigma_m - 0.3 * 0.3), spread_m, 1e-4 * spread_m);
 }
 
 TEST(PlaneEcho, HasNoClosedFormWhereTheBeamGrazesOrWidensThePulse) {
   const Footprint f{.divergence_x_rad = 4e-3, .divergence_y_rad = 4e-3, .rings = 1};
   const auto is_closed = [&](double range_m, double angle_deg, double pulse_sigma_m) {
     const double tangent = std::tan(angle_deg * std::numbers::pi / 180.0);
-    return has_closed_form(f, {range_m, {tangent, 0.0}}, pulse_sigma_m);
+    return has_closed_form({f, {range_m, {tangent, 0.0}}, 2.0, pulse_sigma_m});
   };
   EXPECT_TRUE(is_closed(1.0, 88.5, 0.3));    // tan(angle) divergence / 4 = 0.038
   EXPECT_FALSE(is_closed(1.0, 89.0, 0.3));   // 0.057
@@ -165,22 +201,22 @@ TEST(PlaneEcho, HasNoClosedFormWhereTheBeamGrazesOrWidensThePulse) {
   EXPECT_FALSE(is_closed(50.0, 60.0, 0.3));  // 0.087 m, of at most 0.075 m
   EXPECT_TRUE(is_closed(50.0, 60.0, 0.4));
   const Footprint wide{.divergence_x_rad = 0.05, .divergence_y_rad = 0.05, .rings = 1};
-  EXPECT_FALSE(has_closed_form(wide, {1.0, {0.0, 0.0}}, 0.3));
+  EXPECT_FALSE(has_closed_form({wide, {1.0, {0.0, 0.0}}}));
 }
 
 TEST(PlaneEcho, FindsThePlaneAcrossABeam) {
   const Eigen::Vector3d beam = Eigen::Vector3d(2.0, 0.5, -0.3).normalized();
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d normal = Eigen::Vector3d(-1.0, 0.4, 0.7).normalized();
-  const PlaneAcrossBeam plane = plane_across(beam, up, 7.0, normal);
+  const Eigen::Vector2d tilt = tilt_across(beam, up, normal);
   const double angle = std::acos(-normal.dot(beam));
-  EXPECT_NEAR(plane.tilt.norm(), std::tan(angle), 1e-12);
+  EXPECT_NEAR(tilt.norm(), std::tan(angle), 1e-12);
   // A beam beside this one meets the plane farther away by tilt . offset.
   const Eigen::Vector3d side = beam.cross(up).normalized();
   const Eigen::Vector3d from = 0.1 * side + 0.2 * side.cross(beam);
   const double range_m = normal.dot(7.0 * beam - from) / normal.dot(beam);
-  EXPECT_NEAR(range_m, 7.0 + plane.tilt.dot(Eigen::Vector2d(0.1, 0.2)), 1e-12);
-  EXPECT_EQ(plane_across(up, up, 7.0, -up).tilt, Eigen::Vector2d::Zero());
+  EXPECT_NEAR(range_m, 7.0 + tilt.dot(Eigen::Vector2d(0.1, 0.2)), 1e-12);
+  EXPECT_EQ(tilt_across(up, up, -up), Eigen::Vector2d::Zero());
 }
 
 TEST(PlaneEcho, WeighsReflectancesByTheSubRaysThatSampleThem) {
@@ -192,9 +228,13 @@ TEST(PlaneEcho, WeighsReflectancesByTheSubRaysThatSampleThem) {
          .plane = {12.0, {1.5, -0.8}}};
   std::vector<SubRay> rays = sample_footprint(c.footprint);
   const std::vector<double> excess = {0.0, 0.8, -0.5, 0.1, 0.0, 2.0, -1.0};
-  const PlaneEcho echo = integrate_over_plane(c.footprint, c.plane, c.exponent, rays, excess);
-  for (std::size_t k = 0; k < rays.size(); ++k) rays[k].share *= 1.0 + excess[k];
+  std::vector<PlaneBatch::Column> columns;
+  for (const double of_ray : excess) columns.push_back({of_ray});
   c.pulse_sigma_m = 1e3;  // without an influence of the width
+  PlaneBatch planes = integrated(c);
+  add_excess(c.exponent, rays, columns, planes);
+  const Measured echo = echo_of(c, planes);
+  for (std::size_t k = 0; k < rays.size(); ++k) rays[k].share *= 1.0 + excess[k];
   const Measured sampled = sample(c, rays);
   EXPECT_NEAR(echo.range_m, sampled.range_m, 2e-5);
   EXPECT_NEAR(echo.signal, sampled.signal, 1e-4 * sampled.signal);
