@@ -19,7 +19,7 @@ PATH = re.compile(r"(scene|sensor)((?:\.[A-Za-z_]\w*|\[[^\[\]]+\])+)")
 STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([^\[\]]+)\]")
 MAX_DIGITS = 9  # of an element's index
 # keys whose values may be paths
-FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "noise_texture", "picture", "calibration_file",
+FILE_KEYS = {"model", "file", "sensor", "imu", "trajectory", "times", "poses", "noise_texture", "picture", "calibration_file",
              "fire_time_file", "sensor_calibration_file", "sensor_fire_time_file"}
 
 

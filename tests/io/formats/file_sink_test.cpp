@@ -229,7 +229,9 @@ TEST(FileSink, SidecarsOfImagesDescribeThePixels) {
   const auto all = nlohmann::json::parse(file_bytes(folder / "a.glidar.json"));
   EXPECT_GE(all.at("files").size(), 7U);  // of the same frame
   for (const auto& file : all.at("files")) {
-    if (file.at("file") == "a.depth.png") EXPECT_EQ(file.at("image").at("units_per_m"), 2000.0);
+    if (file.at("file") == "a.depth.png") {
+      EXPECT_EQ(file.at("image").at("units_per_m"), 2000.0);
+    }
   }
 }
 

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <gtest/gtest.h>
 #include <glidar/io/formats/kitti_labels.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <io/cloud_fixture.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
 
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include "io/cloud_fixture.hpp"
 
 namespace glidar {
 namespace {

@@ -45,12 +45,14 @@ def write_models(campaign):
     (folder / "t.png").write_bytes(png(200))
     (folder / "noise.png").write_bytes(png(100))
     (folder / "path.tum").write_text("0 0 0 0 0 0 0 1\n1 0 0 1 0 0 0 1\n")
+    (folder / "places.csv").write_text("0.5 0 0\n1.5 0 0\n")
     campaign.write("scene.yaml", """models:
   - {model: shapes/t.gltf, name: a}
   - model: shapes/t.obj
     name: b
     materials: {'*': {noise_texture: shapes/noise.png}}
     motion: {trajectory: shapes/path.tum}
+  - {model: builtin:box, name: c, poses: shapes/places.csv}
 """)
     return folder
 
@@ -65,7 +67,7 @@ def change(path):
         path.write_text(path.read_text().replace("1 0 0 1 ", "1 0 0 2 ").replace("0.5", "0.7"))
 
 
-NAMES = ["t.gltf", "t.bin", "t.obj", "t.mtl", "t.png", "noise.png", "path.tum"]
+NAMES = ["t.gltf", "t.bin", "t.obj", "t.mtl", "t.png", "noise.png", "path.tum", "places.csv"]
 
 
 @pytest.mark.parametrize("name", NAMES[1:2] + NAMES[3:])
@@ -75,7 +77,7 @@ def test_a_changed_input_file_makes_another_campaign_and_is_named(campaign, name
     campaign.run("out", "--shard", "0/2")
     change(folder / name)
     printed = campaign.run("out", "--shard", "1/2", code=2)
-    kind = "files" if name in ("noise.png", "path.tum") else "parts"
+    kind = "files" if name in ("noise.png", "path.tum", "places.csv") else "parts"
     assert f"it contains another campaign: scenes[scene.yaml].{kind}.shapes/{name} was " in printed
 
 
