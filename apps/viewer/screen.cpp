@@ -63,7 +63,7 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 // Objects of the Wayland protocol: the first, and two that has_seat() makes.
 constexpr std::uint32_t kDisplay = 1;
 constexpr std::uint32_t kRegistry = 2;
-constexpr std::uint32_t kDone = 3;
+constexpr std::uint32_t kSyncDone = 3;
 
 /// What a compositor lists.
 struct Globals {
@@ -80,7 +80,7 @@ std::size_t read_messages(std::string_view bytes, Globals& globals) {
   while (bytes.size() - at >= 8 && !globals.is_complete) {
     const std::size_t size = word_at(bytes, at + 4) >> 16U;
     if (size < 8 || size > bytes.size() - at) return at;
-    globals.is_complete = word_at(bytes, at) == kDone;
+    globals.is_complete = word_at(bytes, at) == kSyncDone;
     const bool is_global = word_at(bytes, at) == kRegistry && size >= 16 + kSeat.size();
     if (is_global && word_at(bytes, at + 12) == kSeat.size() + 1 &&
         bytes.substr(at + 16, kSeat.size()) == kSeat) {
@@ -94,8 +94,8 @@ std::size_t read_messages(std::string_view bytes, Globals& globals) {
 /// Whether the compositor has a seat; empty: it does not answer.
 std::optional<bool> has_seat(const UniqueFd& display) {
   constexpr std::uint32_t kSize = 12U << 16U;
-  const std::array<std::uint32_t, 6> requests = {kDisplay, kSize | 1U, kRegistry,  // get_registry
-                                                 kDisplay, kSize,      kDone};     // sync
+  const std::array<std::uint32_t, 6> requests = {kDisplay, kSize | 1U, kRegistry,   // get_registry
+                                                 kDisplay, kSize,      kSyncDone};  // sync
   if (send(display.get(), requests.data(), sizeof requests, MSG_NOSIGNAL) != sizeof requests) {
     return std::nullopt;
   }

@@ -14,7 +14,7 @@
 #include <vector>
 
 /// A recording contains everything that the frames of a stream depend on, one line of JSON per
-/// frame; docs/link.md lists the keys.
+/// frame.
 namespace glidar::link {
 
 /// An input file of the stream.

@@ -100,7 +100,7 @@ void add_render_options(CLI::App& command, RenderFlags& flags) {
   const OptionGroup run(command, "Run");
   run.add("--seed", "N", "Seed of random numbers, kept in the sidecar [1]", flags.seed,
           whole<std::uint64_t>(0, std::numeric_limits<std::uint64_t>::max()));
-  run.add("--duration", "S", "Write numbered frames, NAME_000000 ..., for S seconds",
+  run.add("--duration", "S", "Measure for S seconds: NAME, or NAME_000000 ... per frame",
           flags.duration_s, parse_number);
   forbid_together(command, {"--duration"}, {"--to"});
   run.add_flag("-q,--quiet", "No summary and no progress, only warnings", flags.quiet);
