@@ -19,7 +19,7 @@ class Pipes(CliTest):
     def setUp(self):
         super().setUp()
         os.mkfifo(os.path.join(self.folder, "pipe"))
-        for suffix in ("yaml", "csv", "npy", "json", "obj", "ply"):
+        for suffix in ("yaml", "csv", "npy", "json", "glidar.json", "obj", "ply"):
             os.symlink("pipe", os.path.join(self.folder, f"pipe.{suffix}"))
 
     def test_no_option_blocks_on_a_pipe(self):
@@ -32,7 +32,7 @@ class Pipes(CliTest):
             with self.subTest(name):
                 error = self.refused(*command, "-o", "x.pcd")
                 self.assertRegex(error, "not a regular file|not a file")
-        self.assertIn("not a regular file", self.refused("explain", "pipe", "--index", "0"))
+        self.assertIn("not a regular file", self.refused("explain", "pipe.pcd", "--index", "0"))
         self.assertIn("not a regular file",
                       self.refused("stream", "builtin:box", "--lockstep", "ipc://x.socket", "--curve-keys", "pipe"))
 

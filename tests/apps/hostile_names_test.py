@@ -14,7 +14,7 @@ from cli_support import BOX, CliTest
 
 NAMES = {"terminal": "a\x1b[31mb", "line": "a\nb", "path": "../../outside", "absolute": "/tmp/outside", "formula": "=cmd()",
          "columns": "a b\tc"}
-CLOUDS = ("csv", "pcd", "ply", "npz", "las", "bin", "exr", "bev.png", "view.png", "mcap", "bag")
+CLOUDS = ("csv", "pcd", "ply", "npz", "las", "bin", "exr", "bev.png", "view.png", "mcap")
 IMAGES = ("png", "npy", "depth.png", "depth.tiff", "rgb.png", "normal.png", "instance.png", "class.png")
 FOLDERS = ("kitti", "rosbag2", "osi")
 CAMERA = "optics: {type: pinhole, width: 8, height: 6, fov_deg: 40}\n"

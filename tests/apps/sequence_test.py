@@ -67,8 +67,8 @@ class Sequences(CliTest):
             self.assertEqual({one["file"] for one in frame["files"]}, {name.replace("a.", f"a_00000{k}.") for name in outputs})
 
     def test_a_sidecar_of_another_run_is_refused(self):
-        for eye, name in (("0,0,0", "a"), ("0.5,0,0", "b")):
-            self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", eye, "--duration", "0.1", "-o", f"{name}.npz")
+        for sensor, name in (("VLP-16", "a"), ("Puck-Hi-Res", "b")):
+            self.succeed("render", "builtin:box", "--sensor", sensor, "--eye", "0,0,0", "--duration", "0.1", "-o", f"{name}.npz")
         self.write("a.glidar.json", self.bytes_of("b.glidar.json").decode())
         self.assertIn("another run", self.refused("explain", "a_000000.npz", "--index", "0"))
 

@@ -154,7 +154,7 @@ TEST(HostileModels, ExceededMemoryIsReportedWithTheLimit) {
   GLIDAR_NEEDS_DATA();
   const std::string text = testing::load_error(
       (testing::data_folder() / "hostile/synthetic/dae/instance_bomb.dae").string());
-  EXPECT_THAT(text, HasSubstr("more memory than 1024 MiB"));
+  EXPECT_THAT(text, HasSubstr("more memory than 128 MiB"));
 }
 
 }  // namespace

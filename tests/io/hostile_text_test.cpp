@@ -77,7 +77,7 @@ TEST(HostileSidecar, FoldersAndArgumentsHaveNoControlCharacters) {
   EXPECT_THAT(error_of(repeated("a/", 3000), "x"), HasSubstr("1 to 4096 bytes"));
   for (const char* text : {"a\\u0000b", "a\\nb"})
     EXPECT_THAT(error_of(".", text), HasSubstr("an argument of its command: '")) << text;
-  EXPECT_THAT(error_of(".", ""), HasSubstr("frame_hash"));  // both are right, the rest is missing
+  EXPECT_THAT(error_of(".", ""), HasSubstr("'instances' is missing"));  // both are right
 }
 
 TEST(HostileYaml, AliasesWrittenOutHaveALimit) {

@@ -31,7 +31,8 @@ const BadFile kBadScenes[] = {
     {"UnknownTopKey", with_model("sensr: c.yaml"),
      "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_mode, "
      "sensor_calibration_file, sensor_fire_time_file, sensor_pose, sensor_motion, sensors, "
-     "rig_pose, rig_motion, imus, gravity_m_s2; did you mean 'sensor'?"},
+     "rig_pose, rig_motion, imus, gravity_m_s2, box_classes; did you "
+     "mean 'sensor'?"},
     {"SensorBesideSensors", with_model("sensors: [{name: a, sensor: VLP-16}]\nsensor: VLP-16"),
      "s.yaml:3:9: sensor: given beside 'sensors'; allowed: sensors, rig_pose, rig_motion; a rig of "
      "sensors has poses of its own: rig_pose and the 'pose' of each sensor"},
@@ -70,13 +71,13 @@ const BadFile kBadScenes[] = {
     {"UnknownModelKey", model("scal: 2"),
      "s.yaml:3:5: models[0].scal: unknown key 'scal'; allowed: model, name, unit, up, centre, "
      "texture_folder, size, radius, tube_radius, scale, pose, id, class, materials, split, parts, "
-     "visible_to, hidden_from, motion; did you mean 'scale'?"},
+     "visible_to, hidden_from, poses, motion; did you mean 'scale'?"},
     {"UnknownUnit", model("unit: inch"),
      "s.yaml:3:11: models[0].unit: 'inch'; allowed: mm, cm, m, in, ft; did you mean 'in'?"},
     {"WordOfOtherPrograms", model("label: car"),
      "s.yaml:3:5: models[0].label: unknown key 'label'; allowed: model, name, unit, up, centre, "
      "texture_folder, size, radius, tube_radius, scale, pose, id, class, materials, split, parts, "
-     "visible_to, hidden_from, motion; did you mean 'class'?"},
+     "visible_to, hidden_from, poses, motion; did you mean 'class'?"},
     {"TextForAList", model("pose: {position: \"1, 2, 3\"}"),
      "s.yaml:3:22: models[0].pose.position: the text \"1, 2, 3\"; allowed: a list of 3 numbers; "
      "write [1, 2, 3]"},

@@ -124,7 +124,7 @@ TEST_F(InputFileTest, AFileOverTheLimitIsRejectedBeforeItIsRead) {
 
 /// Everything that reads a file by its own.
 TEST_F(InputFileTest, PipesAreRejectedWithoutBlocking) {
-  for (const char* name : {"p.yaml", "p.csv", "p.npy", "p.json", "p.pcd.json", "p.png"})
+  for (const char* name : {"p.yaml", "p.csv", "p.npy", "p.json", "p.glidar.json", "p.png"})
     ASSERT_EQ(::mkfifo((folder / name).c_str(), 0600), 0);
   const auto sensor = [&](const std::string& optics) {
     load_sensor_file(folder.write("s.yaml", "optics: " + optics + "\n"));
