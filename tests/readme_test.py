@@ -64,7 +64,7 @@ class Readme(unittest.TestCase):
         self.assertIn(faster, performance)
         listed = subprocess.run(["glidar", "sensors", "--json"], capture_output=True, timeout=TIME_LIMIT_S, check=True)
         presets = len(json.loads(listed.stdout))
-        for stated in re.findall(r"(\d+) presets", README):
+        for stated in re.findall(r"\[(\d+) presets\]", README):
             self.assertEqual(int(stated), presets)
 
     def test_files_it_links_to_exist(self):
