@@ -80,6 +80,11 @@ class OffText {
   }
 
  private:
+  [[noreturn]] void refuse_count(std::string_view word) const {
+    refuse_line(text_.line(),
+                "'" + shown(word) + "' instead of the counts of vertices, faces and edges");
+  }
+
   OffCounts read_counts() {
     std::array<std::int64_t, 3> counts{};
     std::size_t found = 0;
@@ -88,10 +93,7 @@ class OffText {
       if (!text_.find_word()) refuse_line(text_.line(), "the file ends too early");
       for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
         const auto count = integer_in(word);
-        if (!count || *count < 0 || found == counts.size()) {
-          refuse_line(text_.line(),
-                      "'" + shown(word) + "' instead of the counts of vertices, faces and edges");
-        }
+        if (!count || *count < 0 || found == counts.size()) refuse_count(word);
         counts[found++] = *count;
       }
       if (found == 1) needed = 3;

@@ -20,9 +20,8 @@ std::size_t end_of_text(std::string_view content, std::size_t begin, const std::
     return !text.empty() && rest.starts_with(text) ? begin + text.size() : std::string_view::npos;
   }
   for (std::size_t i = 1; i < rest.size() && rest[i] != '\n'; ++i) {
-    if (quote == '"' && rest[i] == '\\') {
-      ++i;
-    } else if (rest[i] == quote && quote == '\'' && rest.substr(i + 1).starts_with('\'')) {
+    const bool is_escape = quote == '"' ? rest[i] == '\\' : rest.substr(i).starts_with("''");
+    if (is_escape) {
       ++i;
     } else if (rest[i] == quote) {
       return begin + i + 1;
