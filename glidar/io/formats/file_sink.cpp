@@ -232,6 +232,10 @@ class FormatSink : public FileSink {
       std::erase_if(made.columns, is_named("depth"));
       return made;
     }
+    if (frame.range_m.size() != cloud.size()) {
+      throw Error({target_.path.string(), "the cloud has no column range",
+                   "ranges, because this sensor has no depths", "request range too"});
+    }
     std::vector<double> ranges_m = frame.range_m;
     for (double& range_m : ranges_m) range_m += context_.beams.range_offset_m;
     *std::ranges::find_if(made.columns, is_named("depth")) = {
