@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Depths of frames, clouds as files, and scenes of many instances."""
 
+import json
 import pickle
 
 import numpy as np
@@ -58,6 +59,18 @@ def test_an_image_of_a_camera_that_looks_back_needs_ranges(tmp_path):
     with pytest.raises(glidar.Error, match="request range too"):
         measured.cloud(["xyz", "depth"]).save(tmp_path / "a.exr")
     measured.cloud(["xyz", "depth", "range"]).save(tmp_path / "a.exr")
+
+
+def test_a_sidecar_lists_the_files_of_one_measurement_that_exist(tmp_path):
+    scene, camera = glidar.Scene("builtin:box"), glidar.camera(8, 6, fov_deg=50.0)
+    first, second = (glidar.simulate(scene, camera, pose=np.eye(4), start_ns=start_ns) for start_ns in (0, 5))
+    listed = lambda: [one["file"] for one in json.loads((tmp_path / "x.glidar.json").read_text())["files"]]
+    for frame, suffix, files in ((first, ".ply", ["x.ply"]), (second, ".pcd", ["x.pcd"]), (second, ".npz", ["x.npz", "x.pcd"])):
+        frame.save(tmp_path / f"x{suffix}")
+        assert listed() == files
+    (tmp_path / "x.npz").unlink()
+    second.save(tmp_path / "x.pcd")
+    assert listed() == ["x.pcd"]
 
 
 def test_a_file_of_poses_places_many_instances(tmp_path):
