@@ -181,6 +181,9 @@ std::vector<PlannedFile> plan_files(const FrameFileRequest& request, const Sidec
     with_option_name("--legacy-output",
                      [&] { plan_legacy_files(request.legacy_name, context, report, files); });
   }
+  // what is added to a file of all frames stays there, so all others are complete before
+  std::ranges::stable_partition(files,
+                                [](const PlannedFile& file) { return !file.has_all_frames; });
   check_names(files, request);
   return files;
 }
@@ -339,22 +342,21 @@ std::filesystem::path run_sidecar_path(const std::filesystem::path& sidecar, std
 struct FrameFiles::Run {
   RunSidecar sidecar;
   bool is_written = false;
-  std::vector<std::string> frames = {};  ///< entries of files that have all frames
-  std::vector<FramePoints> points = {};  ///< of the last frame
+  // of the frame that is being written:
+  std::vector<FramePoints> points = {};      ///< in files that have all frames
+  Pose world_from_cloud = Pose::Identity();  ///< of the first of them
 
   /// Adds the points of a frame in one of the files.
-  void add(FramePoints added, const SidecarContext& context, const Frame& frame,
-           const Pose& world_from_cloud) {
-    const bool is_new = std::exchange(last, frame.number) != frame.number || frames.empty();
-    if (is_new) {
-      points.clear();
-      frames.emplace_back();
-    }
+  void add(FramePoints added, const Pose& pose) {
+    if (points.empty()) world_from_cloud = pose;
     points.push_back(std::move(added));
-    frames.back() = frame_entry(context, frame, sidecar, points, world_from_cloud);
   }
-
-  std::uint32_t last = 0;  ///< number of the last frame
+  /// Lists the frame once all its files have it.
+  void end_frame(const SidecarContext& context, const Frame& frame) {
+    if (points.empty()) return;
+    sidecar.add_frame(frame_entry(context, frame, sidecar, points, world_from_cloud));
+    points.clear();
+  }
 };
 
 FrameFiles::FrameFiles(FrameFileRequest request, bool is_numbered, const OutputRig& rig,
@@ -435,7 +437,6 @@ void FrameFiles::write(const RigFrame& written) {
       refuse_overwrite_of_inputs(rig_.inputs, made);
   }
   stage(files, written, context);
-  stage_sidecars(files, written, context);
   commit_all(files);
   for (const PlannedFile& file : files) {
     if (!file.has_all_frames) files_.push_back(file.path);
@@ -450,7 +451,10 @@ void FrameFiles::stage(const std::vector<PlannedFile>& files, const RigFrame& wr
                        const SidecarContext& context) {
   PointCloud cloud;
   const PlannedFile* previous = nullptr;
+  bool has_sidecars = false;
   for (const PlannedFile& file : files) {
+    if (file.has_all_frames && !std::exchange(has_sidecars, true))
+      stage_sidecars(files, written, context);
     if (report_.progress) report_.progress("writing " + file.path.string(), -1.0);
     const bool is_same_cloud = previous != nullptr && previous->columns == file.columns &&
                                previous->frame_name == file.frame_name &&
@@ -468,6 +472,8 @@ void FrameFiles::stage(const std::vector<PlannedFile>& files, const RigFrame& wr
       file.sink->stage(cloud, written.frame);
     }
   }
+  if (!has_sidecars) stage_sidecars(files, written, context);
+  for (const auto& [path, run] : runs_) run->end_frame(context, written.frame);
 }
 
 void FrameFiles::append(const PlannedFile& file, const PointCloud& cloud, const RigFrame& written,
@@ -481,7 +487,7 @@ void FrameFiles::append(const PlannedFile& file, const PointCloud& cloud, const 
   const std::uint64_t points = to->append(cloud, written.frame, written.beams);
   if (!request_.sink.sidecar) return;
   Run& run = run_at(sidecar_path(file.path), context, written.frame);
-  run.add({file.path.filename().string(), points}, context, written.frame, cloud.world_from_cloud);
+  run.add({file.path.filename().string(), points}, cloud.world_from_cloud);
 }
 
 void FrameFiles::stage_sidecars(const std::vector<PlannedFile>& files, const RigFrame& written,
@@ -501,7 +507,7 @@ void FrameFiles::stage_sidecars(const std::vector<PlannedFile>& files, const Rig
     const std::filesystem::path run_path = run_sidecar_path(path, written.index);
     Run& run = run_at(run_path, context, written.frame);
     if (!std::exchange(run.is_written, true))
-      first.stage_text(run_path, sidecar_text(run.sidecar, {}, {}));
+      first.stage_text(run_path, sidecar_text(run.sidecar, {}));
     first.stage_text(path, sidecar_text(context, written.frame, entries, run.sidecar));
   }
 }
@@ -516,7 +522,7 @@ void FrameFiles::finish() {
     const auto listed = entries.find(sidecar_path(path));
     if (listed != entries.end()) {
       const Run& run = *runs_.at(listed->first);
-      file->stage_text(listed->first, sidecar_text(run.sidecar, listed->second, run.frames));
+      file->stage_text(listed->first, sidecar_text(run.sidecar, listed->second));
       entries.erase(listed);
     }
     file->commit();

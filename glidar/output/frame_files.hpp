@@ -51,8 +51,9 @@ std::vector<std::filesystem::path> check_frame_files(const FrameFileRequest& req
 struct PlannedFile;
 
 /// The files of every frame, and those of all frames. Those of a frame get their names together: if
-/// one fails before that, no file of the frame exists. If a later name is refused, the error lists
-/// the files that exist.
+/// one fails before that, no file of the frame exists, and no file of all frames has its points
+/// unless adding them to a further one fails. If a later name is refused, the error lists the files
+/// that exist.
 class FrameFiles final : public Output {
  public:
   /// The files of a sensor with a label have it in their names: NAME_lidar.pcd. On a rig, outputs
@@ -81,6 +82,7 @@ class FrameFiles final : public Output {
   [[nodiscard]] SidecarContext context_of(std::size_t index, const Beams& beams) const;
   /// What is known of the run whose sidecar this is.
   Run& run_at(const std::filesystem::path& path, const SidecarContext& context, const Frame& frame);
+  /// All files and sidecars of the frame, and then its points in files of all frames.
   void stage(const std::vector<PlannedFile>& files, const RigFrame& written,
              const SidecarContext& context);
   void append(const PlannedFile& file, const PointCloud& cloud, const RigFrame& written,

@@ -175,7 +175,7 @@ std::unique_ptr<Output> open_imu_samples(std::vector<std::string> paths, const O
 void check_options_used(const std::string& path_or_url, const OutputOptions& options);
 
 /// Opens an output of the rig's frames: a file by its suffix (formats of one frame get a file
-/// NAME_000007.pcd for each), or udp://HOST[:PORT[:PORT]], where the packets of its only sensor
+/// NAME_000007.png for each), or udp://HOST[:PORT[:PORT]], where the packets of its only sensor
 /// with packets are sent as fast as frames are written. Warnings go to the report. Throws Error
 /// when the name is not that of an output or is that of an input, or when it does not fit the
 /// sensors.

@@ -7,6 +7,8 @@
 #include <glidar/simulate/object_boxes.hpp>
 #include <glidar/simulate/simulate.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <deque>
 #include <optional>
@@ -146,6 +148,12 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
 }
 
 void Simulator::set_boxed_classes(BoxedClasses classes) {
+  const std::size_t count = state_->scene.class_names.size();
+  if (!classes.empty() && classes.size() != count) {
+    throw Error({"classes with boxes", fmt::format("{} values", classes.size()),
+                 fmt::format("{}, one for each class of the scene", count),
+                 "make them with boxed_classes()"});
+  }
   state_->boxed_classes = std::move(classes);
 }
 

@@ -55,7 +55,8 @@ class Simulator {
   [[nodiscard]] std::vector<ObjectBox> find_boxes(const Motion& motion, Frame& frame,
                                                   BoxSelection selection);
 
-  /// Sets the classes whose objects have boxes; by default the countable ones.
+  /// Sets the classes whose objects have boxes; empty, as by default: the countable ones. Throws
+  /// Error unless there is a value for each class of the scene.
   void set_boxed_classes(BoxedClasses classes);
 
   /// Replaces the returns of all further frames; empty: none are replaced.

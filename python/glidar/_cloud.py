@@ -123,20 +123,19 @@ class Cloud(Mapping[str, Array]):
         *,
         pcd: str = "binary",
         ply_ascii: bool = False,
-        crs: str | os.PathLike[str] = "",
     ) -> None:
-        """Writes the arrays as they are now, without a sidecar, to a file of a cloud: .pcd, .ply, .npz, .csv, .las, .bin
-        or .exr, with the columns of the cloud.
+        """Writes the arrays as they are now, without a sidecar, to a file of a cloud: .pcd, .ply, .npz, .csv or .exr,
+        with the columns of the cloud. ``Frame.save`` writes all formats.
 
         Args:
-            pcd, ply_ascii, crs: as for ``Frame.save``.
+            pcd, ply_ascii: as for ``Frame.save``.
 
         Raises:
             Error: another suffix, a missing folder, or a cloud without the columns of the format. An existing file
             stays unchanged.
         """
         options = file_options(pcd, ply_ascii, 1000.0)
-        set_cloud(options, None, False, False, crs, False)
+        set_cloud(options, None, False, False, "", False)
         columns = {name: np.ascontiguousarray(self._core.column(index)) for name, index in self._indices.items()}
         _core.save_cloud(path_of(path, "path"), columns, self._core, options, log)
 

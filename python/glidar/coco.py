@@ -11,12 +11,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shutil
 import struct
+import weakref
 import zlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -34,11 +36,12 @@ from ._simulate import simulate
 
 _INTRINSICS = ("fx", "fy")
 _CENTRES = ("cx", "cy")
+_MAX_RAYS = 1 << 21  # that are measured together
 
 
 class CocoWriter:
     """Writes images of a camera with annotations of the visible objects. The folder appears when it is complete: by
-    ``close``, or at the end of a ``with`` block. If that ends by an exception, nothing remains.
+    ``close``, or at the end of a ``with`` block. If one of them fails, or neither is reached, nothing remains.
 
     Args:
         folder: the data set's root; it must not exist.
@@ -48,7 +51,7 @@ class CocoWriter:
         supersampling: rays per pixel in each direction for colours, 1 to 16, so that thin structures are no speckle.
 
     Raises:
-        Error: a folder that exists, a scene without classes, or a sensor without a pinhole.
+        Error: a folder that exists or that another writer makes, a scene without classes, or a sensor without a pinhole.
     """
 
     def __init__(
@@ -69,23 +72,30 @@ class CocoWriter:
             raise Error("scene", "no object has a class", "objects with classes, the categories", "set class_name of objects")
         self._scene = scene
         self._sensor = scene._chosen(sensor) if not isinstance(sensor, (str, os.PathLike)) else load_sensor(sensor)
-        self._fine = _finer(self._sensor, whole(supersampling, "supersampling", 16))
-        self._factor = supersampling
+        self._factor = whole(supersampling, "supersampling", 16)
+        if self._factor == 0:
+            raise Error("supersampling", "0", "1 to 16")
+        self._described = _pinhole(self._sensor)
         self._classes = None if classes is None else text_list(classes, "classes")
         self._images: list[dict[str, Any]] = []
         self._annotations: list[dict[str, Any]] = []
         self._root = self._folder.with_name(f".{self._folder.name}.{os.getpid()}.tmp")
-        (self._root / "images").mkdir(parents=True)
+        made = [self._root, *(parent for parent in self._root.parents if not parent.exists())]
+        self._root.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            self._root.mkdir()
+        except FileExistsError:
+            raise Error(str(self._folder), "another writer makes it", "one writer of a folder", "choose another name") from None
+        self._remove = weakref.finalize(self, _remove_folders, made)
+        (self._root / "images").mkdir()
 
     def __enter__(self) -> CocoWriter:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        try:
-            if kind is None:
-                self.close()
-        finally:
-            shutil.rmtree(self._root, ignore_errors=True)
+        if kind is None:
+            self.close()
+        self._remove()
 
     def add_image(self, pose: npt.ArrayLike | None = None, *, objects: npt.ArrayLike | None = None, seed: int = 1) -> int:
         """Measures the scene and adds an image; returns its number, from 1.
@@ -94,11 +104,17 @@ class CocoWriter:
             pose, objects: as for ``glidar.simulate``.
             seed: of the camera's noise, which only affects which pixels are measured; masks are ground truth.
         """
+        if not self._remove.alive:
+            raise Error(str(self._folder), "the writer is closed", "an open writer", "write to another folder")
         number = len(self._images) + 1
         frame = simulate(self._scene, self._sensor, pose=pose, objects=objects, seed=whole(seed, "seed", MAX_UINT64))
-        fine = simulate(self._scene, self._fine, pose=pose, objects=objects, columns=["colour", "incidence"])
+        pose = frame.world_from_sensor if pose is None else pose  # not one that is chosen for a band
+        colours = []
+        for band in _bands(self._described, frame.rows, frame.cols, self._factor):
+            fine = simulate(self._scene, band, pose=pose, objects=objects, columns=["colour", "incidence"])
+            colours.append(_colours(fine, self._factor))
         name = f"{number:06}.png"
-        (self._root / "images" / name).write_bytes(_png(_colours(fine, self._factor)))
+        (self._root / "images" / name).write_bytes(_png(np.concatenate(colours)))
         self._images.append({"id": number, "file_name": name, "width": frame.cols, "height": frame.rows})
         categories = {name: index for index, name in enumerate(self._scene.class_names)}
         instances = frame.ground_truth.instance
@@ -111,11 +127,21 @@ class CocoWriter:
         return number
 
     def close(self) -> None:
-        """Writes annotations.json, and gives the folder its name.
+        """Writes annotations.json, and gives the folder its name. Nothing happens if it is closed.
 
         Raises:
             Error: there is no image, or the folder was made meanwhile.
         """
+        if not self._remove.alive:
+            return
+        try:
+            self._complete()
+        except BaseException:
+            self._remove()
+            raise
+        self._remove.detach()
+
+    def _complete(self) -> None:
         if not self._images:
             raise Error(str(self._folder), "it has no image", "at least one image", "call add_image")
         categories = [{"id": index, "name": name, "supercategory": ""}
@@ -128,21 +154,36 @@ class CocoWriter:
         self._root.rename(self._folder)
 
 
-def _finer(sensor: Sensor, factor: int) -> Sensor:
-    """The same camera with more pixels, without noise."""
+def _remove_folders(made: list[Path]) -> None:
+    """Removes a folder, and those above it that were made for it, unless others use them."""
+    shutil.rmtree(made[0], ignore_errors=True)
+    with contextlib.suppress(OSError):
+        for parent in made[1:]:
+            parent.rmdir()
+
+
+def _pinhole(sensor: Sensor) -> dict[str, Any]:
+    """The same camera without noise."""
     described = sensor.ground_truth().to_dict()
     optics = described.get("optics", {})
-    if factor == 0:
-        raise Error("supersampling", "0", "1 to 16")
     if not isinstance(optics, Mapping) or optics.get("type") != "pinhole" or "fx" not in optics:
         raise Error("sensor", shown(optics.get("type")), "a camera with a pinhole", "glidar.camera() returns one")
-    finer = dict(optics)
+    return described
+
+
+def _bands(described: dict[str, Any], rows: int, cols: int, factor: int) -> Iterator[Sensor]:
+    """The same camera with more pixels, as cameras of some of its rows each, which limits memory."""
+    optics = described["optics"]
     corner = 0.5 - optics.get("pixel_centre", 0.5)  # from the principal point's origin to the corner of the image
-    for key in ("width", "height", *_INTRINSICS):
+    finer = dict(optics)
+    for key in ("width", *_INTRINSICS):
         finer[key] = optics[key] * factor
     for key in _CENTRES:
         finer[key] = (optics[key] + corner) * factor - corner
-    return Sensor.from_dict({**described, "optics": finer})
+    step = max(1, _MAX_RAYS // (cols * factor**2))
+    for first in range(0, rows, step):
+        height = min(step, rows - first) * factor
+        yield Sensor.from_dict({**described, "optics": {**finer, "height": height, "cy": finer["cy"] - first * factor}})
 
 
 def _colours(fine: Frame, factor: int) -> npt.NDArray[np.uint8]:

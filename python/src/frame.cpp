@@ -181,14 +181,24 @@ Column column_of(const std::string& name, const AnyArray& array) {
   return column;
 }
 
+/// Whether a file has only what its cloud has: .las also stores scan angles and the order of time,
+/// and .bin intensities from 0 to 1.
+bool stores_columns_only(const FileFormat& format) {
+  return format.takes_more && !format.is_survey;
+}
+
 /// Writes a cloud with the columns, which may have been changed since `from` was made; None: the
 /// cloud was unpickled.
 void save_cloud(const std::filesystem::path& path, PointCloud cloud, const CloudHandle& from,
                 const OutputOptions& options, const Report& report) {
   const FileFormat& format = format_for(path);
-  if (!format.takes_more && format.suffix != ".bin") {
-    throw Error({path.string(), "not a file of a cloud", suffixes_with_columns() + " .bin",
-                 "write images of a frame with Frame.save"});
+  if (!stores_columns_only(format)) {
+    std::string suffixes;
+    for (const FileFormat& one : file_formats()) {
+      if (stores_columns_only(one)) suffixes += (suffixes.empty() ? "" : " ") + one.suffix;
+    }
+    throw Error({path.string(), "not a file of a cloud alone", suffixes,
+                 "write " + format.suffix + " of a frame with Frame.save"});
   }
   refuse_overwrite_of_inputs(from.inputs, path);
   check_options_used(path.string(), options);

@@ -111,6 +111,34 @@ class Sequences(CliTest):
         self.assertIn(f"{float(rows[index]['range']):.4f}"[:6], trace)
         self.assertIn("--index", self.refused("explain", "a.csv", "--row", "0", "--col", "0"))
 
+    def test_the_sidecar_of_a_run_lists_each_frame_once_with_boxes_that_have_points(self):
+        self.write("scene.yaml", MOVING.replace("scale: 8}", "scale: 8, class: room}, {model: builtin:box, class: crate, "
+                                                "pose: {position: [0, 0, 50]}}"))
+        self.succeed("render", "scene.yaml", "--duration", "0.3", "--box-classes", "all", "-o", "a.csv", "-o", "a.las")
+        sidecar = json.loads(self.bytes_of("a.glidar.json"))
+        self.assertEqual([one["frame"] for one in sidecar["frames"]], [0, 1, 2])
+        for frame in sidecar["frames"]:
+            self.assertEqual(set(frame["points"]), {"a.csv", "a.las"})
+            self.assertEqual([one["class"] for one in frame["boxes"]], ["room"])
+
+    def test_a_file_in_axes_that_move_has_no_pose(self):
+        self.write("scene.yaml", MOVING)
+        for name, moves in (("sensor", True), ("world", False)):
+            self.succeed("render", "scene.yaml", "--duration", "0.2", "--frame", name, "-o", "a.csv")
+            pose = json.loads(self.bytes_of("a.glidar.json"))["files"][0]["world_from_cloud"]
+            self.assertEqual(pose is None, moves)
+
+    def test_a_las_file_of_a_run_that_starts_in_a_small_room_takes_far_points(self):
+        self.write("scene.yaml", "models: [{model: builtin:box}, {model: builtin:box, name: hall, scale: 4000}]\n"
+                                 "sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 60}, rate_hz: 10}\n"
+                                 "sensor_pose: {position: [0, 0, 0]}\n"
+                                 "sensor_motion: {twist: {velocity_m_s: [30000, 0, 0]}}\n")
+        self.succeed("render", "scene.yaml", "--duration", "0.2", "-o", "a.las", "-o", "a.csv")
+        las = self.bytes_of("a.las")
+        self.assertEqual(struct.unpack_from("<Q", las, 247)[0], 2 * 8 * 6)
+        self.assertEqual(struct.unpack_from("<d", las, 131)[0], 1e-4)
+        self.assertGreater(max(abs(float(row["x"])) for row in self.run_rows("a.csv")), 2200.0)
+
     def test_an_empty_run_is_a_valid_file(self):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "900,0,0", "--duration", "0.2", "-o", "a.las",
                      "-o", "a.pcd", "--drop-invalid")

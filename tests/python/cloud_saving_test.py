@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Depths of frames, clouds as files, and scenes of many instances."""
 
+import json
 import pickle
 
 import numpy as np
@@ -27,7 +28,7 @@ def test_lidars_have_no_depths():
         _ = glidar.simulate(glidar.Scene("builtin:box"), "VLP-16", pose=glidar.pose([0, 0, 0])).depth_m
 
 
-@pytest.mark.parametrize("suffix", [".pcd", ".ply", ".csv", ".bin"])
+@pytest.mark.parametrize("suffix", [".pcd", ".ply", ".csv"])
 def test_a_cloud_is_saved_with_the_bytes_of_its_frame(frame, tmp_path, suffix):
     columns = ["xyz", "intensity", "range", "instance"]
     frame.cloud(columns).save(tmp_path / f"cloud{suffix}")
@@ -42,9 +43,34 @@ def test_changed_and_unpickled_clouds_are_saved_as_they_are(frame, tmp_path):
     cloud.save(tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as saved:
         np.testing.assert_array_equal(saved["xyz"].reshape(-1, 3), cloud["xyz"])
-    cloud.save(tmp_path / "a.las")
-    with pytest.raises(glidar.Error, match="Frame.save"):
-        cloud.save(tmp_path / "a.depth.png")
+
+
+@pytest.mark.parametrize("suffix", [".depth.png", ".las", ".bin", ".kitti"])
+def test_files_that_need_more_than_the_cloud_are_refused(frame, tmp_path, suffix):
+    with pytest.raises(glidar.Error, match=f"allowed: .pcd .ply .npz .csv .exr; write {suffix} of a frame with Frame.save"):
+        frame.cloud("all").save(tmp_path / f"a{suffix}")
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_image_of_a_camera_that_looks_back_needs_ranges(tmp_path):
+    fisheye = {"type": "pinhole", "width": 32, "height": 32, "fx": 8.0, "fy": 8.0, "cx": 16.0, "cy": 16.0,
+               "distortion": {"model": "fisheye"}}  # fmt: skip
+    measured = glidar.simulate(glidar.Scene("builtin:box"), glidar.Sensor.from_dict({"optics": fisheye}), pose=np.eye(4))
+    with pytest.raises(glidar.Error, match="request range too"):
+        measured.cloud(["xyz", "depth"]).save(tmp_path / "a.exr")
+    measured.cloud(["xyz", "depth", "range"]).save(tmp_path / "a.exr")
+
+
+def test_a_sidecar_lists_the_files_of_one_measurement_that_exist(tmp_path):
+    scene, camera = glidar.Scene("builtin:box"), glidar.camera(8, 6, fov_deg=50.0)
+    first, second = (glidar.simulate(scene, camera, pose=np.eye(4), start_ns=start_ns) for start_ns in (0, 5))
+    listed = lambda: [one["file"] for one in json.loads((tmp_path / "x.glidar.json").read_text())["files"]]
+    for frame, suffix, files in ((first, ".ply", ["x.ply"]), (second, ".pcd", ["x.pcd"]), (second, ".npz", ["x.npz", "x.pcd"])):
+        frame.save(tmp_path / f"x{suffix}")
+        assert listed() == files
+    (tmp_path / "x.npz").unlink()
+    second.save(tmp_path / "x.pcd")
+    assert listed() == ["x.pcd"]
 
 
 def test_a_file_of_poses_places_many_instances(tmp_path):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """COCO data sets, read by pycocotools if it is installed and always by a reader of their definition."""
 
+import gc
 import json
 
 import numpy as np
@@ -88,4 +89,63 @@ def test_errors_name_what_is_missing(tmp_path):
         CocoWriter(tmp_path / "a", scene, "VLP-16")
     with pytest.raises(glidar.Error, match="it has no image"), CocoWriter(tmp_path / "a", scene, glidar.camera(8, 6, fov_deg=40.0)):
         pass
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def crate():
+    return glidar.Scene.from_dict({"models": [{"model": "builtin:box", "class": "crate"}]})
+
+
+CAMERA = glidar.camera(16, 12, fov_deg=50.0)
+
+
+def test_images_measured_in_bands_of_rows_are_the_same(data, tmp_path, monkeypatch):
+    folder, scene, sensor, poses = data
+    monkeypatch.setattr(glidar.coco, "_MAX_RAYS", 64 * 16 * 5)  # 5 of 48 rows
+    with CocoWriter(tmp_path / "set", scene, sensor) as writer:
+        writer.add_image(poses[0])
+    whole, banded = (np.asarray(Image.open(root / "images" / "000001.png")).astype(int) for root in (folder, tmp_path / "set"))
+    assert banded.shape == whole.shape and np.abs(banded - whole).max() <= 1  # rays differ by rounding
+
+
+def test_an_image_without_a_pose_has_that_of_its_masks(crate, tmp_path, monkeypatch):
+    monkeypatch.setattr(glidar.coco, "_MAX_RAYS", 1)  # each row is a camera of its own
+    with CocoWriter(tmp_path / "set", crate, CAMERA) as writer:
+        writer.add_image()
+        writer.add_image(glidar.simulate(crate, CAMERA).world_from_sensor)
+    chosen, given = ((tmp_path / "set" / "images" / f"00000{k}.png").read_bytes() for k in (1, 2))
+    assert chosen == given
+
+
+def test_a_writer_closes_once(crate, tmp_path):
+    writer = CocoWriter(tmp_path / "set", crate, CAMERA)
+    writer.add_image()
+    writer.close()
+    before = sorted(tmp_path.rglob("*"))
+    writer.close()
+    with pytest.raises(glidar.Error, match="the writer is closed"):
+        writer.add_image()
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_second_writer_of_a_folder_is_refused(crate, tmp_path):
+    with CocoWriter(tmp_path / "set", crate, CAMERA) as writer:
+        with pytest.raises(glidar.Error, match="another writer makes it"):
+            CocoWriter(tmp_path / "set", crate, CAMERA)
+        writer.add_image()
+    assert [path.name for path in tmp_path.iterdir()] == ["set"]
+
+
+@pytest.mark.parametrize("end", ["close", "exception", "nothing"])
+def test_nothing_remains_of_a_data_set_that_fails(crate, tmp_path, end):
+    writer = CocoWriter(tmp_path / "new" / "parents" / "set", crate, CAMERA)
+    if end == "close":
+        with pytest.raises(glidar.Error, match="it has no image"):
+            writer.close()
+    elif end == "exception":
+        with pytest.raises(KeyError), writer:
+            raise KeyError
+    del writer
+    gc.collect()
     assert list(tmp_path.iterdir()) == []

@@ -296,8 +296,9 @@ def test_coordinates_of_the_sensor_have_no_coordinate_system_of_the_earth(tmp_pa
     assert done.returncode == 2 and "--crs" in done.stderr and not (tmp_path / "a.pcd").exists()
 
 
-def test_explain_finds_a_point_by_its_number_in_the_file(tmp_path):
-    command = ["glidar", "render", str(STREET), "--sensor", "VLP-16", "--eye", "0,0,2", "-o", "a.las", "--columns", "all"]
+@pytest.mark.parametrize("scene", [str(STREET), "builtin:box:size=20,20,9"])
+def test_explain_finds_a_point_by_its_number_in_the_file(scene, tmp_path):
+    command = ["glidar", "render", scene, "--sensor", "VLP-16", "--eye", "0,0,2", "-o", "a.las", "--columns", "all", "--ground-truth"]
     subprocess.run(command, cwd=tmp_path, capture_output=True, check=True)
     las = laspy.read(tmp_path / "a.las")
     index = len(las.points) // 3

@@ -223,5 +223,19 @@ TEST(ObjectBoxes, OcclusionIsUnknownWhereNoBeamWouldHit) {
   EXPECT_EQ(occlusion({.beams = 8, .visible_beams = 6}), 0.25);
 }
 
+TEST(ObjectBoxes, ClassesAreThoseOfTheScene) {
+  const Crowd crowd(camera());
+  Simulator simulator(crowd.scene, crowd.beams, *crowd.renderer);
+  EXPECT_THROW(simulator.set_boxed_classes({true, true}), Error);
+  EXPECT_THROW(simulator.set_boxed_classes({true, true, true, true}), Error);
+  simulator.set_boxed_classes({false, false, true});
+  Frame frame;
+  simulator.simulate(crowd.motion, {.boxes = true}, frame);
+  EXPECT_EQ(frame.boxes.size(), 1U);
+  simulator.set_boxed_classes({});
+  simulator.simulate(crowd.motion, {.boxes = true}, frame);
+  EXPECT_EQ(frame.boxes.size(), 4U);
+}
+
 }  // namespace
 }  // namespace glidar

@@ -90,7 +90,8 @@ PointPlace place_of(const ExplainFlags& flags, const Sidecar& sidecar) {
     all += frame.points;
   }
   throw Error({"--index", std::to_string(index),
-               fmt::format("below {}, the number of points in the cloud", all)});
+               fmt::format("below {}, the number of points whose frames {} lists", all,
+                           sidecar.path.filename().string())});
 }
 
 /// The entry of a row, column and return.
@@ -112,14 +113,15 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Po
                      const Frame& frame, const Beams& beams) {
   if (flags.row) return selected_entry(flags, beams);
   const std::size_t points = place.frame.points;
+  const bool is_las = format_for(flags.cloud).suffix == ".las";
   std::vector<std::uint32_t> entries = las_order(frame, beams);  // the cloud has only hits
-  if (points == beams.size()) {
+  if (!is_las && points == beams.size()) {
     entries.resize(points);
     std::iota(entries.begin(), entries.end(), 0U);
-  } else if (format_for(flags.cloud).suffix != ".las") {
+  } else if (!is_las) {
     std::ranges::sort(entries);
   }
-  if (sidecar.has_all_frames && format_for(flags.cloud).suffix != ".las" && !beams.times_ns.empty())
+  if (sidecar.has_all_frames && !is_las && !beams.times_ns.empty())
     std::ranges::stable_sort(entries, {}, [&](std::uint32_t i) { return beams.times_ns[i]; });
   if (place.index < entries.size()) return entries[place.index];
   throw Error({sidecar.path.string(),

@@ -167,6 +167,7 @@ void Console::begin(std::string_view task, std::size_t count) {
     counted_ = task;
     count_ = count;
     number_ = 0;
+    done_ = 0.0;
   }
   if (listener_.progress) listener_.progress(task_, fraction_);
 }
@@ -192,11 +193,12 @@ void Console::show() {
         progress_text(task, fraction, seconds_since(count_ > 0 ? work_started_ : task_started_)));
 }
 
-std::pair<std::string, double> Console::shown() const {
+std::pair<std::string, double> Console::shown() {
   if (count_ == 0) return {task_, fraction_};
   const std::size_t number = std::clamp<std::size_t>(number_, 1, count_);
   const double done = static_cast<double>(number - 1) + std::clamp(fraction_, 0.0, 1.0);
-  return {fmt::format("{} {} of {}", counted_, number, count_), done / static_cast<double>(count_)};
+  done_ = std::max(done_, done / static_cast<double>(count_));
+  return {fmt::format("{} {} of {}", counted_, number, count_), done_};
 }
 
 void Console::redraw(double elapsed_s) {

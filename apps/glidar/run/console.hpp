@@ -114,7 +114,7 @@ class Console {
   void next();
   void show();
   /// The task to show and the fraction that is done.
-  [[nodiscard]] std::pair<std::string, double> shown() const;
+  [[nodiscard]] std::pair<std::string, double> shown();
   void redraw(double elapsed_s);
   void end();
   void erase();
@@ -129,6 +129,7 @@ class Console {
   std::string counted_;     ///< "frame" of "frame 12 of 200"
   std::size_t count_ = 0;   ///< of the counted task; 0: there is none
   std::size_t number_ = 0;  ///< of its current part, from 1
+  double done_ = 0.0;  ///< the shown part of it, which grows although tasks within it begin at 0
   Clock::duration line_interval_;
   Clock::time_point last_line_;
   Clock::time_point work_started_;

@@ -21,6 +21,7 @@ struct CloudFile {
   std::span<const PointField> fields;  ///< stored numbers of each point, as the sidecar lists them
   std::string layout = {};             ///< name of the cloud's point layout; empty: none
   std::string pixels = {};             ///< meaning of an image's pixels; empty: not an image
+  bool has_moved = false;              ///< the axes of the frames of a run differ
 };
 
 /// The distances of an image: the column depth, or range in the images of cameras that look back.

@@ -232,6 +232,10 @@ class FormatSink : public FileSink {
       std::erase_if(made.columns, is_named("depth"));
       return made;
     }
+    if (frame.range_m.size() != cloud.size()) {
+      throw Error({target_.path.string(), "the cloud has no column range",
+                   "ranges, because this sensor has no depths", "request range too"});
+    }
     std::vector<double> ranges_m = frame.range_m;
     for (double& range_m : ranges_m) range_m += context_.beams.range_offset_m;
     *std::ranges::find_if(made.columns, is_named("depth")) = {
@@ -364,10 +368,11 @@ struct RunFile::State {
   PointCloud columns = {};  ///< of the first frame, without its points
   Frame first = {};         ///< with its stamp only
   bool has_warned = false;
+  bool has_moved = false;  ///< the axes of a later frame are others than those of the first
 
   /// The columns of the first frame as those of all points.
   [[nodiscard]] CloudFile job(std::span<const PointField> fields) const {
-    return {columns, first, options, context, fields};
+    return {columns, first, options, context, fields, {}, {}, has_moved};
   }
 
   void begin(const PointCloud& cloud, const Frame& frame, std::span<const PointField> fields) {
@@ -424,6 +429,7 @@ std::uint64_t RunFile::append(const PointCloud& cloud, const Frame& frame, const
   check_unique(fields, s.path);
   if (s.file == nullptr) s.begin(points, frame, fields);
   s.check_same(points);
+  s.has_moved |= cloud.world_from_cloud.matrix() != s.columns.world_from_cloud.matrix();
   const SidecarContext context{s.context.scene,    s.context.sensor,  beams,
                                s.context.renderer, s.context.command, s.context.inputs};
   s.format.append({points, frame, s.options, context, fields}, s.totals, *s.file);

@@ -77,10 +77,10 @@ double reach_m(const Bounds& bounds, const Eigen::Vector3d& offset_m) {
   return std::max((bounds.high - offset_m).maxCoeff(), (offset_m - bounds.low).maxCoeff());
 }
 
-/// The grid without counts.
-LasGrid grid_for(const Bounds& bounds) {
+/// The grid without counts, in steps of at least the power of ten with this exponent.
+LasGrid grid_for(const Bounds& bounds, int exponent) {
   LasGrid grid;
-  for (int exponent = fine_step(bounds.extent());; ++exponent) {
+  for (;; ++exponent) {
     grid.scale_m = power_of_ten(exponent);
     grid.offset_m = offset_for(bounds, grid.scale_m);
     if (reach_m(bounds, grid.offset_m) / grid.scale_m + 1.0 <= kMaxCount) return grid;
@@ -91,7 +91,13 @@ LasGrid grid_for(const Bounds& bounds) {
 
 LasGrid make_las_grid(const std::vector<double>& xyz) {
   if (xyz.empty()) return {.scale_m = power_of_ten(kDefaultStep), .counts = {}};
-  return make_las_grid(xyz, grid_for(bounds_of(xyz)));
+  const Bounds bounds = bounds_of(xyz);
+  return make_las_grid(xyz, grid_for(bounds, fine_step(bounds.extent())));
+}
+
+LasGrid make_run_las_grid(const std::vector<double>& xyz) {
+  if (xyz.empty()) return make_las_grid(xyz);
+  return make_las_grid(xyz, grid_for(bounds_of(xyz), kDefaultStep));
 }
 
 LasGrid make_las_grid(const std::vector<double>& xyz, const LasGrid& steps) {
@@ -120,7 +126,7 @@ LasGrid make_las_grid(const std::vector<double>& xyz, const LasGrid& steps) {
 
 std::string las_rounding_warning(const std::vector<double>& xyz) {
   if (xyz.empty()) return {};
-  const double moved_m = 0.5 * grid_for(bounds_of(xyz)).scale_m;
+  const double moved_m = 0.5 * grid_for(bounds_of(xyz), kDefaultStep).scale_m;
   if (moved_m <= kFinePosition_m) return {};
   return fmt::format(
       "LAS stores coordinates in 32 bits, and a cloud of this size in steps of {:g} m, which moves "
@@ -515,17 +521,13 @@ void count(const LasGrid& grid, const PulseReturns& returns, RunTotals& totals) 
 }
 
 /// The first frame with points determines the steps of all.
-LasGrid next_grid(const std::vector<double>& xyz, RunTotals& totals) {
-  if (totals.points > 0)
-    return make_las_grid(xyz,
-                         {.scale_m = totals.scale_m, .offset_m = totals.offset_m, .counts = {}});
-  LasGrid grid = make_las_grid(xyz);
-  totals.scale_m = grid.scale_m;
-  totals.offset_m = grid.offset_m;
-  return grid;
+LasGrid run_grid(const std::vector<double>& xyz, const RunTotals& totals) {
+  if (totals.points == 0) return make_run_las_grid(xyz);
+  return make_las_grid(xyz, {.scale_m = totals.scale_m, .offset_m = totals.offset_m, .counts = {}});
 }
 
-LasPoints las_points(const CloudFile& job, RunTotals& totals) {
+/// The points of the only frame of a file, or of one of many.
+LasPoints las_points(const CloudFile& job, bool is_only, RunTotals& totals) {
   const Beams& beams = job.context.beams;
   std::vector<std::uint32_t> order = las_order(job.frame, beams);
   // else decoded from other clouds
@@ -537,7 +539,10 @@ LasPoints las_points(const CloudFile& job, RunTotals& totals) {
                   : LasScan{std::vector<std::int16_t>(cloud.size()),
                             std::vector<std::uint8_t>(cloud.size())};
   const CloudFile sorted{cloud, job.frame, job.options, job.context, job.fields};
-  LasGrid grid = next_grid(*values_of<double>(cloud, "xyz"), totals);
+  const std::vector<double>& xyz = *values_of<double>(cloud, "xyz");
+  LasGrid grid = is_only ? make_las_grid(xyz) : run_grid(xyz, totals);
+  totals.scale_m = grid.scale_m;
+  totals.offset_m = grid.offset_m;
   const PulseReturns returns = returns_of(sorted);
   count(grid, returns, totals);
   points.records = las_records(sorted, grid, returns, scan);
@@ -560,13 +565,13 @@ void write_las_points(const CloudFile& job, const LasPoints& points, AtomicFile&
 
 void append_las(const CloudFile& job, RunTotals& totals, AtomicFile& file) {
   check_crs_frame(job, file);
-  write_las_points(job, las_points(job, totals), file);
+  write_las_points(job, las_points(job, false, totals), file);
 }
 
 void write_las(const CloudFile& job, AtomicFile& file) {
   check_crs_frame(job, file);
   RunTotals totals;
-  const LasPoints points = las_points(job, totals);
+  const LasPoints points = las_points(job, true, totals);
   file.write(las_start(job, totals));
   write_las_points(job, points, file);
 }

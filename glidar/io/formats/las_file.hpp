@@ -28,6 +28,10 @@ struct LasGrid {
 /// and these are within 100 km of the origin.
 LasGrid make_las_grid(const std::vector<double>& xyz);
 
+/// The same for the first of many clouds in one file: the step is at least 0.1 mm, so that the
+/// others may be up to 214 km away.
+LasGrid make_run_las_grid(const std::vector<double>& xyz);
+
 /// The same with the steps and the offset of another one. Throws Error if the points do not fit.
 LasGrid make_las_grid(const std::vector<double>& xyz, const LasGrid& steps);
 

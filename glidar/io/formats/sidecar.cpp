@@ -11,12 +11,14 @@
 #include <glidar/io/formats/file_sink.hpp>
 
 #include <cmath>
+#include <system_error>
 #include <type_traits>
 
 namespace glidar {
 namespace {
 
-const TextFileKind kSidecar = {"the JSON file that glidar writes for a cloud", 512, ""};
+const TextFileKind kSidecar = {"the JSON file that glidar writes for a cloud",
+                               kMaxSidecarBytes >> 20U, ""};
 
 CommandRecord read_command(const JsonValue& json, const std::filesystem::path& sidecar) {
   if (json.is_null()) return {};
@@ -144,13 +146,24 @@ std::string frame_hash(const Frame& frame) {
   return hex(hash.value());
 }
 
-std::string listed_files(const std::filesystem::path& sidecar, const std::string& frame_hash) {
+std::string listed_files(const std::filesystem::path& sidecar, const std::string& own) {
   const ReadJson read = read_json(sidecar);
   const RefuseJson refuse = refuse_value(sidecar);
   const JsonValue json(read.json, refuse);
-  if (!json.contains("frame_hash") || json.at("frame_hash").text() != frame_hash) return "[]";
-  for (const JsonValue& file : json.at("files").items()) (void)file.at("file").text();
-  return read.json["files"].dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  const auto measured = nlohmann::json::parse(own);
+  for (const char* key : {"frame_hash", "stamp_ns", "world_from_sensor", "instances"}) {
+    if (!json.contains(key) || read.json[key] != measured[key]) return "[]";
+  }
+  nlohmann::json files = nlohmann::json::array();
+  const std::vector<JsonValue> listed = json.at("files").items();
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    const std::filesystem::path name = listed[i].at("file").text();
+    std::error_code ignored;
+    const bool is_there =
+        name == name.filename() && std::filesystem::exists(sidecar.parent_path() / name, ignored);
+    if (is_there) files.push_back(read.json["files"][i]);
+  }
+  return files.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
 Sidecar read_sidecar(const std::filesystem::path& cloud) {

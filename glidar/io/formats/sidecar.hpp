@@ -12,6 +12,9 @@
 
 namespace glidar {
 
+/// read_sidecar() refuses larger files.
+inline constexpr std::size_t kMaxSidecarBytes = std::size_t{512} << 20U;
+
 /// A frame of a cloud.
 struct SidecarFrame {
   std::uint32_t number = 0;
@@ -40,9 +43,10 @@ std::string sensor_to_json(const Sensor& sensor, const Beams& beams);
 std::string relative_folder(const std::filesystem::path& file, const std::filesystem::path& folder);
 std::filesystem::path resolve_folder(const std::filesystem::path& file, const std::string& seen);
 
-/// The JSON list of the files of a frame in its sidecar; "[]" if it has another frame. Throws
-/// Error.
-std::string listed_files(const std::filesystem::path& sidecar, const std::string& frame_hash);
+/// The JSON list of the files of a frame in its sidecar that exist. "[]" if it is of another
+/// measurement than `own`, the JSON of a new sidecar: its hash, time, sensor's pose or objects
+/// differ. Throws Error.
+std::string listed_files(const std::filesystem::path& sidecar, const std::string& own);
 
 /// Reads the sidecar of a cloud, NAME.glidar.json of NAME.pcd, and that of its run if there is one.
 /// Throws Error when one is missing or not a sidecar, or when it does not list the cloud.

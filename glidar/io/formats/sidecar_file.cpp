@@ -8,6 +8,7 @@
 #include <glidar/io/config/camera_info.hpp>
 #include <glidar/io/config/field_json.hpp>
 #include <glidar/io/config/json_numbers.hpp>
+#include <glidar/io/config/json_text.hpp>
 #include <glidar/io/config/sensor_keys.hpp>
 #include <glidar/io/files/content_hash.hpp>
 #include <glidar/io/formats/box_json.hpp>
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <system_error>
 
 namespace glidar {
@@ -138,14 +140,16 @@ Json moved_json(const SidecarContext& context, const Frame& frame, std::span<con
   return moved;
 }
 
-/// In the coordinate frame of a cloud.
-Json boxes_json(const SidecarContext& context, const Frame& frame, const Pose& world_from_cloud) {
+/// In the coordinate frame of a cloud; those with at least so many points.
+Json boxes_json(const SidecarContext& context, const Frame& frame, const Pose& world_from_cloud,
+                std::uint32_t min_points = 0) {
   const bool is_own = world_from_cloud.matrix() == frame.world_from_sensor.matrix();
   const Pose cloud_from_sensor =
       is_own ? Pose::Identity() : world_from_cloud.inverse() * frame.world_from_sensor;
   Json boxes = Json::array();
-  for (const ObjectBox& box : frame.boxes)
-    boxes.push_back(box_json(context.scene, box, cloud_from_sensor));
+  for (const ObjectBox& box : frame.boxes) {
+    if (box.points >= min_points) boxes.push_back(box_json(context.scene, box, cloud_from_sensor));
+  }
   return boxes;
 }
 
@@ -198,12 +202,26 @@ std::string text_of(Json json) {
   return text + "\n}\n";
 }
 
-/// The files that a sidecar lists which is about to be replaced, if they have the same frame.
-Json other_files(const std::filesystem::path& path, const std::string& frame_hash) {
+constexpr std::size_t kSeparatorBytes = 6;  // between the lines of a list
+
+/// At least the number of values that a parser finds in a JSON text, where names of keys and ends
+/// of objects and lists count too.
+std::size_t max_values(std::string_view text) {
+  std::size_t count = 1;
+  for (const char c : text) {
+    const bool opens = c == '{' || c == '[';
+    count += opens ? 2U : c == '}' || c == ']' || c == ':' || c == ',' ? 1U : 0U;
+  }
+  return count;
+}
+
+/// The files that a sidecar lists which is about to be replaced by `own`, if they have the same
+/// measurement.
+Json other_files(const std::filesystem::path& path, const Json& own) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return Json::array();
   try {
-    return Json::parse(listed_files(path, frame_hash));
+    return Json::parse(listed_files(path, on_one_line(own)));
   } catch (const Error&) {  // it is damaged, or not a sidecar
   }
   return Json::array();
@@ -249,7 +267,7 @@ SidecarEntry sidecar_entry(const CloudFile& job, const std::filesystem::path& pa
                {"rows", cloud.rows},
                {"cols", cloud.cols},
                {"frame_id", cloud.frame_id},
-               {"world_from_cloud", pose_json(cloud.world_from_cloud)},
+               {"world_from_cloud", job.has_moved ? Json() : pose_json(cloud.world_from_cloud)},
                {"layout", job.layout.empty() ? Json() : Json(job.layout)},
                {"columns", columns_json(job.fields)},
                {"image", image_json(job)}};
@@ -261,7 +279,7 @@ std::string sidecar_text(const SidecarContext& context, const Frame& frame,
                          std::span<const SidecarEntry> files, const std::filesystem::path& path) {
   Json all = run_json(context, frame, path);
   all.update(frame_json(context, frame, files));
-  for (const Json& other : other_files(path, all["frame_hash"].get<std::string>())) {
+  for (const Json& other : other_files(path, all)) {
     const auto is_same = [&](const Json& file) { return file["file"] == other.value("file", ""); };
     if (std::ranges::none_of(all["files"], is_same)) all["files"].push_back(other);
   }
@@ -277,16 +295,43 @@ RunSidecar run_sidecar(const SidecarContext& context, const Frame& first,
   const std::string measured = on_one_line(json);
   ContentHash hash;
   hash.add(measured.data(), measured.size());
-  return {path, text, hex(hash.value()), first.world_from_instance};
+  RunSidecar run;
+  run.path = path;
+  run.json = text;
+  run.hash = hex(hash.value());
+  run.world_from_instance = first.world_from_instance;
+  return run;
 }
 
-std::string sidecar_text(const RunSidecar& run, std::span<const SidecarEntry> files,
-                         std::span<const std::string> frames) {
+void RunSidecar::add_frame(std::string entry) {
+  constexpr std::size_t kRoomForFiles = std::size_t{1} << 20U;  // bytes and values
+  const std::size_t bytes = bytes_ + entry.size() + kSeparatorBytes;
+  const std::size_t values = values_ + max_values(entry);
+  const bool fits = bytes + json.size() + kRoomForFiles <= kMaxSidecarBytes &&
+                    values + max_values(json) + kRoomForFiles <= JsonLimits().max_values;
+  if (!fits || unlisted_frames > 0) {
+    ++unlisted_frames;
+    return;
+  }
+  bytes_ = bytes;
+  values_ = values;
+  frames.push_back(std::move(entry));
+}
+
+std::string sidecar_text(const RunSidecar& run, std::span<const SidecarEntry> files) {
   Json all = Json::parse(run.json);
   all["run_hash"] = run.hash;
   for (const SidecarEntry& file : files) all["files"].push_back(Json::parse(file.json));
-  for (const std::string& frame : frames) all["frames"].push_back(Json::parse(frame));
-  return text_of(std::move(all));
+  if (run.unlisted_frames > 0) all["unlisted_frames"] = run.unlisted_frames;
+  std::string text = text_of(std::move(all));
+  if (run.frames.empty()) return text;
+  text.resize(text.size() - std::string_view("\n}\n").size());
+  const char* line = ",\n  \"frames\": [\n    ";
+  for (const std::string& frame : run.frames) {
+    text += line + frame;
+    line = ",\n    ";
+  }
+  return text + "\n  ]\n}\n";
 }
 
 std::string frame_entry(const SidecarContext& context, const Frame& frame, const RunSidecar& run,
@@ -300,8 +345,9 @@ std::string frame_entry(const SidecarContext& context, const Frame& frame, const
                {"world_from_sensor", short_pose_json(frame.world_from_sensor)},
                {"points", std::move(counts)},
                {"moved", moved_json(context, frame, run.world_from_instance)},
-               {"boxes", boxes_json(context, frame, world_from_cloud)},
+               {"boxes", boxes_json(context, frame, world_from_cloud, 1)},
                {"beams_by_status", status_json(frame)}};
+  remove_negative_zeros(json);
   return on_one_line(json);
 }
 

@@ -551,8 +551,9 @@ class OusterEncoder final : public PacketEncoder {
 
   void encode(const Frame& frame, const Beams& beams, std::vector<UdpPacket>& packets) override {
     if (has_colour(format_.profile) && frame.ground_truth.colour.empty())
-      fail_of(sensor_, "a frame without the column colour",
-              "colours with " + std::string(name(format_.profile)));
+      throw Error({"Ouster packets of " + sensor_.name, "a frame without the column colour",
+                   "colours with " + std::string(name(format_.profile)),
+                   "simulate with this column: columns=[..., \"colour\"] in Python"});
     const double unit_m =
         (format_.profile == OusterProfile::rng15_rfl8_nir8 ? 8.0 : 1.0) * kMillimetre_m;
     for (const FiringSequence& sequence : firing_sequences(sensor_, frame, beams, unit_m)) {

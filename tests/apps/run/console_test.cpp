@@ -69,5 +69,29 @@ TEST(ProgressScope, IsSilentWithQuiet) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(ProgressScope, NeverRunsBackwardsWhenATaskWithinACountedOneBegins) {
+  ::testing::internal::CaptureStderr();
+  {
+    Console console(false, std::chrono::milliseconds(1));
+    ProgressScope run(console, "frame", 2);
+    run.next();
+    const auto written = [] { return ::lseek(STDERR_FILENO, 0, SEEK_CUR); };
+    const auto wait_for_line = [&] {
+      return testing::soon([&, before = written()] { return written() > before; });
+    };
+    {
+      const ProgressScope casting(console, "casting");
+      console.set_progress(0.9);
+      EXPECT_TRUE(wait_for_line() && wait_for_line());
+    }
+    const ProgressScope writing(console, "writing");
+    EXPECT_TRUE(wait_for_line() && wait_for_line());
+  }
+  const std::string text = ::testing::internal::GetCapturedStderr();
+  const std::size_t cast = text.find("frame 1 of 2, 45 %");
+  ASSERT_NE(cast, std::string::npos) << text;
+  EXPECT_EQ(text.find(", 0 %", cast), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace glidar::app

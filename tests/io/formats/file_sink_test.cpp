@@ -414,5 +414,55 @@ TEST(FileSink, FramesWithoutHitsGiveValidDenseFiles) {
   EXPECT_EQ(file_bytes(folder / "a.bin"), "");
 }
 
+TEST(FileSink, AsksForRangesOfACameraThatLooksBack) {
+  const testing::TestFolder folder;
+  CloudFixture made = make_fixture();
+  made.sensor.optics = Pinhole{};
+  made.beams.directions = {-made.beams.boresight};
+  drop_column(made.cloud, "range");
+  write_cloud(made, folder.path() / "a.exr");
+  made.frame.range_m.clear();
+  EXPECT_THAT(error_text([&] { write_cloud(made, folder.path() / "b.exr"); }),
+              AllOf(HasSubstr("no column range"), HasSubstr("request range too")));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.exr"));
+}
+
+/// A cloud with firing times, as files of all frames have.
+CloudFixture make_run_fixture() {
+  CloudFixture made = make_fixture();
+  fixture::add_column<std::int64_t>(made.cloud, "stamp", {"stamp"}, [](std::size_t i, std::size_t) {
+    return static_cast<std::int64_t>(i);
+  });
+  return made;
+}
+
+TEST(RunFile, OfLasTakesLaterFramesThatAreMuchLargerThanTheFirst) {
+  const testing::TestFolder folder;
+  CloudFixture made = make_run_fixture();
+  const SidecarContext context = made.context();
+  RunFile file(folder.path() / "a.las", {}, context);
+  EXPECT_GT(file.append(made.cloud, made.frame, made.beams), 0U);  // points within 3 m
+  for (double& x_m : std::get<std::vector<double>>(made.cloud.columns[0].values)) x_m += 2e5;
+  EXPECT_GT(file.append(made.cloud, made.frame, made.beams), 0U);
+  for (double& x_m : std::get<std::vector<double>>(made.cloud.columns[0].values)) x_m += 2e5;
+  EXPECT_THAT(error_text([&] { file.append(made.cloud, made.frame, made.beams); }),
+              HasSubstr("allowed: 214748.3647 m in each direction"));
+}
+
+TEST(RunFile, HasNoPoseIfItsAxesMove) {
+  const testing::TestFolder folder;
+  CloudFixture made = make_run_fixture();
+  const SidecarContext context = made.context();
+  const auto pose_after = [&](double step_m) {
+    RunFile file(folder.path() / "a.csv", {}, context);
+    (void)file.append(made.cloud, made.frame, made.beams);
+    made.cloud.world_from_cloud.translation().x() += step_m;
+    (void)file.append(made.cloud, made.frame, made.beams);
+    return nlohmann::json::parse(file.finish().json)["world_from_cloud"];
+  };
+  EXPECT_EQ(pose_after(0.0)["position_m"], nlohmann::json({0.0, 0.0, -1.0}));
+  EXPECT_TRUE(pose_after(1.0).is_null());
+}
+
 }  // namespace
 }  // namespace glidar

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
+#include <glidar/io/formats/sidecar_file.hpp>
 #include <io/cloud_fixture.hpp>
 #include <support/error_text.hpp>
 
@@ -51,6 +52,12 @@ TEST(ReadSidecar, FindsEveryFileOfAFrameWhoseFilesWereWrittenOneByOne) {
   for (const char* name : {"x.pcd", "x.ply", "x.pcd"})
     make_file_sink(folder.path() / name, {}, context)->write(made.cloud, made.frame);
   EXPECT_EQ(read_sidecar(folder.path() / "x.ply").frames[0].points, made.cloud.size());
+  EXPECT_EQ(read_sidecar(folder.path() / "x.pcd").frames[0].points, made.cloud.size());
+  std::filesystem::remove(folder.path() / "x.ply");
+  make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
+  EXPECT_NE(error_text([&] { read_sidecar(folder.path() / "x.ply"); }).find("does not list x.ply"),
+            std::string::npos);
+  make_file_sink(folder.path() / "x.ply", {}, context)->write(made.cloud, made.frame);
   EXPECT_EQ(read_sidecar(folder.path() / "x.pcd").frames[0].points, made.cloud.size());
   made.frame.range_m[0] += 1.0;  // another measurement replaces them
   make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
@@ -101,6 +108,51 @@ TEST(ReadSidecar, RejectsOtherFiles) {
     EXPECT_NE(sidecar_error(folder, text).find("not a sidecar of this version"), std::string::npos)
         << text;
   }
+}
+
+TEST(ReadSidecar, DoesNotListFilesOfOtherMeasurementsWithTheSameNumbers) {
+  const TestFolder folder;
+  const auto is_listed_after = [&](const auto& change) {
+    CloudFixture made = make_fixture();
+    write_cloud(made, folder.path() / "x.ply");
+    change(made.frame);
+    write_cloud(made, folder.path() / "x.pcd");
+    const std::string text = file_bytes(folder.path() / "x.glidar.json");
+    return text.find("x.ply") != std::string::npos;
+  };
+  EXPECT_TRUE(is_listed_after([](Frame&) {}));
+  EXPECT_FALSE(is_listed_after([](Frame& frame) { frame.stamp_ns += 1; }));
+  EXPECT_FALSE(
+      is_listed_after([](Frame& frame) { frame.world_from_sensor.translation().x() += 1; }));
+  EXPECT_FALSE(
+      is_listed_after([](Frame& frame) { frame.world_from_instance[1].translation().y() += 1; }));
+}
+
+TEST(RunSidecar, ListsOnlyBoxesWithPoints) {
+  CloudFixture made = make_fixture();
+  made.frame.boxes = {{.instance = 0, .points = 3}, {.instance = 1, .points = 0}};
+  const RunSidecar run = run_sidecar(made.context(), made.frame, "run.glidar.json");
+  const std::vector<FramePoints> points = {{"run.csv", 20}};
+  const std::string entry = frame_entry(made.context(), made.frame, run, points, Pose::Identity());
+  EXPECT_NE(entry.find("\"name\":\"rock\""), std::string::npos) << entry;
+  EXPECT_EQ(entry.find("other rock"), std::string::npos) << entry;
+}
+
+TEST(RunSidecar, ListsAsManyFramesAsAReaderTakesAndCountsTheOthers) {
+  const CloudFixture made = make_fixture();
+  RunSidecar run = run_sidecar(made.context(), made.frame, "run.glidar.json");
+  std::string huge = "[0";
+  for (std::size_t i = 0; i < std::size_t{1} << 22U; ++i) huge += ",0";
+  huge += ']';
+  for (int i = 0; i < 5; ++i) run.add_frame(huge);
+  run.add_frame("[]");
+  EXPECT_EQ(run.frames.size(), 3U);  // 2^24 values
+  EXPECT_EQ(run.unlisted_frames, 3U);
+  run.frames = {"{}", "{}"};
+  const std::string text = sidecar_text(run, {});
+  EXPECT_TRUE(
+      text.ends_with("  \"unlisted_frames\": 3,\n  \"frames\": [\n    {},\n    {}\n  ]\n}\n"))
+      << text;
 }
 
 }  // namespace
