@@ -189,7 +189,7 @@ bool stores_columns_only(const FileFormat& format) {
 
 /// Writes a cloud with the columns, which may have been changed since `from` was made; None: the
 /// cloud was unpickled.
-void save_cloud(const std::filesystem::path& path, PointCloud cloud, const CloudHandle& from,
+void save_cloud(const std::filesystem::path& path, const PointCloud& cloud, const CloudHandle& from,
                 const OutputOptions& options, const Report& report) {
   const FileFormat& format = format_for(path);
   if (!stores_columns_only(format)) {
