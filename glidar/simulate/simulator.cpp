@@ -7,8 +7,6 @@
 #include <glidar/simulate/object_boxes.hpp>
 #include <glidar/simulate/simulate.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <deque>
 #include <optional>
@@ -150,8 +148,8 @@ Simulation Simulator::prepare(const Beams& beams, const Motion& motion,
 void Simulator::set_boxed_classes(BoxedClasses classes) {
   const std::size_t count = state_->scene.class_names.size();
   if (!classes.empty() && classes.size() != count) {
-    throw Error({"classes with boxes", fmt::format("{} values", classes.size()),
-                 fmt::format("{}, one for each class of the scene", count),
+    throw Error({"classes with boxes", std::to_string(classes.size()) + " values",
+                 std::to_string(count) + ", one for each class of the scene",
                  "make them with boxed_classes()"});
   }
   state_->boxed_classes = std::move(classes);
