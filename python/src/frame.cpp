@@ -229,9 +229,7 @@ void save_columns(const std::filesystem::path& path, const nb::dict& columns, nb
                    {}};
   for (const auto& [name, array] : columns)
     cloud.columns.push_back(column_of(nb::cast<std::string>(name), nb::cast<AnyArray>(array)));
-  unlocked([&](Watch& watch) {
-    save_cloud(path, cloud, from, options, report_to(log, watch));
-  });
+  unlocked([&](Watch& watch) { save_cloud(path, cloud, from, options, report_to(log, watch)); });
 }
 
 std::vector<std::string> column_names_of(const CloudHandle& handle) {
