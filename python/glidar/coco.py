@@ -48,10 +48,10 @@ class CocoWriter:
         scene: whose objects have classes, the categories.
         sensor: a camera with a pinhole; None: that of the scene file.
         classes: of the objects with annotations; None: those with boxes (docs/boxes.md).
-        supersampling: rays per pixel in each direction for colours, 1 to 16, so that thin structures are no speckle.
+        supersampling: rays per pixel in each direction for colours, 1 to 16, which keeps thin structures from becoming speckle.
 
     Raises:
-        Error: a folder that exists or that another writer makes, a scene without classes, or a sensor without a pinhole.
+        Error: a folder that exists or that another writer is filling, a scene without classes, or a sensor that is no pinhole camera.
     """
 
     def __init__(
